@@ -1,0 +1,1 @@
+//! Hierarchies of axis-aligned boxes over triangles, and the queries that walk them.
