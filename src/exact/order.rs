@@ -1,0 +1,140 @@
+//! The order of two crossings on one edge, which is also the side of a crossing point against a third plane.
+//!
+//! Let `D(T; x)` be `orient3d` of triangle `T` and point `x`. An edge `(p, q)` that crosses the planes of `T1` and `T2`
+//! does so at parameters `t_k = D(Tk; p) / (D(Tk; p) - D(Tk; q))`, and `t1 < t2` is decided by the sign of
+//! `N = D(T1; p) D(T2; q) - D(T1; q) D(T2; p)`. The same `N` tells, up to the sign of `D(T1; p) - D(T1; q)`, on which side
+//! of the plane of `T2` the crossing with `T1` lies.
+
+use super::lattice::Lattice;
+use super::orient::orient3d_filter;
+use super::perturbed::{COEFFICIENTS, EXPONENTS, PerturbedPoint, coefficients};
+use super::{Integer, Sign};
+
+/// The sign of `t1 - t2` from plain positions, if `f64` with an error bound can tell: the filter of [`compare`].
+///
+/// `p_above_1` and `p_above_2` say whether `D(Tk; p)` is positive (perturbed).
+#[inline]
+#[must_use]
+pub fn compare_filter(
+    p: &[f64; 3],
+    q: &[f64; 3],
+    first: [&[f64; 3]; 3],
+    second: [&[f64; 3]; 3],
+    p_above_1: bool,
+    p_above_2: bool,
+) -> Option<Sign> {
+    let (a0, a0_bound) = orient3d_filter(first[0], first[1], first[2], p);
+    let (a1, a1_bound) = orient3d_filter(first[0], first[1], first[2], q);
+    let (b0, b0_bound) = orient3d_filter(second[0], second[1], second[2], p);
+    let (b1, b1_bound) = orient3d_filter(second[0], second[1], second[2], q);
+    let (left, right) = (a0 * b1, b0 * a1);
+    let n = left - right;
+    let bound = (a0.abs() + a0_bound) * b1_bound
+        + b1.abs() * a0_bound
+        + (b0.abs() + b0_bound) * a1_bound
+        + a1.abs() * b0_bound
+        + 4.0 * f64::EPSILON * (left.abs() + right.abs());
+    // The bounds hold a floor far above what underflow can lose; overflow makes this comparison fail.
+    if n.abs() > bound { Some(order_from(n > 0.0, p_above_1, p_above_2)) } else { None }
+}
+
+fn order_from(n_positive: bool, p_above_1: bool, p_above_2: bool) -> Sign {
+    // sign(t1 - t2) = -sign(N) sign(D(T1; p)) sign(D(T2; p)).
+    if n_positive ^ p_above_1 ^ p_above_2 { Sign::Negative } else { Sign::Positive }
+}
+
+/// The sign of `t1 - t2`, exactly, for perturbed points; `p` and `q` must lie on different (perturbed) sides of both
+/// triangles. Zero only if the two crossings coincide identically: for the same triangle given twice.
+#[must_use]
+pub fn compare(
+    p: &PerturbedPoint,
+    q: &PerturbedPoint,
+    first: [&PerturbedPoint; 3],
+    second: [&PerturbedPoint; 3],
+) -> Sign {
+    let all = [p, q].into_iter().chain(first).chain(second);
+    let lattice = Lattice::of(all.flat_map(|point| &point.position));
+    let heights = |t: [&PerturbedPoint; 3], x| coefficients([t[0], t[1], t[2], x], lattice);
+    let (a0, a1) = (heights(first, p), heights(first, q));
+    let (b0, b1) = (heights(second, p), heights(second, q));
+    let positive = |polynomial: &[Integer; COEFFICIENTS]| {
+        polynomial.iter().map(Integer::signum).find(|&sign| sign != 0).is_some_and(|sign| sign > 0)
+    };
+    for exponent in 0..=2 * EXPONENTS[COEFFICIENTS - 1] {
+        let mut n = Integer::zero();
+        for i in 0..COEFFICIENTS {
+            for j in 0..COEFFICIENTS {
+                if EXPONENTS[i] + EXPONENTS[j] == exponent {
+                    n = n.plus(&a0[i].times(&b1[j])).minus(&b0[i].times(&a1[j]));
+                }
+            }
+        }
+        if !n.is_zero() {
+            return order_from(n.signum() > 0, positive(&a0), positive(&b0));
+        }
+    }
+    Sign::Zero
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeMap;
+
+    use crate::exact::perturbed::tests::{degenerate, lowest, minus, reference, times};
+    use rand::SeedableRng;
+    use rand::rngs::ChaCha8Rng;
+
+    #[test]
+    fn agrees_with_rationals_at_every_order() {
+        let mut rng = ChaCha8Rng::seed_from_u64(5);
+        let (mut orders, mut filtered, mut tried) = ([0u32; 49], 0, 0);
+        for round in 0..60_000 {
+            let scale = [1.0, 0.3, 1e-90][round % 3];
+            let points: [PerturbedPoint; 8] =
+                std::array::from_fn(|i| degenerate(&mut rng, (8 * round + i) as u64, scale));
+            let [p, q, rest @ ..] = points.each_ref();
+            let (first, second) = ([rest[0], rest[1], rest[2]], [rest[3], rest[4], rest[5]]);
+            let height = |t: [&PerturbedPoint; 3], x| reference([t[0], t[1], t[2], x]);
+            let (a0, a1, b0, b1) = (height(first, p), height(first, q), height(second, p), height(second, q));
+            let sides = [&a0, &a1, &b0, &b1].map(|polynomial| lowest(polynomial).1);
+            if sides.contains(&Sign::Zero) || sides[0] == sides[1] || sides[2] == sides[3] {
+                continue;
+            }
+            tried += 1;
+            // t1 < t2 by the definition, with the denominators made positive.
+            let denominator =
+                |x: &_, y: &_| if lowest(x).1 == Sign::Positive { minus(x, y) } else { minus(y, x) };
+            let numerator = |x: &BTreeMap<_, _>| {
+                if lowest(x).1 == Sign::Positive { x.clone() } else { minus(&BTreeMap::new(), x) }
+            };
+            let difference = minus(
+                &times(&numerator(&a0), &denominator(&b0, &b1)),
+                &times(&numerator(&b0), &denominator(&a0, &a1)),
+            );
+            let (order, expected) = lowest(&difference);
+            assert_eq!(compare(p, q, first, second), expected, "order {order}");
+            if let Some(count) = orders.get_mut(order) {
+                *count += 1;
+            }
+            let plain = |t: [&'_ PerturbedPoint; 3]| t.map(|x| x.position);
+            let (t1, t2) = (plain(first), plain(second));
+            let above = |sign: Sign| sign == Sign::Positive;
+            if let Some(sign) = compare_filter(
+                &p.position,
+                &q.position,
+                t1.each_ref(),
+                t2.each_ref(),
+                above(sides[0]),
+                above(sides[2]),
+            ) {
+                filtered += 1;
+                assert_eq!(sign, expected, "filter");
+            }
+        }
+        assert!(tried > 10_000 && filtered > 500, "{tried} {filtered}");
+        for exponent in [0, 1, 2, 3, 8, 9, 10, 16] {
+            assert!(orders[exponent] > 0, "order {exponent} must occur: {orders:?}");
+        }
+    }
+}
