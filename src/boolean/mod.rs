@@ -1,5 +1,21 @@
 //! Booleans of solids.
 
+mod assemble;
+mod crossings;
+mod cut;
+mod cut_edges;
+mod cut_faces;
+mod directions;
+mod identify;
+mod multiplicity;
+mod operands;
+mod overlap;
+mod pair;
+mod tidy;
+mod winding;
+#[cfg(test)]
+mod scratch_tests;
+
 use crate::control::Control;
 use crate::{Error, Solid};
 
@@ -26,6 +42,9 @@ pub struct Origin {
     /// Whether the result's triangle faces the other way.
     pub reversed: bool,
 }
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PairOrigin(Origin);
 
 /// The result of a boolean.
 #[derive(Clone, Debug)]
@@ -88,8 +107,13 @@ impl Options {
     /// Only limits: [`Error::Cancelled`], [`Error::DeadlineExceeded`], [`Error::MemoryLimit`]; and
     /// [`Error::InvalidArgument`] for an empty list.
     pub fn run(&self, operation: Operation, operands: &[&Solid]) -> Result<Outcome, Error> {
-        let _ = (operation, operands);
-        Err(Error::InvalidArgument("not built yet".into()))
+        let [a, b] = operands else { return Err(Error::InvalidArgument("two operands for now".into())) };
+        let runner = crate::parallel::Runner::new(&self.control, self.threads != Some(1));
+        let result = pair::combine(operation, a, b, runner)?;
+        Ok(Outcome {
+            solid: Solid::try_from(crate::Mesh::new(result.positions, result.triangles))?,
+            origins: result.origins.iter().map(|origin| origin.0).collect(),
+        })
     }
 }
 

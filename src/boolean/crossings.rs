@@ -1,0 +1,134 @@
+//! Where edges of one operand cross triangles of the other (Vyatkin 2019, step 1: the intersection curve).
+//!
+//! In general position that is the only kind of event. Two triangles that intersect have exactly two crossings, which
+//! bound one segment of the intersection curve.
+
+use super::operands::{Corner, Operands};
+use crate::Error;
+use crate::parallel::Runner;
+
+/// A crossing of an edge of one operand with a triangle of the other. Every cut edge runs from `low` to `high`, its
+/// vertices in ascending order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Crossing {
+    /// The edge's vertices, by number; they tell which operand it belongs to.
+    pub(super) low: u32,
+    pub(super) high: u32,
+    /// The triangle of the other operand.
+    pub(super) triangle: u32,
+    /// Whether the edge, from `low` to `high`, leaves the triangle's operand (else it enters it).
+    pub(super) leaves: bool,
+}
+
+/// One segment of the intersection curve: on triangle `triangles[0]` of A, seen from outside, B's outside is to the left
+/// of the way from `tail` to `head`; on `triangles[1]` of B, A's outside is to the left of the way back.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Segment {
+    pub(super) triangles: [u32; 2],
+    pub(super) tail: u32,
+    pub(super) head: u32,
+}
+
+/// All crossings, and the segments between them.
+#[derive(Debug, Default)]
+pub(super) struct Crossings {
+    /// The crossings, sorted by edge, then by triangle. A crossing's index here is its node number.
+    pub(super) nodes: Vec<Crossing>,
+    /// The segments, sorted by triangle of A, then of B.
+    pub(super) segments: Vec<Segment>,
+}
+
+/// The two crossings of a pair of triangles, tail first.
+#[derive(Clone, Copy, Debug)]
+struct PairCrossing {
+    triangles: [u32; 2],
+    tail: Crossing,
+    head: Crossing,
+}
+
+/// Finds the crossings of all candidate pairs.
+pub(super) fn find(operands: &Operands<'_>, pairs: &[[u32; 2]], runner: Runner<'_>) -> Result<Crossings, Error> {
+    let found: Vec<PairCrossing> = runner
+        .pieces(pairs.len(), 4096, |range| {
+            pairs[range].iter().filter_map(|&pair| cross(operands, pair)).collect::<Vec<_>>()
+        })?
+        .concat();
+    Ok(number_nodes(&found))
+}
+
+/// Decides whether two triangles intersect and where: at most ten signs.
+fn cross(operands: &Operands<'_>, triangles: [u32; 2]) -> Option<PairCrossing> {
+    let a = operands.corners(0, triangles[0]);
+    let b = operands.corners(1, triangles[1]);
+    // Which corners lie inside the other triangle's plane.
+    let a_inside = [0, 1, 2].map(|i| operands.positive(&b[0], &b[1], &b[2], &a[i]));
+    let lone_a = lone(a_inside)?;
+    let b_inside = [0, 1, 2].map(|i| operands.positive(&a[0], &a[1], &a[2], &b[i]));
+    let lone_b = lone(b_inside)?;
+    let [p, q, r] = [0, 1, 2].map(|i| &a[(lone_a + i) % 3]);
+    let [u, v, w] = [0, 1, 2].map(|i| &b[(lone_b + i) % 3]);
+    // Both triangles cut the line in which their planes meet in an interval; the edges at the lone corners bound it. An
+    // edge crosses the other triangle iff it passes its two edges at the lone corner on different sides.
+    let qv = operands.positive(p, q, u, v);
+    let qw = operands.positive(p, q, u, w);
+    let rv = operands.positive(p, r, u, v);
+    let rw = operands.positive(p, r, u, w);
+    let crossing = |x: &Corner, y: &Corner, x_inside: bool, triangle: u32| {
+        let (low, high) = if x.id < y.id { (x.id, y.id) } else { (y.id, x.id) };
+        Crossing { low, high, triangle, leaves: x_inside == (x.id < y.id) }
+    };
+    // Along the boundary of its own triangle an edge of A that leaves B ends the segment, one of B that leaves A starts it.
+    let (mut tail, mut head) = (None, None);
+    let mut place = |crossing: Crossing, is_head: bool| *(if is_head { &mut head } else { &mut tail }) = Some(crossing);
+    let (p_inside, u_inside) = (a_inside[lone_a], b_inside[lone_b]);
+    if qv != qw {
+        place(crossing(p, q, p_inside, triangles[1]), p_inside);
+    }
+    if rv != rw {
+        place(crossing(p, r, p_inside, triangles[1]), !p_inside);
+    }
+    if qv != rv {
+        place(crossing(u, v, u_inside, triangles[0]), !u_inside);
+    }
+    if qw != rw {
+        place(crossing(u, w, u_inside, triangles[0]), u_inside);
+    }
+    debug_assert_eq!(tail.is_some(), head.is_some(), "an intersecting pair has one crossing of each direction");
+    Some(PairCrossing { triangles, tail: tail?, head: head? })
+}
+
+/// The index of the one that differs from the other two.
+#[inline]
+fn lone(inside: [bool; 3]) -> Option<usize> {
+    match inside {
+        [a, b, c] if a == b && b == c => None,
+        [a, b, _] if a == b => Some(2),
+        [a, _, c] if a == c => Some(1),
+        _ => Some(0),
+    }
+}
+
+/// Gives every crossing one number: each is met in the pairs of all triangles beside its edge.
+fn number_nodes(found: &[PairCrossing]) -> Crossings {
+    let mut order: Vec<(Crossing, u32)> = found
+        .iter()
+        .enumerate()
+        .flat_map(|(i, pair)| [(pair.tail, 2 * i as u32), (pair.head, 2 * i as u32 + 1)])
+        .collect();
+    order.sort_unstable();
+    let mut nodes: Vec<Crossing> = Vec::with_capacity(order.len() / 2);
+    let mut node_of = vec![0u32; order.len()];
+    for &(crossing, place) in &order {
+        if nodes.last() != Some(&crossing) {
+            nodes.push(crossing);
+        }
+        node_of[place as usize] = nodes.len() as u32 - 1;
+    }
+    let mut segments: Vec<Segment> = found
+        .iter()
+        .enumerate()
+        .map(|(i, pair)| Segment { triangles: pair.triangles, tail: node_of[2 * i], head: node_of[2 * i + 1] })
+        .collect();
+    segments.sort_unstable_by_key(|segment| segment.triangles);
+    Crossings { nodes, segments }
+}

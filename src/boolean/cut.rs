@@ -1,0 +1,187 @@
+//! Cutting: the kept pieces of each cut face as triangles (Vyatkin 2019, step 2).
+//!
+//! In a cut face the kept parts of its sides and its segments, directed by the operation, enter every point as often as
+//! they leave it: they bound the kept region, with no geometry needed to close loops. Points that coincide are identified
+//! before, opposite edges cancel, and only then the region is triangulated, in the projection along the axis its face looks
+//! along most (dropping a coordinate rounds nothing).
+
+use smallvec::SmallVec;
+
+use super::crossings::Crossings;
+use super::cut_edges::CutEdges;
+use super::cut_faces::{CutFace, CutFaces, UNCUT};
+use super::identify::Identification;
+use super::multiplicity::Part;
+use super::operands::Operands;
+use crate::Error;
+use crate::parallel::Runner;
+use crate::polygon::Triangulator;
+
+/// A triangle cut out of a face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    /// Points: vertices by number, then nodes.
+    pub(super) corners: [u32; 3],
+    /// The face it was cut from.
+    pub(super) triangle: u32,
+}
+
+/// All that cutting needs to know.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cutter<'a> {
+    pub(super) operands: &'a Operands<'a>,
+    pub(super) crossings: &'a Crossings,
+    pub(super) edges: &'a CutEdges,
+    pub(super) faces: &'a [CutFaces; 2],
+    /// Winding numbers of the vertices, by side.
+    pub(super) windings: &'a [Vec<i32>; 2],
+    pub(super) identification: &'a Identification,
+}
+
+/// Scratch memory of one thread.
+#[derive(Default)]
+struct Scratch {
+    triangulator: Triangulator,
+    boundary: Vec<[u32; 2]>,
+    points: Vec<[f64; 2]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Cutter<'_> {
+    /// The pieces of a part, face by face.
+    pub(super) fn cut(&self, part: Part, runner: Runner<'_>) -> Result<Vec<Piece>, Error> {
+        let all = &self.faces[part.side].faces;
+        let pieces = runner.pieces(all.len(), 512, |range| {
+            let mut scratch = Scratch::default();
+            let mut pieces = Vec::new();
+            for face in &all[range] {
+                self.cut_face(part, face, &mut scratch, &mut pieces);
+            }
+            pieces
+        })?;
+        Ok(pieces.concat())
+    }
+
+    /// Where a point is.
+    pub(super) fn position(&self, point: u32) -> &[f64; 3] {
+        let first_node = self.operands.vertex_count();
+        if point < first_node {
+            self.operands.position(point)
+        } else {
+            &self.edges.positions[(point - first_node) as usize]
+        }
+    }
+
+    fn cut_face(&self, part: Part, face: &CutFace, scratch: &mut Scratch, pieces: &mut Vec<Piece>) {
+        self.boundary(part, face, &mut scratch.boundary);
+        cancel_opposites(&mut scratch.boundary);
+        if scratch.boundary.is_empty() {
+            return;
+        }
+        // Local numbers for the triangulation.
+        let mut points: SmallVec<[u32; 16]> = SmallVec::new();
+        points.extend(scratch.boundary.iter().map(|edge| edge[0]));
+        points.sort_unstable();
+        points.dedup();
+        let local = |point: u32| points.binary_search(&point).expect("every point is left") as u32;
+        for edge in &mut scratch.boundary {
+            *edge = edge.map(local);
+        }
+        let (x, y) = self.projection(part, face);
+        scratch.points.clear();
+        scratch.points.extend(points.iter().map(|&point| {
+            let position = self.position(point);
+            [position[x], position[y]]
+        }));
+        scratch.triangles.clear();
+        scratch.triangulator.triangulate(&scratch.points, &scratch.boundary, &mut scratch.triangles);
+        pieces.extend(scratch.triangles.iter().map(|corners| Piece {
+            corners: corners.map(|point| points[point as usize]),
+            triangle: face.triangle,
+        }));
+    }
+
+    /// The directed edges that bound the kept region of a face, to their left; each as often as it counts.
+    fn boundary(&self, part: Part, face: &CutFace, boundary: &mut Vec<[u32; 2]>) {
+        boundary.clear();
+        let first_node = self.operands.vertex_count();
+        let first_vertex = self.operands.first_vertex(part.side);
+        let winding = |vertex: u32| self.windings[part.side][(vertex - first_vertex) as usize];
+        let mut add = |from: u32, to: u32, count: i32| {
+            let (from, to) = (self.identification.representative(from), self.identification.representative(to));
+            if from != to {
+                let edge = if count > 0 { [from, to] } else { [to, from] };
+                boundary.extend(std::iter::repeat_n(edge, count.unsigned_abs() as usize));
+            }
+        };
+        let corners = self.operands.sides[part.side].triangles[face.triangle as usize].map(|v| first_vertex + v);
+        for k in 0..3 {
+            let (u, v) = (corners[k], corners[(k + 1) % 3]);
+            if face.edges[k] == UNCUT {
+                add(u, v, part.sign() * part.multiplicity(winding(u)));
+                continue;
+            }
+            let (low, high) = (u.min(v), u.max(v));
+            let direction = if u == low { part.sign() } else { -part.sign() };
+            let (mut from, mut around) = (low, winding(low));
+            for &node in self.edges.nodes(face.edges[k]) {
+                add(from, first_node + node, direction * part.multiplicity(around));
+                around += if self.crossings.nodes[node as usize].leaves { -1 } else { 1 };
+                from = first_node + node;
+            }
+            add(from, high, direction * part.multiplicity(around));
+        }
+        for &segment in self.faces[part.side].segments(face) {
+            let segment = &self.crossings.segments[segment as usize];
+            add(first_node + segment.tail, first_node + segment.head, part.segment_direction());
+        }
+    }
+
+    /// The two axes onto which a face is projected, in the order in which the kept side is seen counter-clockwise.
+    fn projection(&self, part: Part, face: &CutFace) -> (usize, usize) {
+        let corners = self.operands.corners(part.side, face.triangle).map(|corner| corner.position);
+        let (axis, positive) = dominant_axis(&corners);
+        let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
+        if positive != part.reversed { (x, y) } else { (y, x) }
+    }
+}
+
+/// The axis the normal of a triangle is largest along, and whether it looks along it (or against it). Any axis will do
+/// for a triangle without area.
+pub(super) fn dominant_axis(corners: &[[f64; 3]; 3]) -> (usize, bool) {
+    let [a, b, c] = corners;
+    let edge = |p: &[f64; 3], q: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|k| q[k] - p[k]) };
+    let (mut u, mut v) = (edge(a, b), edge(a, c));
+    // To unit size, so that products neither vanish nor overflow.
+    let size = u.iter().chain(&v).fold(0.0f64, |size, x| size.max(x.abs()));
+    if size > 0.0 && size.is_finite() {
+        u = u.map(|x| x / size);
+        v = v.map(|x| x / size);
+    }
+    let normal: [f64; 3] = std::array::from_fn(|k| {
+        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
+        u[l] * v[m] - u[m] * v[l]
+    });
+    let axis = (1..3).fold(0, |best, k| if normal[k].abs() > normal[best].abs() { k } else { best });
+    (axis, normal[axis] >= 0.0)
+}
+
+/// Removes pairs of opposite edges.
+fn cancel_opposites(edges: &mut Vec<[u32; 2]>) {
+    let opposite_pair = |edges: &[[u32; 2]]| {
+        edges.iter().enumerate().any(|(i, e)| edges[..i].iter().any(|f| f[0] == e[1] && f[1] == e[0]))
+    };
+    const FEW: usize = 10;
+    if edges.len() <= FEW && !opposite_pair(edges) {
+        return;
+    }
+    edges.sort_unstable_by_key(|&[u, v]| (u.min(v), u.max(v), u > v));
+    let mut kept = Vec::with_capacity(edges.len());
+    for group in edges.chunk_by(|e, f| e[0].min(e[1]) == f[0].min(f[1]) && e[0].max(e[1]) == f[0].max(f[1])) {
+        let ascending = group.iter().filter(|e| e[0] < e[1]).count();
+        let descending = group.len() - ascending;
+        let majority = if ascending > descending { group[0] } else { group[group.len() - 1] };
+        kept.extend(std::iter::repeat_n(majority, ascending.abs_diff(descending)));
+    }
+    *edges = kept;
+}

@@ -1,0 +1,153 @@
+//! The crossings along each cut edge, in order, and where they are.
+
+use std::cmp::Ordering;
+
+use super::crossings::{Crossing, Crossings};
+use super::operands::{Corner, Operands};
+use crate::Error;
+use crate::exact::{Sign, order, position};
+use crate::parallel::Runner;
+
+/// An edge with crossings, from `low` to `high`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CutEdge {
+    pub(super) low: u32,
+    pub(super) high: u32,
+    /// Where its nodes start and end in [`CutEdges::nodes`].
+    first: u32,
+    end: u32,
+}
+
+/// All cut edges.
+#[derive(Debug, Default)]
+pub(super) struct CutEdges {
+    pub(super) edges: Vec<CutEdge>,
+    /// Node numbers, edge by edge, from the edge's low end to its high end.
+    nodes: Vec<u32>,
+    /// For each node the index of its edge.
+    pub(super) edge_of_node: Vec<u32>,
+    /// For each node where it is, correctly rounded.
+    pub(super) positions: Vec<[f64; 3]>,
+}
+
+impl CutEdges {
+    /// Groups the crossings by edge, orders them along each, and computes their positions.
+    pub(super) fn new(operands: &Operands<'_>, crossings: &Crossings, runner: Runner<'_>) -> Result<Self, Error> {
+        let all = &crossings.nodes;
+        let mut edges: Vec<CutEdge> = Vec::new();
+        let mut edge_of_node = Vec::with_capacity(all.len());
+        for (i, node) in all.iter().enumerate() {
+            match edges.last_mut() {
+                Some(edge) if edge.low == node.low && edge.high == node.high => edge.end += 1,
+                _ => edges.push(CutEdge { low: node.low, high: node.high, first: i as u32, end: i as u32 + 1 }),
+            }
+            edge_of_node.push(edges.len() as u32 - 1);
+        }
+        let nodes = runner
+            .pieces(edges.len(), 1024, |range| {
+                let mut nodes = Vec::new();
+                for edge in &edges[range] {
+                    let start = nodes.len();
+                    nodes.extend(edge.first..edge.end);
+                    if edge.end - edge.first > 1 {
+                        nodes[start..]
+                            .sort_by(|&x, &y| compare(operands, &all[x as usize], &all[y as usize]));
+                    }
+                }
+                nodes
+            })?
+            .concat();
+        let positions = runner
+            .pieces(all.len(), 1024, |range| all[range].iter().map(|node| locate(operands, node)).collect::<Vec<_>>())?
+            .concat();
+        Ok(Self { edges, nodes, edge_of_node, positions })
+    }
+
+    /// The nodes of an edge, from its low end to its high end.
+    pub(super) fn nodes(&self, edge: u32) -> &[u32] {
+        let CutEdge { first, end, .. } = self.edges[edge as usize];
+        &self.nodes[first as usize..end as usize]
+    }
+}
+
+/// The order of two crossings of one edge, from its low end on.
+fn compare(operands: &Operands<'_>, x: &Crossing, y: &Crossing) -> Ordering {
+    let (p, q) = (operands.corner(x.low), operands.corner(x.high));
+    let other = 1 - operands.side_of(x.low);
+    let (t1, t2) = (operands.corners(other, x.triangle), operands.corners(other, y.triangle));
+    let positions = |t: &[Corner; 3]| [t[0].position, t[1].position, t[2].position];
+    let (first, second) = (positions(&t1), positions(&t2));
+    // The low end is inside (below) a triangle's plane iff the edge leaves there.
+    let sign = order::compare_filter(
+        &p.position,
+        &q.position,
+        first.each_ref(),
+        second.each_ref(),
+        x.leaves,
+        y.leaves,
+    )
+    .or_else(|| by_sides(operands, &t1, &t2, x.leaves, y.leaves))
+    .unwrap_or_else(|| {
+        let point = |corner: &Corner| operands.perturbed(corner);
+        let (t1, t2) = (t1.each_ref().map(point), t2.each_ref().map(point));
+        order::compare(&point(&p), &point(&q), t1.each_ref(), t2.each_ref())
+    });
+    match sign {
+        Sign::Negative => Ordering::Less,
+        Sign::Positive => Ordering::Greater,
+        Sign::Zero => duplicates(x, y),
+    }
+}
+
+/// The order where one triangle lies wholly on one side of the other's plane: then so does its crossing point.
+fn by_sides(
+    operands: &Operands<'_>,
+    t1: &[Corner; 3],
+    t2: &[Corner; 3],
+    p_below_1: bool,
+    p_below_2: bool,
+) -> Option<Sign> {
+    // If the crossing with the one is on p's side of the other, it comes first.
+    if let Some(below) = common_side(operands, t1, t2) {
+        return Some(if below == p_below_2 { Sign::Negative } else { Sign::Positive });
+    }
+    let below = common_side(operands, t2, t1)?;
+    Some(if below == p_below_1 { Sign::Positive } else { Sign::Negative })
+}
+
+/// Whether all corners of `t` that `plane` does not share lie below its plane (true), above it (false), or neither.
+fn common_side(operands: &Operands<'_>, t: &[Corner; 3], plane: &[Corner; 3]) -> Option<bool> {
+    let mut side = None;
+    for corner in t {
+        if plane.iter().any(|other| other.id == corner.id) {
+            continue;
+        }
+        let below = operands.positive(&plane[0], &plane[1], &plane[2], corner);
+        if side.is_some_and(|side| side != below) {
+            return None;
+        }
+        side = Some(below);
+    }
+    side
+}
+
+/// The order of crossings with the same triangle given twice: as if the one with the lower number were displaced along its
+/// normal.
+fn duplicates(x: &Crossing, y: &Crossing) -> Ordering {
+    let (lower, lower_is_x) = if x.triangle < y.triangle { (x, true) } else { (y, false) };
+    // Displaced away from a low end inside it, it is met later.
+    if lower.leaves == lower_is_x { Ordering::Greater } else { Ordering::Less }
+}
+
+/// Where a crossing is, correctly rounded.
+fn locate(operands: &Operands<'_>, node: &Crossing) -> [f64; 3] {
+    let (p, q) = (operands.corner(node.low), operands.corner(node.high));
+    let other = 1 - operands.side_of(node.low);
+    let triangle = operands.corners(other, node.triangle);
+    position::crossing_filter(&p.position, &q.position, triangle.each_ref().map(|corner| &corner.position))
+        .unwrap_or_else(|| {
+            let point = |corner: &Corner| operands.perturbed(corner);
+            let triangle = triangle.each_ref().map(point);
+            position::crossing(&point(&p), &point(&q), triangle.each_ref())
+        })
+}

@@ -1,0 +1,136 @@
+//! Which points have become one: what the perturbation kept apart and correct rounding made equal.
+//!
+//! Points of one cut face with equal coordinates become one, everywhere. Points of faces that have nothing to do with each
+//! other stay apart, even at the same place: bodies that touch are not glued.
+
+use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
+
+use super::crossings::Crossings;
+use super::cut_edges::CutEdges;
+use super::cut_faces::{CutFace, CutFaces, UNCUT};
+use super::operands::Operands;
+use crate::Error;
+use crate::parallel::Runner;
+
+/// Up to this many points are compared pair by pair.
+const FEW: usize = 12;
+
+/// Union-find over vertices and nodes; only those that coincide with another are stored.
+#[derive(Debug, Default)]
+pub(super) struct Identification {
+    parent: FxHashMap<u32, u32>,
+}
+
+impl Identification {
+    /// Identifies the points of every cut face.
+    pub(super) fn new(
+        operands: &Operands<'_>,
+        crossings: &Crossings,
+        edges: &CutEdges,
+        faces: &[CutFaces; 2],
+        runner: Runner<'_>,
+    ) -> Result<Self, Error> {
+        let mut result = Self::default();
+        for side in 0..2 {
+            let all = &faces[side].faces;
+            let pairs = runner.pieces(all.len(), 1024, |range| {
+                let mut pairs = Vec::new();
+                for face in &all[range] {
+                    coincidences(operands, side, face, &faces[side], crossings, edges, &mut pairs);
+                }
+                pairs
+            })?;
+            for [u, v] in pairs.concat() {
+                result.join(u, v);
+            }
+        }
+        result.flatten();
+        Ok(result)
+    }
+
+    /// Whether every point is its own.
+    pub(super) fn is_empty(&self) -> bool {
+        self.parent.is_empty()
+    }
+
+    /// The point that stands for a point: the lowest number of its class.
+    #[inline]
+    pub(super) fn representative(&self, point: u32) -> u32 {
+        if self.parent.is_empty() { point } else { self.parent.get(&point).copied().unwrap_or(point) }
+    }
+
+    /// All points that stand for others, ascending.
+    pub(super) fn representatives(&self) -> Vec<u32> {
+        let mut all: Vec<u32> = self.parent.values().copied().collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    fn root(&self, mut point: u32) -> u32 {
+        while let Some(&parent) = self.parent.get(&point) {
+            point = parent;
+        }
+        point
+    }
+
+    fn join(&mut self, u: u32, v: u32) {
+        let (u, v) = (self.root(u), self.root(v));
+        if u != v {
+            self.parent.insert(u.max(v), u.min(v));
+        }
+    }
+
+    fn flatten(&mut self) {
+        let roots: Vec<(u32, u32)> = self.parent.keys().map(|&point| (point, self.root(point))).collect();
+        self.parent.extend(roots);
+    }
+}
+
+/// Appends pairs of points of a face that have equal coordinates; enough of them to join all.
+fn coincidences(
+    operands: &Operands<'_>,
+    side: usize,
+    face: &CutFace,
+    faces: &CutFaces,
+    crossings: &Crossings,
+    edges: &CutEdges,
+    pairs: &mut Vec<[u32; 2]>,
+) {
+    let first_node = operands.vertex_count();
+    let mut points: SmallVec<[(u32, [f64; 3]); 24]> = SmallVec::new();
+    points.extend(operands.corners(side, face.triangle).map(|corner| (corner.id, corner.position)));
+    let mut add = |node: u32| points.push((first_node + node, edges.positions[node as usize]));
+    for edge in face.edges {
+        if edge != UNCUT {
+            edges.nodes(edge).iter().for_each(|&node| add(node));
+        }
+    }
+    for &segment in faces.segments(face) {
+        let segment = &crossings.segments[segment as usize];
+        for node in [segment.tail, segment.head] {
+            // Inner nodes are crossings of edges of the other operand; each ends two segments.
+            if operands.side_of(crossings.nodes[node as usize].low) != side {
+                add(node);
+            }
+        }
+    }
+    if points.len() <= FEW {
+        for i in 1..points.len() {
+            for j in 0..i {
+                if points[i].1 == points[j].1 && points[i].0 != points[j].0 {
+                    pairs.push([points[j].0, points[i].0]);
+                }
+            }
+        }
+        return;
+    }
+    let key = |point: &(u32, [f64; 3])| (point.1.map(|x| (x + 0.0).to_bits()), point.0);
+    points.sort_unstable_by_key(key);
+    for pair in points.windows(2) {
+        if pair[0].1 == pair[1].1 && pair[0].0 != pair[1].0 {
+            pairs.push([pair[0].0, pair[1].0]);
+        }
+    }
+}

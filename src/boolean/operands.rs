@@ -1,0 +1,142 @@
+//! The two operands of a boolean in general position: their vertices under one numbering, and the one predicate every
+//! decision is made with.
+//!
+//! Notation of this folder: operands are A (side 0) and B (side 1). A *corner* is a vertex of either with its number:
+//! the vertices of A come first, then those of B, then points made on the way (ends of rays). `D(T; x)` is `orient3d` of
+//! triangle T and point x; with T counter-clockwise seen from outside it is positive inside. All points are perturbed (see
+//! [`crate::exact::perturbed`]): only A moves to first order, along its normals, outwards for a union and inwards for an
+//! intersection or a difference, so that coincident faces resolve as regularised set operations want it.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::directions::Directions;
+use crate::exact::perturbed::{self, PerturbedPoint, jitter};
+use crate::exact::{Sign, orient3d_filter};
+
+/// One operand: borrowed arrays.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Operand<'a> {
+    pub(super) positions: &'a [[f64; 3]],
+    pub(super) triangles: &'a [[u32; 3]],
+}
+
+/// A vertex: its number over both operands, and where it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    pub(super) id: u32,
+    pub(super) position: [f64; 3],
+}
+
+/// Both operands, and what decides ties between them.
+#[derive(Debug)]
+pub(super) struct Operands<'a> {
+    pub(super) sides: [Operand<'a>; 2],
+    /// Number of the first vertex of B.
+    first_of_b: u32,
+    /// +1: A swells; -1: A shrinks.
+    sense: i32,
+    /// Added to every filter's error bound: 0, or infinity where coordinates are so large that filters are unsound.
+    filter_floor: f64,
+    /// Triangles that may meet the other operand, by side: what the directions are computed from.
+    near: [Vec<u32>; 2],
+    directions: OnceLock<Directions>,
+    ties: AtomicU64,
+}
+
+impl<'a> Operands<'a> {
+    /// `near` lists the triangles of A and of B in the overlap of their boxes.
+    pub(super) fn new(sides: [Operand<'a>; 2], sense: i32, largest: f64, near: [Vec<u32>; 2]) -> Self {
+        const FILTER_LIMIT: f64 = f64::from_bits((1023 + 350) << 52);
+        Self {
+            first_of_b: sides[0].positions.len() as u32,
+            sides,
+            sense,
+            filter_floor: if largest <= FILTER_LIMIT { 0.0 } else { f64::INFINITY },
+            near,
+            directions: OnceLock::new(),
+            ties: AtomicU64::new(0),
+        }
+    }
+
+    /// Triangles of a side in the overlap of the operands' boxes, ascending.
+    pub(super) fn near(&self, side: usize) -> &[u32] {
+        &self.near[side]
+    }
+
+    /// The number of the first vertex of a side.
+    pub(super) fn first_vertex(&self, side: usize) -> u32 {
+        if side == 0 { 0 } else { self.first_of_b }
+    }
+
+    /// The number after the last vertex of B.
+    pub(super) fn vertex_count(&self) -> u32 {
+        self.first_of_b + self.sides[1].positions.len() as u32
+    }
+
+    /// Which side a vertex belongs to.
+    pub(super) fn side_of(&self, vertex: u32) -> usize {
+        usize::from(vertex >= self.first_of_b)
+    }
+
+    /// Where a vertex is.
+    pub(super) fn position(&self, vertex: u32) -> &[f64; 3] {
+        let side = self.side_of(vertex);
+        &self.sides[side].positions[(vertex - self.first_vertex(side)) as usize]
+    }
+
+    /// A vertex by its number.
+    pub(super) fn corner(&self, vertex: u32) -> Corner {
+        Corner { id: vertex, position: *self.position(vertex) }
+    }
+
+    /// The corners of a triangle.
+    #[inline]
+    pub(super) fn corners(&self, side: usize, triangle: u32) -> [Corner; 3] {
+        let operand = &self.sides[side];
+        let first = self.first_vertex(side);
+        operand.triangles[triangle as usize]
+            .map(|v| Corner { id: first + v, position: operand.positions[v as usize] })
+    }
+
+    /// How many decisions plain positions left open.
+    pub(super) fn ties(&self) -> u64 {
+        self.ties.load(Ordering::Relaxed)
+    }
+
+    /// Whether `D((a, b, c); d)` is positive. The four corners must be different.
+    #[inline(always)]
+    pub(super) fn positive(&self, a: &Corner, b: &Corner, c: &Corner, d: &Corner) -> bool {
+        let (determinant, bound) = orient3d_filter(&a.position, &b.position, &c.position, &d.position);
+        if determinant.abs() > bound + self.filter_floor {
+            determinant > 0.0
+        } else {
+            self.positive_exactly(a, b, c, d)
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn positive_exactly(&self, a: &Corner, b: &Corner, c: &Corner, d: &Corner) -> bool {
+        match crate::exact::orient3d(&a.position, &b.position, &c.position, &d.position) {
+            Sign::Positive => true,
+            Sign::Negative => false,
+            Sign::Zero => {
+                self.ties.fetch_add(1, Ordering::Relaxed);
+                let points = [a, b, c, d].map(|corner| self.perturbed(corner));
+                perturbed::orient3d_of_tie(points.each_ref()) == Sign::Positive
+            }
+        }
+    }
+
+    /// A corner with the directions it is perturbed along.
+    pub(super) fn perturbed(&self, corner: &Corner) -> PerturbedPoint {
+        let first = if corner.id < self.first_of_b {
+            let directions = self.directions.get_or_init(|| Directions::new(&self.sides[0], &self.near[0]));
+            directions.of(corner.id).map(|component| self.sense * component)
+        } else {
+            [0; 3]
+        };
+        PerturbedPoint { position: corner.position, first, second: jitter(u64::from(corner.id)) }
+    }
+}

@@ -1,0 +1,90 @@
+//! Tidying what identification and rounding left behind, near the intersection curve only.
+//!
+//! Cutting always gives a closed surface, but where bodies touch it may pass through an edge or a vertex more than once,
+//! hold opposite copies of a triangle, triangles without area, and vertices nobody needs. Five steps mend that: cancel,
+//! pair (make it 2-manifold), flip, remove, collect. They work on a patch: the pieces of cut faces and the kept triangles
+//! round their points. All else keeps its bits and its order.
+
+mod manifold;
+mod patch;
+mod planes;
+mod remove;
+mod zero_area;
+
+use super::assemble::NewTriangle;
+use super::cut::Cutter;
+use super::cut_faces::BitSet;
+use super::multiplicity::Part;
+use crate::Error;
+use crate::parallel::Runner;
+use patch::Patch;
+
+/// What tidying made of the pieces.
+pub(super) struct Tidied {
+    pub(super) new: Vec<NewTriangle>,
+    /// Uncut triangles that are replaced, by side.
+    pub(super) replaced: [BitSet; 2],
+    /// Positions of points made here; they are numbered after the nodes.
+    pub(super) copies: Vec<[f64; 3]>,
+}
+
+/// Settings of tidying.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings<'a> {
+    /// Whether vertices that nobody needs are removed.
+    pub(super) remove_vertices: bool,
+    /// For each side the group of every triangle; faces of different groups are not merged. Empty: one group.
+    pub(super) groups: [&'a [u32]; 2],
+    /// Vertices of each operand at which its own surface is not 2-manifold, ascending.
+    pub(super) irregular: [&'a [u32]; 2],
+}
+
+/// Tidies the pieces of a result; `None` where there is nothing to do.
+pub(super) fn tidy(
+    cutter: &Cutter<'_>,
+    outcodes: &[Vec<u8>; 2],
+    parts: &[Part],
+    pieces: &[NewTriangle],
+    settings: &Settings<'_>,
+    runner: Runner<'_>,
+) -> Result<Option<Tidied>, Error> {
+    let planes = planes::Planes { operands: cutter.operands, groups: settings.groups };
+    let mut candidates = if settings.remove_vertices { planes.removable_nodes(cutter) } else { Vec::new() };
+    let regular = cutter.identification.is_empty()
+        && candidates.is_empty()
+        && settings.irregular.iter().all(|list| list.is_empty())
+        && !has_repeats(cutter);
+    if regular {
+        return Ok(None);
+    }
+    runner.control.check()?;
+    if settings.remove_vertices {
+        candidates.extend(cutter.identification.representatives());
+    }
+    let mut patch = Patch::new(cutter, outcodes, parts, pieces, settings.irregular);
+    patch.cancel();
+    runner.control.check()?;
+    let copied_from = manifold::make_manifold(&mut patch);
+    candidates.extend(copied_from.iter().filter(|(_, of)| candidates.contains(of)).map(|&(copy, _)| copy).collect::<Vec<_>>());
+    patch.connect();
+    runner.control.check()?;
+    zero_area::flip(&mut patch);
+    if settings.remove_vertices {
+        remove::remove(&mut patch, &planes, candidates, runner.control)?;
+        zero_area::flip(&mut patch);
+    }
+    Ok(Some(patch.collect()))
+}
+
+/// Whether some piece of an edge counts more than once or negatively: rounded surfaces that cross themselves.
+fn has_repeats(cutter: &Cutter<'_>) -> bool {
+    cutter.windings.iter().flatten().any(|&winding| !(0..=1).contains(&winding))
+        || cutter.edges.edges.iter().enumerate().any(|(index, edge)| {
+            let side = cutter.operands.side_of(edge.low);
+            let mut winding = cutter.windings[side][(edge.low - cutter.operands.first_vertex(side)) as usize];
+            cutter.edges.nodes(index as u32).iter().any(|&node| {
+                winding += if cutter.crossings.nodes[node as usize].leaves { -1 } else { 1 };
+                !(0..=1).contains(&winding)
+            })
+        })
+}

@@ -1,0 +1,337 @@
+//! The part of the result that tidying works on.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::super::PairOrigin;
+use super::super::assemble::NewTriangle;
+use super::super::cut::Cutter;
+use super::super::cut_faces::BitSet;
+use super::super::multiplicity::Part;
+use super::super::operands::Operands;
+use super::Tidied;
+
+/// A triangle of the patch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    pub(super) corners: [u32; 3],
+    pub(super) origin: PairOrigin,
+    /// The only copy of an uncut triangle, with its corners as they were.
+    pub(super) untouched: bool,
+    pub(super) alive: bool,
+}
+
+/// Triangles round the intersection curve with their adjacency.
+pub(super) struct Patch<'a> {
+    cutter: &'a Cutter<'a>,
+    pub(super) faces: Vec<Face>,
+    /// Points all of whose triangles are here.
+    complete: Flags,
+    /// Points of pieces: triangles with two of them are here, so that every side of a piece has both its triangles.
+    of_pieces: Flags,
+    /// The triangle to the left of each directed edge; filled by [`connect`](Self::connect).
+    left_of: FxHashMap<(u32, u32), u32>,
+    /// Some triangle at each point.
+    some_face: FxHashMap<u32, u32>,
+    /// Directed edges of the result outside the patch between points of the patch.
+    beyond: FxHashSet<(u32, u32)>,
+    /// Uncut triangles that were taken into the patch.
+    taken: [Vec<u32>; 2],
+    first_copy: u32,
+    copies: Vec<[f64; 3]>,
+}
+
+/// A flag for every vertex and node.
+struct Flags {
+    bits: BitSet,
+}
+
+impl Flags {
+    fn new(count: usize) -> Self {
+        Self { bits: BitSet::new(count) }
+    }
+    fn set(&mut self, point: u32) {
+        self.bits.insert(point);
+    }
+    fn get(&self, point: u32) -> bool {
+        self.bits.contains(point)
+    }
+}
+
+impl<'a> Patch<'a> {
+    /// The pieces and all kept triangles round their points (or round `irregular` vertices).
+    pub(super) fn new(
+        cutter: &'a Cutter<'a>,
+        outcodes: &[Vec<u8>; 2],
+        parts: &[Part],
+        pieces: &[NewTriangle],
+        irregular: [&[u32]; 2],
+    ) -> Self {
+        let operands = cutter.operands;
+        let points = operands.vertex_count() as usize + cutter.edges.positions.len();
+        let mut complete = Flags::new(points);
+        // All triangles at a vertex in both boxes are near, and so found below. A vertex outside never needs mending.
+        let is_near = |point: u32| {
+            point >= operands.vertex_count() || {
+                let side = operands.side_of(point);
+                outcodes[side].get((point - operands.first_vertex(side)) as usize) == Some(&0)
+            }
+        };
+        let mut of_pieces = Flags::new(points);
+        for point in pieces.iter().flat_map(|piece| piece.corners) {
+            of_pieces.set(point);
+            if is_near(point) {
+                complete.set(point);
+            }
+        }
+        for side in 0..2 {
+            for &vertex in irregular[side] {
+                complete.set(cutter.identification.representative(operands.first_vertex(side) + vertex));
+            }
+        }
+        let mut patch = Self {
+            cutter,
+            faces: Vec::with_capacity(2 * pieces.len()),
+            complete,
+            of_pieces,
+            left_of: FxHashMap::default(),
+            some_face: FxHashMap::default(),
+            beyond: FxHashSet::default(),
+            taken: [Vec::new(), Vec::new()],
+            first_copy: points as u32,
+            copies: Vec::new(),
+        };
+        patch.take_kept_triangles(parts);
+        patch.faces.extend(pieces.iter().map(|piece| Face {
+            corners: piece.corners,
+            origin: piece.origin,
+            untouched: false,
+            alive: true,
+        }));
+        patch.note_edges_beyond(parts, points);
+        patch
+    }
+
+    pub(super) fn operands(&self) -> &'a Operands<'a> {
+        self.cutter.operands
+    }
+
+    /// Whether all triangles at a point are in the patch.
+    pub(super) fn is_complete(&self, point: u32) -> bool {
+        point >= self.first_copy || self.complete.get(point)
+    }
+
+    /// Where a point is.
+    pub(super) fn position(&self, point: u32) -> &[f64; 3] {
+        if point >= self.first_copy {
+            &self.copies[(point - self.first_copy) as usize]
+        } else {
+            self.cutter.position(point)
+        }
+    }
+
+    /// A new point.
+    pub(super) fn add_point(&mut self, position: [f64; 3]) -> u32 {
+        self.copies.push(position);
+        self.first_copy + self.copies.len() as u32 - 1
+    }
+
+    /// Calls `found` for every kept uncut triangle: part, triangle, its points, and how often it counts (negative where
+    /// it is turned over once more).
+    fn for_kept(&self, parts: &[Part], mut found: impl FnMut(Part, u32, [u32; 3], i32)) {
+        let cutter = self.cutter;
+        for &part in parts {
+            let first = cutter.operands.first_vertex(part.side);
+            let windings = &cutter.windings[part.side];
+            for (t, corners) in cutter.operands.sides[part.side].triangles.iter().enumerate() {
+                if cutter.faces[part.side].is_cut(t as u32) {
+                    continue;
+                }
+                let count = part.multiplicity(windings[corners[0] as usize]);
+                if count != 0 {
+                    let points = corners.map(|v| cutter.identification.representative(first + v));
+                    found(part, t as u32, points, count);
+                }
+            }
+        }
+    }
+
+    /// Whether an uncut triangle belongs to the patch.
+    fn belongs(&self, points: [u32; 3]) -> bool {
+        points.iter().any(|&point| self.complete.get(point))
+            || points.iter().filter(|&&point| self.of_pieces.get(point)).count() >= 2
+    }
+
+    fn take_kept_triangles(&mut self, parts: &[Part]) {
+        let mut faces = Vec::new();
+        let mut taken = [Vec::new(), Vec::new()];
+        self.for_kept(parts, |part, t, points, count| {
+            if !self.belongs(points) {
+                return;
+            }
+            taken[part.side].push(t);
+            let reversed = part.reversed != (count < 0);
+            let [a, b, c] = points;
+            let face = Face {
+                corners: if reversed { [a, c, b] } else { [a, b, c] },
+                origin: PairOrigin::new(part.side, t, reversed),
+                untouched: count.abs() == 1,
+                alive: true,
+            };
+            faces.extend(std::iter::repeat_n(face, count.unsigned_abs() as usize));
+        });
+        self.faces = faces;
+        self.taken = taken;
+    }
+
+    fn note_edges_beyond(&mut self, parts: &[Part], points: usize) {
+        let mut here = Flags::new(points);
+        for face in &self.faces {
+            face.corners.iter().for_each(|&point| here.set(point));
+        }
+        let mut beyond = FxHashSet::default();
+        self.for_kept(parts, |part, _, points, count| {
+            if self.belongs(points) {
+                return;
+            }
+            for k in 0..3 {
+                let (u, v) = (points[k], points[(k + 1) % 3]);
+                if here.get(u) && here.get(v) {
+                    beyond.insert(if part.reversed != (count < 0) { (v, u) } else { (u, v) });
+                }
+            }
+        });
+        self.beyond = beyond;
+    }
+
+    /// Drops triangles with a repeated corner, and pairs of opposite triangles.
+    pub(super) fn cancel(&mut self) {
+        let mut order: Vec<([u32; 3], bool, u32)> = Vec::with_capacity(self.faces.len());
+        for (i, face) in self.faces.iter_mut().enumerate() {
+            let [a, b, c] = face.corners;
+            if a == b || b == c || c == a {
+                face.alive = false;
+                continue;
+            }
+            let mut sorted = face.corners;
+            sorted.sort_unstable();
+            let even = [[a, b, c], [b, c, a], [c, a, b]].contains(&sorted);
+            order.push((sorted, even, i as u32));
+        }
+        order.sort_unstable();
+        for group in order.chunk_by(|x, y| x.0 == y.0) {
+            let odd = group.partition_point(|entry| !entry.1);
+            let pairs = odd.min(group.len() - odd);
+            for entry in group[..pairs].iter().chain(&group[group.len() - pairs..]) {
+                self.faces[entry.2 as usize].alive = false;
+            }
+        }
+    }
+
+    /// Builds the adjacency; from now on every directed edge occurs once.
+    pub(super) fn connect(&mut self) {
+        self.left_of.clear();
+        self.some_face.clear();
+        for index in 0..self.faces.len() as u32 {
+            if self.faces[index as usize].alive {
+                self.link(index);
+            }
+        }
+    }
+
+    fn link(&mut self, index: u32) {
+        let corners = self.faces[index as usize].corners;
+        for k in 0..3 {
+            self.left_of.insert((corners[k], corners[(k + 1) % 3]), index);
+            self.some_face.insert(corners[k], index);
+        }
+    }
+
+    /// The triangle to the left of a directed edge.
+    pub(super) fn left_of(&self, from: u32, to: u32) -> Option<u32> {
+        self.left_of.get(&(from, to)).copied()
+    }
+
+    /// Whether a directed edge exists, here or beyond.
+    pub(super) fn has_edge(&self, from: u32, to: u32) -> bool {
+        self.left_of.contains_key(&(from, to)) || self.beyond.contains(&(from, to))
+    }
+
+    /// The triangles round a complete point with the corner that follows it in each, counter-clockwise.
+    pub(super) fn star(&self, point: u32) -> Option<Vec<(u32, u32)>> {
+        let start = *self.some_face.get(&point)?;
+        let mut star = Vec::new();
+        let mut face = start;
+        loop {
+            let corners = self.faces[face as usize].corners;
+            let k = corners.iter().position(|&corner| corner == point)?;
+            star.push((face, corners[(k + 1) % 3]));
+            face = self.left_of(point, corners[(k + 2) % 3])?;
+            if face == start {
+                return Some(star);
+            }
+            if star.len() > self.faces.len() {
+                return None;
+            }
+        }
+    }
+
+    /// Replaces triangles by others.
+    pub(super) fn replace(&mut self, old: &[u32], new: &[([u32; 3], PairOrigin)]) {
+        for &index in old {
+            let corners = self.faces[index as usize].corners;
+            for k in 0..3 {
+                self.left_of.remove(&(corners[k], corners[(k + 1) % 3]));
+                self.some_face.remove(&corners[k]);
+            }
+            self.faces[index as usize].alive = false;
+        }
+        for (i, &(corners, origin)) in new.iter().enumerate() {
+            let face = Face { corners, origin, untouched: false, alive: true };
+            let index = match old.get(i) {
+                Some(&index) => {
+                    self.faces[index as usize] = face;
+                    index
+                }
+                None => {
+                    self.faces.push(face);
+                    self.faces.len() as u32 - 1
+                }
+            };
+            self.link(index);
+        }
+        // Points that lost the triangle they were known by, but still have others.
+        for &index in old {
+            for (from, to) in self.border_of(index) {
+                if !self.some_face.contains_key(&from) {
+                    if let Some(face) = self.left_of(from, to) {
+                        self.some_face.insert(from, face);
+                    }
+                }
+            }
+        }
+    }
+
+    fn border_of(&self, index: u32) -> Vec<(u32, u32)> {
+        let corners = self.faces[index as usize].corners;
+        (0..3).map(|k| (corners[k], corners[(k + 1) % 3])).collect()
+    }
+
+    /// The new triangles, and which uncut ones they replace.
+    pub(super) fn collect(self) -> Tidied {
+        let operands = self.cutter.operands;
+        let mut replaced = [0, 1].map(|side| BitSet::new(operands.sides[side].triangles.len()));
+        for side in 0..2 {
+            self.taken[side].iter().for_each(|&t| replaced[side].insert(t));
+        }
+        let mut new = Vec::new();
+        for face in self.faces.iter().filter(|face| face.alive) {
+            if face.untouched {
+                replaced[face.origin.0.operand as usize].remove(face.origin.0.triangle);
+            } else {
+                new.push(NewTriangle { corners: face.corners, origin: face.origin });
+            }
+        }
+        new.sort_by_key(|triangle| (triangle.origin.0.operand, triangle.origin.0.triangle));
+        Tidied { new, replaced, copies: self.copies }
+    }
+}

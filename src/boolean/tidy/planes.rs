@@ -1,0 +1,95 @@
+//! Which faces of the result lie in one plane, by the exact planes of their source triangles.
+
+use super::super::PairOrigin;
+use super::super::cut::Cutter;
+use super::super::operands::Operands;
+use crate::exact::{Sign, collinear, orient3d, orient3d_filter};
+
+/// Compares source planes of triangles of the result.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Planes<'a> {
+    pub(super) operands: &'a Operands<'a>,
+    pub(super) groups: [&'a [u32]; 2],
+}
+
+impl Planes<'_> {
+    fn corners(&self, origin: PairOrigin) -> [[f64; 3]; 3] {
+        let origin = origin.0;
+        let [a, b, c] =
+            self.operands.corners(origin.operand as usize, origin.triangle).map(|corner| corner.position);
+        if origin.reversed { [a, c, b] } else { [a, b, c] }
+    }
+
+    fn group(&self, origin: PairOrigin) -> u32 {
+        let origin = origin.0;
+        self.groups[origin.operand as usize].get(origin.triangle as usize).copied().unwrap_or(0)
+    }
+
+    /// The source triangle of a face, as it is oriented in the result.
+    pub(super) fn source(&self, origin: PairOrigin) -> [[f64; 3]; 3] {
+        self.corners(origin)
+    }
+
+    /// Whether two faces look the same way from the same plane and belong to the same group, so that the border between
+    /// them means nothing.
+    pub(super) fn mergeable(&self, x: PairOrigin, y: PairOrigin) -> bool {
+        if self.group(x) != self.group(y) {
+            return false;
+        }
+        if x.0.operand == y.0.operand && x.0.triangle == y.0.triangle {
+            return x.0.reversed == y.0.reversed;
+        }
+        self.coplanar(x, y) && same_way(&self.corners(x), &self.corners(y))
+    }
+
+    /// Whether two faces lie in the same plane, exactly; false for source triangles without area.
+    pub(super) fn coplanar(&self, x: PairOrigin, y: PairOrigin) -> bool {
+        let ([a, b, c], other) = (self.corners(x), self.corners(y));
+        other.iter().all(|d| orient3d(&a, &b, &c, d) == Sign::Zero)
+            && !collinear(&a, &b, &c)
+            && !collinear(&other[0], &other[1], &other[2])
+    }
+
+    /// Nodes on edges between two mergeable faces of their own operand: they lie inside a plane face or on a straight
+    /// crease. Ascending point numbers.
+    pub(super) fn removable_nodes(&self, cutter: &Cutter<'_>) -> Vec<u32> {
+        const NONE: u32 = u32::MAX;
+        let nodes = &cutter.crossings.nodes;
+        let mut beside = vec![[NONE; 2]; nodes.len()];
+        for segment in &cutter.crossings.segments {
+            for node in [segment.tail, segment.head] {
+                let side = self.operands.side_of(nodes[node as usize].low);
+                let triangle = segment.triangles[side];
+                let slots = &mut beside[node as usize];
+                let slot = usize::from(slots[0] != NONE);
+                slots[slot] = triangle;
+            }
+        }
+        let first_node = self.operands.vertex_count();
+        (0..nodes.len())
+            .filter(|&node| {
+                let side = self.operands.side_of(nodes[node].low);
+                let [t, u] = beside[node];
+                if t == NONE || u == NONE {
+                    return false;
+                }
+                // Nearly always the two faces are visibly not coplanar.
+                let [a, b, c] = self.operands.corners(side, t).map(|corner| corner.position);
+                let visible = self.operands.corners(side, u).iter().any(|d| {
+                    let (determinant, bound) = orient3d_filter(&a, &b, &c, &d.position);
+                    determinant.abs() > bound
+                });
+                !visible && self.mergeable(PairOrigin::new(side, t, false), PairOrigin::new(side, u, false))
+            })
+            .map(|node| first_node + node as u32)
+            .collect()
+    }
+}
+
+/// Whether the normals of two triangles of one plane point the same way.
+fn same_way(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
+    let (axis, positive) = super::super::cut::dominant_axis(x);
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let [a, b, c] = y.map(|p| [p[i], p[j]]);
+    (crate::exact::orient2d(a, b, c) == Sign::Positive) == positive
+}

@@ -1,0 +1,212 @@
+//! Ear clipping: exact where it decides, and with a way out where there is no ear.
+
+use crate::exact::{Sign, orient2d};
+
+/// Whether the corners turn counter-clockwise, exactly.
+pub(super) fn is_counter_clockwise(points: &[[f64; 2]], corners: [u32; 3]) -> bool {
+    let [a, b, c] = corners.map(|v| points[v as usize]);
+    orient2d(a, b, c) == Sign::Positive
+}
+
+/// Shape of a triangle: twice its signed area over the square of its longest side; about 0.87 for an equilateral one.
+pub(crate) fn triangle_quality(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    let edge = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
+    let square = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
+    let (u, v, w) = (edge(a, b), edge(b, c), edge(c, a));
+    let area = u[0] * v[1] - u[1] * v[0];
+    let longest = square(u).max(square(v)).max(square(w));
+    if longest > 0.0 { area / longest } else { 0.0 }
+}
+
+/// A corner of what is left of the polygon.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    vertex: u32,
+    previous: u32,
+    next: u32,
+    /// Shape of the ear here; negative infinity if the corner is not convex.
+    quality: f64,
+    /// Known not to be an ear as long as nothing is clipped.
+    blocked: bool,
+}
+
+/// Clips ears, the best-shaped first; keeps its scratch memory.
+#[derive(Debug, Default)]
+pub(super) struct EarClipper {
+    links: Vec<Link>,
+    repeated: bool,
+}
+
+impl EarClipper {
+    /// Triangulates a closed loop into `n - 2` triangles that use each of its edges once. Returns whether all are
+    /// counter-clockwise; where no ear is left, the least bad corner is cut off.
+    pub(super) fn clip(&mut self, points: &[[f64; 2]], polygon: &[u32], triangles: &mut Vec<[u32; 3]>) -> bool {
+        let n = polygon.len();
+        if n < 3 {
+            return true;
+        }
+        if n == 4 && quadrilateral(points, polygon, triangles) {
+            return true;
+        }
+        self.start(points, polygon);
+        let mut sound = true;
+        let mut some = 0;
+        for left in (3..=n).rev() {
+            let ear = if left == 3 { None } else { self.best_ear(points, some, left) };
+            let ear = ear.unwrap_or_else(|| {
+                let ear = self.least_bad(points, some, left);
+                sound &= self.quality(points, ear) > f64::NEG_INFINITY;
+                sound &= left == 3;
+                ear
+            });
+            let Link { vertex, previous, next, .. } = self.links[ear as usize];
+            let (before, after) = (self.links[previous as usize].vertex, self.links[next as usize].vertex);
+            // Cutting off a spike, or a vertex between two equal ones, leaves nothing behind.
+            if before != vertex && vertex != after && after != before {
+                triangles.push([before, vertex, after]);
+            }
+            self.links[previous as usize].next = next;
+            self.links[next as usize].previous = previous;
+            some = next;
+            if left > 3 {
+                for link in [previous, next] {
+                    self.links[link as usize].quality = self.quality(points, link);
+                }
+                let mut link = some;
+                for _ in 1..left {
+                    self.links[link as usize].blocked = false;
+                    link = self.links[link as usize].next;
+                }
+            }
+        }
+        sound
+    }
+
+    fn start(&mut self, points: &[[f64; 2]], polygon: &[u32]) {
+        let n = polygon.len() as u32;
+        self.links.clear();
+        self.links.extend(polygon.iter().enumerate().map(|(i, &vertex)| Link {
+            vertex,
+            previous: (i as u32 + n - 1) % n,
+            next: (i as u32 + 1) % n,
+            quality: 0.0,
+            blocked: false,
+        }));
+        for link in 0..n {
+            self.links[link as usize].quality = self.quality(points, link);
+        }
+        self.repeated =
+            (1..polygon.len()).any(|i| polygon[..i].contains(&polygon[i]));
+    }
+
+    fn corners(&self, link: u32) -> [u32; 3] {
+        let Link { vertex, previous, next, .. } = self.links[link as usize];
+        [self.links[previous as usize].vertex, vertex, self.links[next as usize].vertex]
+    }
+
+    fn quality(&self, points: &[[f64; 2]], link: u32) -> f64 {
+        let corners = self.corners(link);
+        if is_counter_clockwise(points, corners) {
+            let [a, b, c] = corners.map(|v| points[v as usize]);
+            triangle_quality(a, b, c).max(0.0)
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+
+    /// The best-shaped ear of the `left` corners from `some` on, if there is one.
+    fn best_ear(&mut self, points: &[[f64; 2]], some: u32, left: usize) -> Option<u32> {
+        loop {
+            let mut best: Option<u32> = None;
+            let mut link = some;
+            for _ in 0..left {
+                let candidate = &self.links[link as usize];
+                if !candidate.blocked
+                    && candidate.quality >= 0.0
+                    && best.is_none_or(|best| candidate.quality > self.links[best as usize].quality)
+                {
+                    best = Some(link);
+                }
+                link = candidate.next;
+            }
+            let candidate = best?;
+            if self.is_empty_ear(points, candidate) {
+                return best;
+            }
+            self.links[candidate as usize].blocked = true;
+        }
+    }
+
+    /// Whether no corner lies in the closed triangle at a convex corner, and its third side starts inside the polygon.
+    fn is_empty_ear(&self, points: &[[f64; 2]], ear: u32) -> bool {
+        let Link { previous, next, .. } = self.links[ear as usize];
+        let corners = self.corners(ear);
+        let [a, b, c] = corners.map(|v| points[v as usize]);
+        let mut link = self.links[next as usize].next;
+        while link != previous {
+            let Link { vertex, next, .. } = self.links[link as usize];
+            if !corners.contains(&vertex) {
+                let p = points[vertex as usize];
+                if orient2d(a, b, p) != Sign::Negative
+                    && orient2d(b, c, p) != Sign::Negative
+                    && orient2d(c, a, p) != Sign::Negative
+                {
+                    return false;
+                }
+            }
+            link = next;
+        }
+        // With repeated vertices the test above is blind in the corners: look at the cones there.
+        !self.repeated || (self.cone_holds(points, previous, c) && self.cone_holds(points, next, a))
+    }
+
+    /// Whether the way from a corner to `target` starts inside the polygon, given that it leaves the ear's own edge to the
+    /// inner side.
+    fn cone_holds(&self, points: &[[f64; 2]], link: u32, target: [f64; 2]) -> bool {
+        let [before, at, after] = self.corners(link).map(|v| points[v as usize]);
+        if orient2d(before, at, after) != Sign::Positive {
+            return true;
+        }
+        orient2d(at, target, before) != Sign::Negative && orient2d(at, target, after) != Sign::Positive
+    }
+
+    /// The corner to cut off when there is no ear: the best-shaped convex one, else the flattest.
+    fn least_bad(&self, points: &[[f64; 2]], some: u32, left: usize) -> u32 {
+        let shape = |link: u32| {
+            let [a, b, c] = self.corners(link).map(|v| points[v as usize]);
+            triangle_quality(a, b, c)
+        };
+        let mut best = (some, shape(some));
+        let mut link = self.links[some as usize].next;
+        for _ in 1..left {
+            let quality = shape(link);
+            if quality > best.1 {
+                best = (link, quality);
+            }
+            link = self.links[link as usize].next;
+        }
+        best.0
+    }
+}
+
+/// A quadrilateral by its better diagonal, if one works.
+fn quadrilateral(points: &[[f64; 2]], polygon: &[u32], triangles: &mut Vec<[u32; 3]>) -> bool {
+    let [a, b, c, d] = [polygon[0], polygon[1], polygon[2], polygon[3]];
+    if a == c || b == d {
+        return false;
+    }
+    let worst = |pair: [[u32; 3]; 2]| {
+        let quality = pair.map(|t| {
+            let [p, q, r] = t.map(|v| points[v as usize]);
+            if orient2d(p, q, r) == Sign::Positive { triangle_quality(p, q, r).max(0.0) } else { -1.0 }
+        });
+        quality[0].min(quality[1])
+    };
+    let (first, second) = ([[a, b, c], [a, c, d]], [[a, b, d], [b, c, d]]);
+    let (quality_first, quality_second) = (worst(first), worst(second));
+    if quality_first.max(quality_second) < 0.0 {
+        return false;
+    }
+    triangles.extend(if quality_first >= quality_second { first } else { second });
+    true
+}

@@ -1,0 +1,175 @@
+//! Which loop is a hole of which, and joining holes to their outlines.
+
+use crate::exact::{Sign, orient2d};
+
+/// An outline and the holes in it.
+#[derive(Debug)]
+pub(super) struct Polygon {
+    pub(super) outer: Vec<u32>,
+    pub(super) holes: Vec<Vec<u32>>,
+}
+
+/// Groups loops into polygons: counter-clockwise loops are outlines, each clockwise one goes to the smallest outline around
+/// it. A clockwise loop in no outline stands alone.
+pub(super) fn group(points: &[[f64; 2]], loops: Vec<Vec<u32>>) -> Vec<Polygon> {
+    let areas: Vec<f64> = loops.iter().map(|ring| area(points, ring)).collect();
+    let mut polygons: Vec<Polygon> = Vec::new();
+    let mut outline_area: Vec<f64> = Vec::new();
+    let mut holes = Vec::new();
+    for (ring, area) in loops.into_iter().zip(areas) {
+        if area >= 0.0 {
+            polygons.push(Polygon { outer: ring, holes: Vec::new() });
+            outline_area.push(area);
+        } else {
+            holes.push(ring);
+        }
+    }
+    let outlines = polygons.len();
+    for hole in holes {
+        let around = (0..outlines)
+            .filter(|&i| contains(points, &polygons[i].outer, &hole))
+            .min_by(|&i, &j| outline_area[i].total_cmp(&outline_area[j]));
+        match around {
+            Some(i) => polygons[i].holes.push(hole),
+            None => polygons.push(Polygon { outer: hole, holes: Vec::new() }),
+        }
+    }
+    polygons
+}
+
+fn area(points: &[[f64; 2]], ring: &[u32]) -> f64 {
+    let origin = points[ring[0] as usize];
+    let mut sum = 0.0;
+    for i in 1..ring.len() {
+        let (p, q) = (points[ring[i - 1] as usize], points[ring[i] as usize]);
+        sum += (p[0] - origin[0]) * (q[1] - origin[1]) - (p[1] - origin[1]) * (q[0] - origin[0]);
+    }
+    sum
+}
+
+/// Whether a loop lies inside an outline: the first of its vertices that is not on the outline does.
+fn contains(points: &[[f64; 2]], outer: &[u32], hole: &[u32]) -> bool {
+    for &vertex in hole {
+        match inside(points, outer, points[vertex as usize]) {
+            Some(answer) => return answer,
+            None => continue,
+        }
+    }
+    // All on the outline: try the middle of an edge.
+    let (p, q) = (points[hole[0] as usize], points[hole[1] as usize]);
+    inside(points, outer, [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]).unwrap_or(false)
+}
+
+/// Whether a point lies inside a loop, by exact ray parity; `None` on the loop itself.
+fn inside(points: &[[f64; 2]], ring: &[u32], p: [f64; 2]) -> Option<bool> {
+    let mut odd = false;
+    for i in 0..ring.len() {
+        let (a, b) = (points[ring[i] as usize], points[ring[(i + 1) % ring.len()] as usize]);
+        let spans = |k: usize| a[k].min(b[k]) <= p[k] && p[k] <= a[k].max(b[k]);
+        let side = orient2d(a, b, p);
+        if side == Sign::Zero && spans(0) && spans(1) {
+            return None;
+        }
+        if (a[1] <= p[1]) != (b[1] <= p[1]) {
+            // The ray in +x meets the edge iff the point is left of the upward edge.
+            odd ^= (side == Sign::Positive) == (a[1] < b[1]);
+        }
+    }
+    Some(odd)
+}
+
+/// Joins the holes to the outline by pairs of opposite edges along sight lines: one loop that visits some vertices
+/// repeatedly. `None` if some hole has no sight line to the rest.
+pub(super) fn bridge(points: &[[f64; 2]], polygon: &Polygon) -> Option<Vec<u32>> {
+    let mut joined = polygon.outer.clone();
+    let rightmost = |ring: &[u32]| {
+        (0..ring.len())
+            .max_by(|&i, &j| {
+                let (p, q) = (points[ring[i] as usize], points[ring[j] as usize]);
+                p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
+            })
+            .unwrap_or(0)
+    };
+    // The rightmost hole first: what is to the right of a hole is then already joined.
+    let mut holes: Vec<(&[u32], usize)> =
+        polygon.holes.iter().map(|hole| (hole.as_slice(), rightmost(hole))).collect();
+    holes.sort_by(|(h, i), (g, j)| points[g[*j] as usize][0].total_cmp(&points[h[*i] as usize][0]));
+    for k in 0..holes.len() {
+        let (hole, start) = holes[k];
+        let (at, from) = std::iter::once(start)
+            .chain(0..hole.len())
+            .find_map(|from| sight_line(points, &joined, &holes[k..], hole, from).map(|at| (at, from)))?;
+        let around = (0..=hole.len()).map(|i| hole[(from + i) % hole.len()]);
+        let bridge: Vec<u32> = around.chain(std::iter::once(joined[at])).collect();
+        joined.splice(at + 1..at + 1, bridge);
+    }
+    Some(joined)
+}
+
+/// The place in `joined` of the nearest vertex that the hole's vertex `from` sees.
+fn sight_line(
+    points: &[[f64; 2]],
+    joined: &[u32],
+    obstacles: &[(&[u32], usize)],
+    hole: &[u32],
+    from: usize,
+) -> Option<usize> {
+    let start = hole[from];
+    let p = points[start as usize];
+    let distance = |i: &usize| {
+        let q = points[joined[*i] as usize];
+        (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)
+    };
+    let mut order: Vec<usize> = (0..joined.len()).collect();
+    order.sort_by(|i, j| distance(i).total_cmp(&distance(j)).then(i.cmp(j)));
+    let n = hole.len();
+    order.into_iter().find(|&at| {
+        let target = joined[at];
+        if target == start {
+            return false;
+        }
+        let q = points[target as usize];
+        let m = joined.len();
+        let cone = |ring: &[u32], i: usize, len: usize, other: [f64; 2]| {
+            let [before, here, after] =
+                [ring[(i + len - 1) % len], ring[i], ring[(i + 1) % len]].map(|v| points[v as usize]);
+            in_cone(before, here, after, other)
+        };
+        cone(joined, at, m, p)
+            && cone(hole, from, n, q)
+            && !blocked(points, joined, start, target)
+            && obstacles.iter().all(|(ring, _)| !blocked(points, ring, start, target))
+    })
+}
+
+/// Whether the way from `here` to `target` starts strictly inside, to the left of `before -> here -> after`.
+fn in_cone(before: [f64; 2], here: [f64; 2], after: [f64; 2], target: [f64; 2]) -> bool {
+    let left_of_out = orient2d(here, after, target) == Sign::Positive;
+    let left_of_in = orient2d(before, here, target) == Sign::Positive;
+    if orient2d(before, here, after) == Sign::Positive { left_of_out && left_of_in } else { left_of_out || left_of_in }
+}
+
+/// Whether the segment between two vertices meets an edge of a loop other than at the vertices themselves.
+fn blocked(points: &[[f64; 2]], ring: &[u32], start: u32, target: u32) -> bool {
+    let (p, q) = (points[start as usize], points[target as usize]);
+    (0..ring.len()).any(|i| {
+        let (u, v) = (ring[i], ring[(i + 1) % ring.len()]);
+        let (a, b) = (points[u as usize], points[v as usize]);
+        let on_segment = |x: u32| {
+            x != start && x != target && {
+                let c = points[x as usize];
+                orient2d(p, q, c) == Sign::Zero
+                    && (0..2).all(|k| p[k].min(q[k]) <= c[k] && c[k] <= p[k].max(q[k]))
+            }
+        };
+        if on_segment(u) || on_segment(v) {
+            return true;
+        }
+        if u == start || u == target || v == start || v == target {
+            return false;
+        }
+        let (s, t) = (orient2d(a, b, p), orient2d(a, b, q));
+        let (x, y) = (orient2d(p, q, a), orient2d(p, q, b));
+        s != t && x != y && x != Sign::Zero && y != Sign::Zero
+    })
+}

@@ -1,0 +1,238 @@
+//! Triangulation of plane polygons that cannot fail.
+//!
+//! A region is given by the directed edges of its boundary, the region to their left. The result always uses every one of
+//! them once and, besides, only diagonals in pairs of opposite direction: `v + 2h - 2` triangles for `v` vertices and `h`
+//! holes, whatever rounding did to the shape. So triangles of neighbouring faces always fit together. Where the shape is
+//! sound (exact tests on the given coordinates), all triangles are counter-clockwise.
+
+mod delaunay;
+mod ears;
+mod holes;
+mod loops;
+
+pub(crate) use ears::triangle_quality;
+
+/// From this many vertices a constrained Delaunay triangulation replaces ear clipping.
+const DELAUNAY_FROM: usize = 40;
+
+/// Triangulates regions; keeps its scratch memory between calls.
+#[derive(Debug, Default)]
+pub(crate) struct Triangulator {
+    tracer: loops::Tracer,
+    ears: ears::EarClipper,
+}
+
+impl Triangulator {
+    /// Appends to `triangles` a triangulation of the region bounded by `edges`. Vertices are indices into `points`; every
+    /// vertex must be left as often as it is entered. Returns whether all triangles are counter-clockwise, by exact test.
+    pub(crate) fn triangulate(
+        &mut self,
+        points: &[[f64; 2]],
+        edges: &[[u32; 2]],
+        triangles: &mut Vec<[u32; 3]>,
+    ) -> bool {
+        if let Some(corners) = single_triangle(edges) {
+            triangles.push(corners);
+            return ears::is_counter_clockwise(points, corners);
+        }
+        let boundary = self.tracer.trace(points, edges);
+        if let [only] = boundary.as_slice() {
+            return self.simple(points, only, triangles);
+        }
+        let mut sound = true;
+        for polygon in holes::group(points, boundary) {
+            sound &= self.with_holes(points, &polygon, triangles);
+        }
+        sound
+    }
+
+    /// Triangulates one closed loop; `false` if some triangle is not counter-clockwise.
+    pub(crate) fn simple(&mut self, points: &[[f64; 2]], polygon: &[u32], triangles: &mut Vec<[u32; 3]>) -> bool {
+        if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate(points, &[polygon], triangles) {
+            return true;
+        }
+        self.ears.clip(points, polygon, triangles)
+    }
+
+    fn with_holes(&mut self, points: &[[f64; 2]], polygon: &holes::Polygon, triangles: &mut Vec<[u32; 3]>) -> bool {
+        if polygon.holes.is_empty() {
+            return self.simple(points, &polygon.outer, triangles);
+        }
+        let vertices = polygon.outer.len() + polygon.holes.iter().map(Vec::len).sum::<usize>();
+        if vertices >= DELAUNAY_FROM {
+            let rings: Vec<&[u32]> =
+                std::iter::once(&polygon.outer).chain(&polygon.holes).map(Vec::as_slice).collect();
+            if delaunay::triangulate(points, &rings, triangles) {
+                return true;
+            }
+        }
+        match holes::bridge(points, polygon) {
+            Some(joined) => self.ears.clip(points, &joined, triangles),
+            None => {
+                // No sight line, so the shape is not sound: the loops one by one bound the same region as a chain.
+                self.ears.clip(points, &polygon.outer, triangles);
+                for hole in &polygon.holes {
+                    self.ears.clip(points, hole, triangles);
+                }
+                false
+            }
+        }
+    }
+}
+
+/// The corners, if three edges form one triangle: the commonest region.
+fn single_triangle(edges: &[[u32; 2]]) -> Option<[u32; 3]> {
+    let [first, second, third] = edges else { return None };
+    let (next, last) = if second[0] == first[1] { (second, third) } else { (third, second) };
+    (first[1] == next[0] && next[1] == last[0] && last[1] == first[0]).then_some([first[0], first[1], next[1]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+    use std::collections::BTreeMap;
+
+    /// The boundary of the triangles as a chain equals the given edges.
+    fn assert_complete(edges: &[[u32; 2]], triangles: &[[u32; 3]]) {
+        let mut chain: BTreeMap<(u32, u32), i32> = BTreeMap::new();
+        let mut add = |u: u32, v: u32, sign: i32| {
+            let (key, sign) = if u < v { ((u, v), sign) } else { ((v, u), -sign) };
+            *chain.entry(key).or_default() += sign;
+        };
+        for t in triangles {
+            for k in 0..3 {
+                add(t[k], t[(k + 1) % 3], 1);
+            }
+        }
+        for e in edges {
+            add(e[0], e[1], -1);
+        }
+        assert!(chain.values().all(|&sum| sum == 0), "{edges:?} {triangles:?}");
+    }
+
+    fn area(points: &[[f64; 2]], t: &[u32; 3]) -> f64 {
+        let [a, b, c] = t.map(|v| points[v as usize]);
+        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    }
+
+    fn ring(first: u32, count: u32) -> Vec<[u32; 2]> {
+        (0..count).map(|i| [first + i, first + (i + 1) % count]).collect()
+    }
+
+    fn check(points: &[[f64; 2]], edges: &[[u32; 2]], expected_area: f64, expected_triangles: usize) {
+        let mut triangles = Vec::new();
+        let sound = Triangulator::default().triangulate(points, edges, &mut triangles);
+        assert_complete(edges, &triangles);
+        assert!(sound);
+        assert_eq!(triangles.len(), expected_triangles);
+        let sum: f64 = triangles.iter().map(|t| area(points, t)).sum();
+        assert!((sum - expected_area).abs() < 1e-9, "{sum} {expected_area}");
+        assert!(triangles.iter().all(|t| area(points, t) > 0.0));
+    }
+
+    #[test]
+    fn collinear_vertices_on_the_sides_are_all_used() {
+        let points = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0], [0.0, 0.5]];
+        check(&points, &ring(0, 7), 3.0, 5);
+        let flat = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, 1.0]];
+        check(&flat, &ring(0, 4), 1.0, 2);
+    }
+
+    #[test]
+    fn squares_with_holes_and_islands() {
+        let square = |c: [f64; 2], r: f64| {
+            [[c[0] - r, c[1] - r], [c[0] + r, c[1] - r], [c[0] + r, c[1] + r], [c[0] - r, c[1] + r]]
+        };
+        let mut points = square([0.0, 0.0], 4.0).to_vec();
+        points.extend(square([-2.0, 0.0], 1.0));
+        points.extend(square([2.0, 0.0], 1.0));
+        points.extend(square([2.0, 0.0], 0.5));
+        let mut edges = ring(0, 4);
+        edges.extend(ring(4, 4).iter().map(|e| [e[1], e[0]]));
+        edges.extend(ring(8, 4).iter().map(|e| [e[1], e[0]]));
+        edges.extend(ring(12, 4));
+        // 12 vertices and 2 holes, and the island's 4.
+        check(&points, &edges, 64.0 - 8.0 + 1.0, 12 + 4 - 2 + 2);
+    }
+
+    #[test]
+    fn a_hole_that_touches_its_outline_in_a_vertex() {
+        let points = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [2.0, 1.0], [1.0, 2.0]];
+        let mut edges = ring(0, 4);
+        edges.extend([[0, 5], [5, 4], [4, 0]]);
+        check(&points, &edges, 16.0 - 1.5, 5);
+    }
+
+    #[test]
+    fn two_triangles_that_share_a_vertex_stay_apart() {
+        let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [-1.0, 0.0], [-1.0, -1.0]];
+        let edges = [[0, 1], [1, 2], [2, 0], [0, 3], [3, 4], [4, 0]];
+        check(&points, &edges, 1.0, 2);
+    }
+
+    #[test]
+    fn many_holes_use_the_delaunay_path() {
+        let mut points = vec![[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0]];
+        let mut edges = ring(0, 4);
+        for i in 0..9 {
+            for j in 0..9 {
+                let first = points.len() as u32;
+                let (x, y) = (1.0 + 2.0 * f64::from(i), 1.0 + 2.0 * f64::from(j));
+                points.extend([[x, y], [x + 1.0, y], [x + 1.0, y + 1.0], [x, y + 1.0]]);
+                edges.extend(ring(first, 4).iter().map(|e| [e[1], e[0]]));
+            }
+        }
+        check(&points, &edges, 400.0 - 81.0, 4 + 4 * 81 + 2 * 81 - 2);
+    }
+
+    #[test]
+    fn random_star_polygons() {
+        let mut rng = ChaCha8Rng::seed_from_u64(11);
+        for round in 0..500 {
+            let count = rng.random_range(3..if round % 10 == 0 { 200 } else { 20 });
+            let points: Vec<[f64; 2]> = (0..count)
+                .map(|i| {
+                    let angle = std::f64::consts::TAU * f64::from(i) / f64::from(count);
+                    let radius = rng.random_range(0.2..1.0);
+                    [radius * angle.cos(), radius * angle.sin()]
+                })
+                .collect();
+            let edges = ring(0, count as u32);
+            let expected: f64 = edges
+                .iter()
+                .map(|e| {
+                    let (a, b) = (points[e[0] as usize], points[e[1] as usize]);
+                    0.5 * (a[0] * b[1] - a[1] * b[0])
+                })
+                .sum();
+            check(&points, &edges, expected, count as usize - 2);
+        }
+    }
+
+    #[test]
+    fn nonsense_is_still_complete() {
+        let mut rng = ChaCha8Rng::seed_from_u64(12);
+        for round in 0..2_000 {
+            // Random closed walks on few points, some of them coincident or collinear.
+            let points: Vec<[f64; 2]> = (0..8)
+                .map(|_| [f64::from(rng.random_range(0i32..3)), f64::from(rng.random_range(0i32..3))])
+                .collect();
+            let mut edges = Vec::new();
+            for _ in 0..rng.random_range(1..4) {
+                let length = rng.random_range(3..9);
+                let mut walk: Vec<u32> = (0..8).collect();
+                for i in 0..length {
+                    let j = rng.random_range(i..8);
+                    walk.swap(i, j);
+                }
+                edges.extend((0..length).map(|i| [walk[i], walk[(i + 1) % length]]));
+            }
+            let mut triangles = Vec::new();
+            Triangulator::default().triangulate(&points, &edges, &mut triangles);
+            assert_complete(&edges, &triangles);
+            assert!(triangles.len() <= edges.len() * 2, "round {round}");
+        }
+    }
+}
