@@ -9,8 +9,8 @@ const SCALE: f64 = 511.0;
 /// Rounds of improvement for a vertex some of whose faces its direction does not look away from.
 const ROUNDS: usize = 32;
 
-/// Outward directions of the vertices near the other operand. Vertices at the same place share one (else bodies that touch
-/// inside A would swell into each other).
+/// Outward directions of the vertices near the other operand. Vertices at the same place can share one: else bodies that
+/// touch inside A would swell into each other.
 #[derive(Debug)]
 pub(super) struct Directions {
     of_vertex: FxHashMap<u32, u32>,
@@ -20,7 +20,7 @@ pub(super) struct Directions {
 impl Directions {
     /// Directions of the vertices of the triangles `near`: angle-weighted normals, improved by perceptron steps while the
     /// worst dot product with a face normal is not positive, quantised.
-    pub(super) fn new(operand: &Operand<'_>, near: &[u32]) -> Self {
+    pub(super) fn new(operand: &Operand<'_>, near: &[u32], share_places: bool) -> Self {
         let mut of_place: FxHashMap<[u64; 3], u32> = FxHashMap::default();
         let mut of_vertex: FxHashMap<u32, u32> = FxHashMap::default();
         let mut faces: Vec<(u32, [f64; 3])> = Vec::with_capacity(3 * near.len());
@@ -33,10 +33,11 @@ impl Directions {
                 // Adding 0.0 makes the two zeros one place.
                 let place = positions[k].map(|x| (x + 0.0).to_bits());
                 let index = *of_vertex.entry(corners[k]).or_insert_with(|| {
-                    *of_place.entry(place).or_insert_with(|| {
+                    let mut add = || {
                         sums.push([0.0; 3]);
                         sums.len() as u32 - 1
-                    })
+                    };
+                    if share_places { *of_place.entry(place).or_insert_with(add) } else { add() }
                 });
                 if let Some(normal) = normal {
                     let sum = &mut sums[index as usize];
@@ -139,7 +140,7 @@ mod tests {
         let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
         let operand = Operand { positions: &positions, triangles: &triangles };
-        let directions = Directions::new(&operand, &[0, 1, 2, 3]);
+        let directions = Directions::new(&operand, &[0, 1, 2, 3], true);
         let corner = directions.of(0);
         assert!(corner.iter().all(|&x| x < -300), "{corner:?}");
         assert_eq!(directions.of(9), [0; 3]);
@@ -161,7 +162,9 @@ mod tests {
         let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
         let triangles = vec![[0, 1, 2], [3, 2, 4]];
         let operand = Operand { positions: &positions, triangles: &triangles };
-        let directions = Directions::new(&operand, &[0, 1]);
+        let directions = Directions::new(&operand, &[0, 1], true);
         assert_eq!(directions.of(0), directions.of(3));
+        let apart = Directions::new(&operand, &[0, 1], false);
+        assert_ne!(apart.of(0), apart.of(3));
     }
 }

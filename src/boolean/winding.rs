@@ -206,7 +206,7 @@ fn cast_rays(
 }
 
 /// A coordinate beyond an interval.
-fn beyond(low: f64, high: f64) -> f64 {
+pub(super) fn beyond(low: f64, high: f64) -> f64 {
     let end = high + (high - low);
     if end.is_finite() && end > high { end } else { high.next_up().min(f64::MAX) }
 }
@@ -224,7 +224,7 @@ fn may_meet(corners: [&[f64; 3]; 3], start: &Corner) -> bool {
 }
 
 /// +1 where the way from `start` to `end` leaves the triangle's solid, -1 where it enters it, 0 where they do not meet.
-fn ray_crossing(operands: &Operands<'_>, side: usize, triangle: u32, start: &Corner, end: &Corner) -> i32 {
+pub(super) fn ray_crossing(operands: &Operands<'_>, side: usize, triangle: u32, start: &Corner, end: &Corner) -> i32 {
     let [a, b, c] = operands.corners(side, triangle);
     let start_inside = operands.positive(&a, &b, &c, start);
     if operands.positive(&a, &b, &c, end) == start_inside {

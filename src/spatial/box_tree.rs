@@ -145,6 +145,57 @@ pub(crate) fn overlapping_pairs(a: &BoxTree, b: &BoxTree, runner: Runner<'_>) ->
     Ok(pieces.concat())
 }
 
+/// All pairs of different items whose boxes meet and that `wanted` accepts, each once with the smaller item first, in an
+/// order that depends on the tree alone.
+pub(crate) fn self_overlapping_pairs(
+    tree: &BoxTree,
+    runner: Runner<'_>,
+    wanted: impl Fn([u32; 2]) -> bool + Sync,
+) -> Result<Vec<[u32; 2]>, Error> {
+    // The nodes of one level, each with itself and with its right neighbours, cover all pairs.
+    const TASKS: usize = 128;
+    let Some(root) = tree.root() else { return Ok(Vec::new()) };
+    let size = |level: u32| tree.levels[level as usize + 1] - tree.levels[level as usize];
+    let level = (0..=root.level).rev().find(|&level| size(level) >= TASKS).unwrap_or(0);
+    let count = size(level) as u32;
+    let node = |place: u32| Node { level, place };
+    let pieces = runner.pieces(count as usize, 1, |range| {
+        let place = range.start as u32;
+        let mut pairs = Vec::new();
+        walk_within(tree, node(place), &mut pairs);
+        for other in place + 1..count {
+            walk(tree, tree, node(place), node(other), &mut pairs);
+        }
+        pairs.iter_mut().for_each(|pair| pair.sort_unstable());
+        pairs.retain(|&pair| wanted(pair));
+        pairs
+    })?;
+    Ok(pieces.concat())
+}
+
+/// Appends all pairs below one node.
+fn walk_within(tree: &BoxTree, node: Node, pairs: &mut Vec<[u32; 2]>) {
+    let mut stack = vec![node];
+    while let Some(node) = stack.pop() {
+        if node.level == 0 {
+            let leaf = tree.leaf(node);
+            for i in leaf.clone() {
+                for j in i + 1..leaf.end {
+                    if tree.boxes[i].intersect_aabb(&tree.boxes[j]) {
+                        pairs.push([tree.items[i], tree.items[j]]);
+                    }
+                }
+            }
+            continue;
+        }
+        let children: Vec<Node> = tree.children(node).collect();
+        if let [left, right] = children[..] {
+            walk(tree, tree, left, right, pairs);
+        }
+        stack.extend(children);
+    }
+}
+
 /// Replaces a pair of nodes by pairs with the children of the higher one.
 #[inline]
 fn open(a: &BoxTree, b: &BoxTree, x: Node, y: Node, mut emit: impl FnMut((Node, Node))) {
@@ -237,6 +288,29 @@ mod tests {
                     (0..b.len() as u32).filter(|&j| x.intersect_aabb(&b[j as usize])).collect();
                 assert_eq!(of_query, meeting);
                 expected.extend(meeting.into_iter().map(|j| [i as u32, j]));
+            }
+            assert_eq!(pairs, expected);
+        }
+    }
+
+    #[test]
+    fn pairs_within_one_tree_agree_with_all_against_all() {
+        let mut rng = ChaCha8Rng::seed_from_u64(13);
+        for (n, size) in [(0, 0.1), (1, 1.0), (2, 1.0), (300, 0.2), (2_000, 0.05)] {
+            let boxes = random_boxes(&mut rng, n, size);
+            let items: Vec<u32> = (0..n as u32).collect();
+            let tree = BoxTree::new(&items, |i| boxes[i as usize]);
+            let control = Control::new();
+            let mut pairs =
+                self_overlapping_pairs(&tree, Runner::new(&control, true), |pair| pair[0] % 7 != 3).expect("no limits");
+            pairs.sort_unstable();
+            let mut expected = Vec::new();
+            for i in 0..n {
+                for j in i + 1..n {
+                    if i % 7 != 3 && boxes[i].intersect_aabb(&boxes[j]) {
+                        expected.push([i as u32, j as u32]);
+                    }
+                }
             }
             assert_eq!(pairs, expected);
         }

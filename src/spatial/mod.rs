@@ -4,5 +4,5 @@
 mod box_tree;
 mod frame;
 
-pub(crate) use box_tree::{BoxTree, overlapping_pairs};
+pub(crate) use box_tree::{BoxTree, overlapping_pairs, self_overlapping_pairs};
 pub(crate) use frame::Frame;

@@ -1,0 +1,229 @@
+//! Many operands: which pairs are combined in which order.
+//!
+//! A union merges neighbours first (a balanced tree in Morton order of the boxes' centres), so that most merges are local
+//! and pieces vanish early; a difference takes the union of all tools off the first operand in one step; an intersection
+//! starts with the smallest operands; a symmetric difference goes from left to right.
+
+use std::borrow::Cow;
+
+use super::pair::{self, PairSettings};
+use super::{Contact, Operation, Options, Origin, Outcome};
+use crate::mesh::{FaceGroup, FaceGroups};
+use crate::parallel::Runner;
+use crate::{Error, Mesh, Solid};
+
+/// An operand, or what some of them have become.
+struct Partial<'a> {
+    solid: Cow<'a, Solid>,
+    /// Where each triangle came from.
+    origins: Origins,
+    /// The result's group of each triangle; empty if no operand has groups.
+    groups: Vec<u32>,
+    ties: u64,
+    inverted: u64,
+}
+
+/// Where triangles came from: those of an operand itself need no list.
+enum Origins {
+    Operand(u32),
+    List(Vec<Origin>),
+}
+
+impl Origins {
+    fn of(&self, triangle: u32) -> Origin {
+        match self {
+            Self::Operand(operand) => Origin { operand: *operand, triangle, reversed: false },
+            Self::List(list) => list[triangle as usize],
+        }
+    }
+}
+
+/// Runs an operation over all operands.
+pub(super) fn run(
+    options: &Options,
+    operation: Operation,
+    operands: &[&Solid],
+    runner: Runner<'_>,
+) -> Result<Outcome, Error> {
+    let groups = merged_groups(operands);
+    let mut partials: Vec<Partial<'_>> = operands
+        .iter()
+        .enumerate()
+        .map(|(i, solid)| Partial {
+            solid: Cow::Borrowed(*solid),
+            origins: Origins::Operand(i as u32),
+            groups: groups.of_operand(i, solid),
+            ties: 0,
+            inverted: 0,
+        })
+        .collect();
+    let engine = Engine { options, runner };
+    let result = match operation {
+        Operation::Union => engine.union(partials)?,
+        Operation::Difference => {
+            let first = partials.remove(0);
+            if partials.is_empty() { first } else { engine.combine(Operation::Difference, &first, &engine.union(partials)?)? }
+        }
+        Operation::Intersection => {
+            // Smallest first; the order of equal ones is that of the arguments.
+            partials.sort_by_key(|partial| partial.solid.mesh().triangles.len());
+            engine.fold(Operation::Intersection, partials)?
+        }
+        Operation::SymmetricDifference => engine.fold(Operation::SymmetricDifference, partials)?,
+    };
+    Ok(finish(result, groups.list))
+}
+
+struct Engine<'o> {
+    options: &'o Options,
+    runner: Runner<'o>,
+}
+
+impl Engine<'_> {
+    fn fold<'a>(&self, operation: Operation, partials: Vec<Partial<'a>>) -> Result<Partial<'a>, Error> {
+        let count = partials.len() as f64;
+        let mut partials = partials.into_iter();
+        let mut result = partials.next().ok_or_else(no_operands)?;
+        for (i, partial) in partials.enumerate() {
+            self.runner.control.report("combining", i as f64 / count)?;
+            result = self.combine(operation, &result, &partial)?;
+        }
+        Ok(result)
+    }
+
+    /// Merges neighbours level by level.
+    fn union<'a>(&self, partials: Vec<Partial<'a>>) -> Result<Partial<'a>, Error> {
+        let total = partials.len();
+        let mut level = in_morton_order(partials);
+        while level.len() > 1 {
+            self.runner.control.report("uniting", 1.0 - level.len() as f64 / total as f64)?;
+            let pairs = level.len() / 2;
+            // Whole merges side by side while there are enough of them, else parallel inside each.
+            let inside = if pairs >= 8 { self.runner.serial() } else { self.runner };
+            let engine = Engine { options: self.options, runner: inside };
+            let mut merged = self
+                .runner
+                .pieces(pairs, 1, |range| {
+                    let i = range.start;
+                    engine.combine(Operation::Union, &level[2 * i], &level[2 * i + 1])
+                })?
+                .into_iter()
+                .collect::<Result<Vec<_>, Error>>()?;
+            if level.len() % 2 == 1 {
+                merged.extend(level.pop());
+            }
+            level = merged;
+        }
+        level.pop().ok_or_else(no_operands)
+    }
+
+    fn combine<'a>(&self, operation: Operation, a: &Partial<'_>, b: &Partial<'_>) -> Result<Partial<'a>, Error> {
+        let settings = PairSettings {
+            swell: operation == Operation::Union && self.options.contact == Contact::Fuse,
+            remove_vertices: self.options.remove_vertices,
+            groups: [&a.groups, &b.groups],
+        };
+        let made = pair::combine(operation, &a.solid, &b.solid, settings, self.runner)?;
+        if operation == Operation::SymmetricDifference && made.ties > 0 {
+            // In one pass coincident faces would stay as walls without thickness: unite the two differences instead.
+            let (left, right) =
+                (self.combine(Operation::Difference, a, b)?, self.combine(Operation::Difference, b, a)?);
+            return self.combine(Operation::Union, &left, &right);
+        }
+        let sources = [a, b];
+        let origins = made
+            .origins
+            .iter()
+            .map(|origin| {
+                let source = sources[origin.operand as usize].origins.of(origin.triangle);
+                Origin { reversed: source.reversed != origin.reversed, ..source }
+            })
+            .collect();
+        let groups = if a.groups.is_empty() {
+            Vec::new()
+        } else {
+            made.origins.iter().map(|origin| sources[origin.operand as usize].groups[origin.triangle as usize]).collect()
+        };
+        Ok(Partial {
+            solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(made.positions, made.triangles))),
+            origins: Origins::List(origins),
+            groups,
+            ties: a.ties + b.ties + made.ties,
+            inverted: a.inverted + b.inverted + made.inverted,
+        })
+    }
+}
+
+fn no_operands() -> Error {
+    Error::InvalidArgument("a boolean needs at least one operand".into())
+}
+
+fn finish(result: Partial<'_>, list: Vec<FaceGroup>) -> Outcome {
+    let count = result.solid.mesh().triangles.len() as u32;
+    let origins = match result.origins {
+        Origins::List(list) => list,
+        operand @ Origins::Operand(_) => (0..count).map(|t| operand.of(t)).collect(),
+    };
+    let mut solid = result.solid.into_owned();
+    solid.set_groups(FaceGroups { list, of_triangle: result.groups });
+    Outcome::new(solid, origins, result.ties, result.inverted)
+}
+
+/// Sorts operands so that neighbours in the list are neighbours in space.
+fn in_morton_order(partials: Vec<Partial<'_>>) -> Vec<Partial<'_>> {
+    if partials.len() <= 2 {
+        return partials;
+    }
+    let centres: Vec<[f64; 3]> = partials
+        .iter()
+        .map(|partial| {
+            let (low, high) = partial.solid.bounds().unwrap_or(([0.0; 3], [0.0; 3]));
+            std::array::from_fn(|k| 0.5 * low[k] + 0.5 * high[k])
+        })
+        .collect();
+    let codes = crate::spatial::morton_codes(&centres);
+    let mut order: Vec<(u64, usize, Partial<'_>)> =
+        partials.into_iter().enumerate().map(|(i, partial)| (codes[i], i, partial)).collect();
+    order.sort_by_key(|&(code, i, _)| (code, i));
+    order.into_iter().map(|(_, _, partial)| partial).collect()
+}
+
+/// The groups of all operands together; equal ones become one.
+struct MergedGroups {
+    list: Vec<FaceGroup>,
+    /// For each operand the number of each of its groups; a last entry for an operand without any.
+    numbers: Vec<Vec<u32>>,
+}
+
+fn merged_groups(operands: &[&Solid]) -> MergedGroups {
+    let mut merged = MergedGroups { list: Vec::new(), numbers: Vec::new() };
+    if operands.iter().all(|solid| solid.mesh().groups.list.is_empty()) {
+        return merged;
+    }
+    let mut number_of = |group: &FaceGroup| match merged.list.iter().position(|other| other == group) {
+        Some(number) => number as u32,
+        None => {
+            merged.list.push(group.clone());
+            merged.list.len() as u32 - 1
+        }
+    };
+    for solid in operands {
+        let groups = &solid.mesh().groups;
+        let mut numbers: Vec<u32> = groups.list.iter().map(&mut number_of).collect();
+        if groups.list.is_empty() {
+            numbers.push(number_of(&FaceGroup::default()));
+        }
+        merged.numbers.push(numbers);
+    }
+    merged
+}
+
+impl MergedGroups {
+    fn of_operand(&self, operand: usize, solid: &Solid) -> Vec<u32> {
+        let Some(numbers) = self.numbers.get(operand) else { return Vec::new() };
+        let mesh = solid.mesh();
+        (0..mesh.triangles.len())
+            .map(|t| numbers[mesh.groups.of_triangle.get(t).map_or(0, |&group| group as usize)])
+            .collect()
+    }
+}
