@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::io::Format;
-use crate::mesh::Diagnosis;
+use crate::mesh::{Diagnosis, SelfCrossings};
 
 /// Everything that can go wrong. Each variant carries what was found and where; the text says how to mend it.
 #[derive(Debug, thiserror::Error)]
@@ -79,8 +79,8 @@ pub enum Error {
         volume: f64,
     },
     /// The surface crosses itself.
-    #[error("the surface crosses itself: {0}")]
-    SelfCrossing(Box<Diagnosis>),
+    #[error("the surface crosses itself: {0}; unite its parts one by one, or repair it")]
+    SelfCrossing(Box<SelfCrossings>),
     /// The operand at this position (counted from 0) is at fault.
     #[error("operand {} ({name}): {source}", operand + 1)]
     Operand {

@@ -3,8 +3,8 @@
 //! ```
 //! use trisect::{Operation, Solid, boolean, primitives};
 //!
-//! let block = Solid::try_from(primitives::cuboid([0.0; 3], [1.0; 3]))?;
-//! let corner = Solid::try_from(primitives::cuboid([0.5; 3], [1.5; 3]))?;
+//! let block = Solid::try_from(primitives::cuboid([0.0; 3], [1.0; 3])?)?;
+//! let corner = Solid::try_from(primitives::cuboid([0.5; 3], [1.5; 3])?)?;
 //! let cut = boolean(Operation::Difference, &block, &corner)?;
 //! assert_eq!(cut.solid().volume(), 0.875);
 //! # Ok::<(), trisect::Error>(())
@@ -23,7 +23,7 @@ pub mod primitives;
 pub mod render;
 pub mod spatial;
 
-pub use boolean::{Operation, Options, Outcome, boolean};
+pub use boolean::{Certificate, Contact, Operation, Options, Origin, Outcome, boolean};
 pub use control::{CancelToken, Control};
 pub use error::{Error, Failure};
 pub use mesh::{FaceGroup, FaceGroups, Material, Mesh, Solid};

@@ -29,11 +29,6 @@ impl<'a> Runner<'a> {
         Self { parallel: false, ..self }
     }
 
-    /// Whether loops may use several threads.
-    pub(crate) fn is_parallel(self) -> bool {
-        self.parallel
-    }
-
     /// Cuts `0..count` into pieces of `grain` and returns what `piece` makes of each, in order. The limits are checked
     /// before every piece.
     pub(crate) fn pieces<T: Send>(

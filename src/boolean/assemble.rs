@@ -5,14 +5,14 @@ use super::cut_faces::{BitSet, CutFaces};
 use super::identify::Identification;
 use super::multiplicity::Part;
 use super::operands::Operands;
-use super::{Origin, PairOrigin};
+use super::outcome::Origin;
 
 /// A triangle that cutting made or changed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NewTriangle {
     /// Points: vertices by number, then nodes, then copies.
     pub(super) corners: [u32; 3],
-    pub(super) origin: PairOrigin,
+    pub(super) origin: Origin,
 }
 
 /// The arrays of a result.
@@ -20,7 +20,11 @@ pub(super) struct NewTriangle {
 pub(super) struct Assembled {
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) origins: Vec<PairOrigin>,
+    pub(super) origins: Vec<Origin>,
+    /// Decisions that plain positions left open.
+    pub(super) ties: u64,
+    /// Cut triangles that rounding turned over.
+    pub(super) inverted: u64,
 }
 
 /// What the arrays are made of.
@@ -43,7 +47,9 @@ impl Ingredients<'_> {
     /// How often an uncut triangle counts in a part.
     #[inline]
     fn count(&self, part: Part, triangle: u32, corners: [u32; 3]) -> u32 {
-        if self.faces[part.side].is_cut(triangle) || self.replaced.is_some_and(|r| r[part.side].contains(triangle)) {
+        if self.faces[part.side].is_cut(triangle)
+            || self.replaced.is_some_and(|r| r[part.side].contains(triangle))
+        {
             return 0;
         }
         let winding = self.windings[part.side].get(corners[0] as usize).copied().unwrap_or(0);
@@ -82,8 +88,12 @@ impl Ingredients<'_> {
             }
         }
 
-        let mut result =
-            Assembled { positions, triangles: Vec::with_capacity(count), origins: Vec::with_capacity(count) };
+        let mut result = Assembled {
+            positions,
+            triangles: Vec::with_capacity(count),
+            origins: Vec::with_capacity(count),
+            ..Assembled::default()
+        };
         for &part in self.parts {
             let first = operands.first_vertex(part.side);
             for (t, &corners) in operands.sides[part.side].triangles.iter().enumerate() {
@@ -91,11 +101,12 @@ impl Ingredients<'_> {
                 if times == 0 {
                     continue;
                 }
-                let [a, b, c] = corners.map(|v| number[self.identification.representative(first + v) as usize]);
+                let [a, b, c] =
+                    corners.map(|v| number[self.identification.representative(first + v) as usize]);
                 // A negative multiplicity turns the triangle over once more.
                 let winding = self.windings[part.side].get(corners[0] as usize).copied().unwrap_or(0);
                 let reversed = part.reversed != (part.multiplicity(winding) < 0);
-                let origin = PairOrigin::new(part.side, t as u32, reversed);
+                let origin = Origin { operand: part.side as u32, triangle: t as u32, reversed };
                 for _ in 0..times {
                     result.triangles.push(if reversed { [a, c, b] } else { [a, b, c] });
                     result.origins.push(origin);
@@ -124,9 +135,3 @@ impl Ingredients<'_> {
 
 const UNUSED: u32 = u32::MAX;
 const USED: u32 = u32::MAX - 1;
-
-impl PairOrigin {
-    pub(super) fn new(side: usize, triangle: u32, reversed: bool) -> Self {
-        Self(Origin { operand: side as u32, triangle, reversed })
-    }
-}

@@ -47,7 +47,11 @@ struct PairCrossing {
 }
 
 /// Finds the crossings of all candidate pairs.
-pub(super) fn find(operands: &Operands<'_>, pairs: &[[u32; 2]], runner: Runner<'_>) -> Result<Crossings, Error> {
+pub(super) fn find(
+    operands: &Operands<'_>,
+    pairs: &[[u32; 2]],
+    runner: Runner<'_>,
+) -> Result<Crossings, Error> {
     let found: Vec<PairCrossing> = runner
         .pieces(pairs.len(), 4096, |range| {
             pairs[range].iter().filter_map(|&pair| cross(operands, pair)).collect::<Vec<_>>()
@@ -79,7 +83,8 @@ fn cross(operands: &Operands<'_>, triangles: [u32; 2]) -> Option<PairCrossing> {
     };
     // Along the boundary of its own triangle an edge of A that leaves B ends the segment, one of B that leaves A starts it.
     let (mut tail, mut head) = (None, None);
-    let mut place = |crossing: Crossing, is_head: bool| *(if is_head { &mut head } else { &mut tail }) = Some(crossing);
+    let mut place =
+        |crossing: Crossing, is_head: bool| *(if is_head { &mut head } else { &mut tail }) = Some(crossing);
     let (p_inside, u_inside) = (a_inside[lone_a], b_inside[lone_b]);
     if qv != qw {
         place(crossing(p, q, p_inside, triangles[1]), p_inside);
@@ -93,7 +98,11 @@ fn cross(operands: &Operands<'_>, triangles: [u32; 2]) -> Option<PairCrossing> {
     if qw != rw {
         place(crossing(u, w, u_inside, triangles[0]), u_inside);
     }
-    debug_assert_eq!(tail.is_some(), head.is_some(), "an intersecting pair has one crossing of each direction");
+    debug_assert_eq!(
+        tail.is_some(),
+        head.is_some(),
+        "an intersecting pair has one crossing of each direction"
+    );
     Some(PairCrossing { triangles, tail: tail?, head: head? })
 }
 
@@ -127,7 +136,11 @@ fn number_nodes(found: &[PairCrossing]) -> Crossings {
     let mut segments: Vec<Segment> = found
         .iter()
         .enumerate()
-        .map(|(i, pair)| Segment { triangles: pair.triangles, tail: node_of[2 * i], head: node_of[2 * i + 1] })
+        .map(|(i, pair)| Segment {
+            triangles: pair.triangles,
+            tail: node_of[2 * i],
+            head: node_of[2 * i + 1],
+        })
         .collect();
     segments.sort_unstable_by_key(|segment| segment.triangles);
     Crossings { nodes, segments }

@@ -14,6 +14,7 @@ use super::identify::Identification;
 use super::multiplicity::Part;
 use super::operands::Operands;
 use crate::Error;
+use crate::exact::{Sign, orient2d};
 use crate::parallel::Runner;
 use crate::polygon::Triangulator;
 
@@ -24,6 +25,14 @@ pub(super) struct Piece {
     pub(super) corners: [u32; 3],
     /// The face it was cut from.
     pub(super) triangle: u32,
+}
+
+/// What was cut out of the faces of a part.
+#[derive(Debug, Default)]
+pub(super) struct Cut {
+    pub(super) pieces: Vec<Piece>,
+    /// Triangles that rounding turned over.
+    pub(super) inverted: u64,
 }
 
 /// All that cutting needs to know.
@@ -49,17 +58,18 @@ struct Scratch {
 
 impl Cutter<'_> {
     /// The pieces of a part, face by face.
-    pub(super) fn cut(&self, part: Part, runner: Runner<'_>) -> Result<Vec<Piece>, Error> {
+    pub(super) fn cut(&self, part: Part, runner: Runner<'_>) -> Result<Cut, Error> {
         let all = &self.faces[part.side].faces;
         let pieces = runner.pieces(all.len(), 512, |range| {
             let mut scratch = Scratch::default();
-            let mut pieces = Vec::new();
+            let mut cut = Cut::default();
             for face in &all[range] {
-                self.cut_face(part, face, &mut scratch, &mut pieces);
+                self.cut_face(part, face, &mut scratch, &mut cut);
             }
-            pieces
+            cut
         })?;
-        Ok(pieces.concat())
+        let inverted = pieces.iter().map(|cut| cut.inverted).sum();
+        Ok(Cut { pieces: pieces.into_iter().flat_map(|cut| cut.pieces).collect(), inverted })
     }
 
     /// Where a point is.
@@ -72,7 +82,7 @@ impl Cutter<'_> {
         }
     }
 
-    fn cut_face(&self, part: Part, face: &CutFace, scratch: &mut Scratch, pieces: &mut Vec<Piece>) {
+    fn cut_face(&self, part: Part, face: &CutFace, scratch: &mut Scratch, cut: &mut Cut) {
         self.boundary(part, face, &mut scratch.boundary);
         cancel_opposites(&mut scratch.boundary);
         if scratch.boundary.is_empty() {
@@ -94,8 +104,14 @@ impl Cutter<'_> {
             [position[x], position[y]]
         }));
         scratch.triangles.clear();
-        scratch.triangulator.triangulate(&scratch.points, &scratch.boundary, &mut scratch.triangles);
-        pieces.extend(scratch.triangles.iter().map(|corners| Piece {
+        if !scratch.triangulator.triangulate(&scratch.points, &scratch.boundary, &mut scratch.triangles) {
+            let is_inverted = |t: &&[u32; 3]| {
+                let [a, b, c] = t.map(|point| scratch.points[point as usize]);
+                orient2d(a, b, c) == Sign::Negative
+            };
+            cut.inverted += scratch.triangles.iter().filter(is_inverted).count() as u64;
+        }
+        cut.pieces.extend(scratch.triangles.iter().map(|corners| Piece {
             corners: corners.map(|point| points[point as usize]),
             triangle: face.triangle,
         }));
@@ -108,13 +124,15 @@ impl Cutter<'_> {
         let first_vertex = self.operands.first_vertex(part.side);
         let winding = |vertex: u32| self.windings[part.side][(vertex - first_vertex) as usize];
         let mut add = |from: u32, to: u32, count: i32| {
-            let (from, to) = (self.identification.representative(from), self.identification.representative(to));
+            let (from, to) =
+                (self.identification.representative(from), self.identification.representative(to));
             if from != to {
                 let edge = if count > 0 { [from, to] } else { [to, from] };
                 boundary.extend(std::iter::repeat_n(edge, count.unsigned_abs() as usize));
             }
         };
-        let corners = self.operands.sides[part.side].triangles[face.triangle as usize].map(|v| first_vertex + v);
+        let corners =
+            self.operands.sides[part.side].triangles[face.triangle as usize].map(|v| first_vertex + v);
         for k in 0..3 {
             let (u, v) = (corners[k], corners[(k + 1) % 3]);
             if face.edges[k] == UNCUT {

@@ -32,14 +32,20 @@ pub(super) struct CutEdges {
 
 impl CutEdges {
     /// Groups the crossings by edge, orders them along each, and computes their positions.
-    pub(super) fn new(operands: &Operands<'_>, crossings: &Crossings, runner: Runner<'_>) -> Result<Self, Error> {
+    pub(super) fn new(
+        operands: &Operands<'_>,
+        crossings: &Crossings,
+        runner: Runner<'_>,
+    ) -> Result<Self, Error> {
         let all = &crossings.nodes;
         let mut edges: Vec<CutEdge> = Vec::new();
         let mut edge_of_node = Vec::with_capacity(all.len());
         for (i, node) in all.iter().enumerate() {
             match edges.last_mut() {
                 Some(edge) if edge.low == node.low && edge.high == node.high => edge.end += 1,
-                _ => edges.push(CutEdge { low: node.low, high: node.high, first: i as u32, end: i as u32 + 1 }),
+                _ => {
+                    edges.push(CutEdge { low: node.low, high: node.high, first: i as u32, end: i as u32 + 1 })
+                }
             }
             edge_of_node.push(edges.len() as u32 - 1);
         }
@@ -58,7 +64,9 @@ impl CutEdges {
             })?
             .concat();
         let positions = runner
-            .pieces(all.len(), 1024, |range| all[range].iter().map(|node| locate(operands, node)).collect::<Vec<_>>())?
+            .pieces(all.len(), 1024, |range| {
+                all[range].iter().map(|node| locate(operands, node)).collect::<Vec<_>>()
+            })?
             .concat();
         Ok(Self { edges, nodes, edge_of_node, positions })
     }

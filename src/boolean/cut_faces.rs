@@ -72,7 +72,8 @@ impl CutFaces {
             let face = faces.last_mut().expect("pushed above");
             let first = operands.first_vertex(side);
             let corners = operands.sides[side].triangles[triangle as usize].map(|v| first + v);
-            for node in [crossings.segments[segment as usize].tail, crossings.segments[segment as usize].head] {
+            for node in [crossings.segments[segment as usize].tail, crossings.segments[segment as usize].head]
+            {
                 let edge = edges.edge_of_node[node as usize];
                 let (low, high) = (edges.edges[edge as usize].low, edges.edges[edge as usize].high);
                 if operands.side_of(low) == side {

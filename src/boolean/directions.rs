@@ -69,7 +69,8 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 
 /// The unit normal of a triangle and its angles; no normal for one without area.
 fn normal_and_angles(positions: &[[f64; 3]; 3]) -> (Option<[f64; 3]>, [f64; 3]) {
-    let edge = |i: usize, j: usize| -> [f64; 3] { std::array::from_fn(|k| positions[j][k] - positions[i][k]) };
+    let edge =
+        |i: usize, j: usize| -> [f64; 3] { std::array::from_fn(|k| positions[j][k] - positions[i][k]) };
     let mut edges = [edge(0, 1), edge(1, 2), edge(2, 0)];
     // Scaled by a power of two, so that squares neither overflow nor vanish.
     let size = edges.iter().flatten().fold(0.0f64, |size, x| size.max(x.abs()));

@@ -1,6 +1,24 @@
-//! Booleans of solids.
+//! Booleans of closed triangle meshes in exact general position.
+//!
+//! The algorithm is that of Vyatkin 2019 (steps 1 and 2) with every decision exact. All decisions are signs of one
+//! determinant of perturbed input vertices, so the operands are always in general position and there is one kind of event:
+//! an edge of one crosses a triangle of the other. The result is a sum of pieces of faces with integer multiplicities
+//! ([`multiplicity`]) whose boundary cancels identically; what perturbation kept apart at the same place is identified
+//! afterwards, exactly. The pipeline is [`pair::combine`], one function per step:
+//!
+//! 1. [`overlap`], [`crate::spatial`]: pairs of triangles that may meet;
+//! 2. [`crossings`]: which do, and where ([`cut_edges`]: in which order along each edge, correctly rounded);
+//! 3. [`winding`]: how often each operand winds round the other's vertices;
+//! 4. [`identify`], [`cut`]: coincident points become one; kept pieces of cut faces become triangles;
+//! 5. [`tidy`]: what touches separates; triangles without area and needless vertices go;
+//! 6. [`assemble`]: untouched triangles keep their order, and vertices their bits.
+//!
+//! **Guaranteed** for any closed operands: the result is closed; it is the exact boolean with every new coordinate correctly
+//! rounded; operands that touch resolve as regularised set operations do; the same input gives the same bits on any number of
+//! threads. **Not guaranteed**: that rounding introduces no crossings of the size of an ulp.
 
 mod assemble;
+mod certificate;
 mod crossings;
 mod cut;
 mod cut_edges;
@@ -8,76 +26,60 @@ mod cut_faces;
 mod directions;
 mod identify;
 mod multiplicity;
+mod nary;
 mod operands;
+mod outcome;
 mod overlap;
 mod pair;
-mod tidy;
-mod winding;
 #[cfg(test)]
 mod scratch_tests;
+mod self_crossings;
+mod tidy;
+mod winding;
+
+pub use certificate::{Certificate, OperandState};
+pub use outcome::{Origin, Outcome};
 
 use crate::control::Control;
+use crate::parallel::Runner;
 use crate::{Error, Solid};
 
 /// A regularised boolean operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
-    /// What is in either.
+    /// What is in any operand.
     Union,
-    /// What is in both.
+    /// What is in all operands.
     Intersection,
     /// What is in the first and in none of the others.
     Difference,
-    /// What is in exactly one (of two), or in an odd number of them.
+    /// What is in an odd number of operands.
     SymmetricDifference,
 }
 
-/// Where a triangle of a result came from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Origin {
-    /// Position of the operand in the argument list.
-    pub operand: u32,
-    /// Index of the triangle in that operand's mesh.
-    pub triangle: u32,
-    /// Whether the result's triangle faces the other way.
-    pub reversed: bool,
+/// What becomes of operands of a union that touch without overlapping.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Contact {
+    /// Touching faces vanish: the bodies become one. (Bodies that touch in an edge or a vertex alone stay apart.)
+    #[default]
+    Fuse,
+    /// Touching bodies stay apart, each with its own face.
+    Separate,
 }
 
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PairOrigin(Origin);
-
-/// The result of a boolean.
+/// Settings of a boolean. The default has no limits and uses every thread of the current rayon pool.
 #[derive(Clone, Debug)]
-pub struct Outcome {
-    solid: Solid,
-    origins: Vec<Origin>,
-}
-
-impl Outcome {
-    /// The result; an empty one is a success.
-    #[must_use]
-    pub fn solid(&self) -> &Solid {
-        &self.solid
-    }
-
-    /// The result, by value.
-    #[must_use]
-    pub fn into_solid(self) -> Solid {
-        self.solid
-    }
-
-    /// For every triangle of the result, where it came from.
-    #[must_use]
-    pub fn origins(&self) -> &[Origin] {
-        &self.origins
-    }
-}
-
-/// Settings of a boolean. The default has no limits and uses every thread of the current pool.
-#[derive(Clone, Debug, Default)]
 pub struct Options {
     control: Control,
     threads: Option<usize>,
+    contact: Contact,
+    remove_vertices: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { control: Control::new(), threads: None, contact: Contact::Fuse, remove_vertices: true }
+    }
 }
 
 impl Options {
@@ -101,26 +103,71 @@ impl Options {
         self
     }
 
+    /// What becomes of operands of a union that touch. Default: [`Contact::Fuse`].
+    #[must_use]
+    pub fn contact(mut self, contact: Contact) -> Self {
+        self.contact = contact;
+        self
+    }
+
+    /// Whether vertices that the operation made and nobody needs are removed: inside a plane face, and on a straight crease
+    /// between two. Default: true. Faces of different groups are never merged.
+    #[must_use]
+    pub fn remove_vertices(mut self, remove: bool) -> Self {
+        self.remove_vertices = remove;
+        self
+    }
+
     /// Runs `operation` over any number of operands (for a difference: the first minus all the others).
     ///
+    /// An empty result is a success. An operand that crosses itself (see [`Solid::self_crossings`]) gives a closed result
+    /// in which regions count as often as they are enclosed; the certificate tells what is known of each operand.
+    ///
     /// # Errors
-    /// Only limits: [`Error::Cancelled`], [`Error::DeadlineExceeded`], [`Error::MemoryLimit`]; and
-    /// [`Error::InvalidArgument`] for an empty list.
+    /// Only limits: [`Error::Cancelled`], [`Error::DeadlineExceeded`], [`Error::MemoryLimit`]; [`Error::TooLarge`] if the
+    /// vertices of two operands and of their intersection cannot be numbered with 32 bits; and [`Error::InvalidArgument`]
+    /// for an empty list of operands, or where a pool of `threads` threads cannot be made.
     pub fn run(&self, operation: Operation, operands: &[&Solid]) -> Result<Outcome, Error> {
-        let [a, b] = operands else { return Err(Error::InvalidArgument("two operands for now".into())) };
-        let runner = crate::parallel::Runner::new(&self.control, self.threads != Some(1));
-        let result = pair::combine(operation, a, b, runner)?;
-        Ok(Outcome {
-            solid: Solid::try_from(crate::Mesh::new(result.positions, result.triangles))?,
-            origins: result.origins.iter().map(|origin| origin.0).collect(),
-        })
+        self.control.check()?;
+        if operands.is_empty() {
+            return Err(Error::InvalidArgument("a boolean needs at least one operand".into()));
+        }
+        match self.threads {
+            None => nary::run(self, operation, operands, Runner::new(&self.control, true)),
+            Some(0 | 1) => nary::run(self, operation, operands, Runner::new(&self.control, false)),
+            Some(threads) => self.run_in_pool(operation, operands, threads),
+        }
+    }
+
+    #[cfg(feature = "parallel")]
+    fn run_in_pool(
+        &self,
+        operation: Operation,
+        operands: &[&Solid],
+        threads: usize,
+    ) -> Result<Outcome, Error> {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| Error::InvalidArgument(format!("cannot make {threads} threads: {error}")))?;
+        pool.install(|| nary::run(self, operation, operands, Runner::new(&self.control, true)))
+    }
+
+    #[cfg(not(feature = "parallel"))]
+    fn run_in_pool(
+        &self,
+        operation: Operation,
+        operands: &[&Solid],
+        _threads: usize,
+    ) -> Result<Outcome, Error> {
+        nary::run(self, operation, operands, Runner::new(&self.control, false))
     }
 }
 
-/// `a` and `b` combined by `operation`.
+/// `a` and `b` combined by `operation`, with default [`Options`].
 ///
 /// # Errors
-/// None without limits; see [`Options::run`].
+/// [`Error::TooLarge`] if the vertices cannot be numbered with 32 bits.
 pub fn boolean(operation: Operation, a: &Solid, b: &Solid) -> Result<Outcome, Error> {
     Options::new().run(operation, &[a, b])
 }

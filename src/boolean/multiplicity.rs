@@ -67,7 +67,12 @@ pub(super) fn parts(operation: Operation) -> Vec<Part> {
         Operation::Intersection => vec![part(0, Inside, false), part(1, Inside, false)],
         Operation::Difference => vec![part(0, Outside, false), part(1, Inside, true)],
         Operation::SymmetricDifference => {
-            vec![part(0, Outside, false), part(0, Inside, true), part(1, Outside, false), part(1, Inside, true)]
+            vec![
+                part(0, Outside, false),
+                part(0, Inside, true),
+                part(1, Outside, false),
+                part(1, Inside, true),
+            ]
         }
     }
 }
@@ -81,7 +86,11 @@ mod tests {
         for operation in
             [Operation::Union, Operation::Intersection, Operation::Difference, Operation::SymmetricDifference]
         {
-            assert_eq!(parts(operation).into_iter().map(Part::segment_direction).sum::<i32>(), 0, "{operation:?}");
+            assert_eq!(
+                parts(operation).into_iter().map(Part::segment_direction).sum::<i32>(),
+                0,
+                "{operation:?}"
+            );
         }
     }
 

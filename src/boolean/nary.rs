@@ -6,7 +6,8 @@
 
 use std::borrow::Cow;
 
-use super::pair::{self, PairSettings};
+use super::certificate::{Notes, OperandState};
+use super::pair::{self, Settings};
 use super::{Contact, Operation, Options, Origin, Outcome};
 use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
@@ -62,7 +63,11 @@ pub(super) fn run(
         Operation::Union => engine.union(partials)?,
         Operation::Difference => {
             let first = partials.remove(0);
-            if partials.is_empty() { first } else { engine.combine(Operation::Difference, &first, &engine.union(partials)?)? }
+            if partials.is_empty() {
+                first
+            } else {
+                engine.combine(Operation::Difference, &first, &engine.union(partials)?)?
+            }
         }
         Operation::Intersection => {
             // Smallest first; the order of equal ones is that of the arguments.
@@ -71,7 +76,12 @@ pub(super) fn run(
         }
         Operation::SymmetricDifference => engine.fold(Operation::SymmetricDifference, partials)?,
     };
-    Ok(finish(result, groups.list))
+    let notes = Notes {
+        contacts: result.ties,
+        inverted: result.inverted,
+        operands: operands.iter().map(|solid| OperandState::of(solid)).collect(),
+    };
+    Ok(finish(result, groups.list, notes))
 }
 
 struct Engine<'o> {
@@ -117,8 +127,13 @@ impl Engine<'_> {
         level.pop().ok_or_else(no_operands)
     }
 
-    fn combine<'a>(&self, operation: Operation, a: &Partial<'_>, b: &Partial<'_>) -> Result<Partial<'a>, Error> {
-        let settings = PairSettings {
+    fn combine<'a>(
+        &self,
+        operation: Operation,
+        a: &Partial<'_>,
+        b: &Partial<'_>,
+    ) -> Result<Partial<'a>, Error> {
+        let settings = Settings {
             swell: operation == Operation::Union && self.options.contact == Contact::Fuse,
             remove_vertices: self.options.remove_vertices,
             groups: [&a.groups, &b.groups],
@@ -142,7 +157,10 @@ impl Engine<'_> {
         let groups = if a.groups.is_empty() {
             Vec::new()
         } else {
-            made.origins.iter().map(|origin| sources[origin.operand as usize].groups[origin.triangle as usize]).collect()
+            made.origins
+                .iter()
+                .map(|origin| sources[origin.operand as usize].groups[origin.triangle as usize])
+                .collect()
         };
         Ok(Partial {
             solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(made.positions, made.triangles))),
@@ -158,7 +176,7 @@ fn no_operands() -> Error {
     Error::InvalidArgument("a boolean needs at least one operand".into())
 }
 
-fn finish(result: Partial<'_>, list: Vec<FaceGroup>) -> Outcome {
+fn finish(result: Partial<'_>, list: Vec<FaceGroup>, notes: Notes) -> Outcome {
     let count = result.solid.mesh().triangles.len() as u32;
     let origins = match result.origins {
         Origins::List(list) => list,
@@ -166,7 +184,7 @@ fn finish(result: Partial<'_>, list: Vec<FaceGroup>) -> Outcome {
     };
     let mut solid = result.solid.into_owned();
     solid.set_groups(FaceGroups { list, of_triangle: result.groups });
-    Outcome::new(solid, origins, result.ties, result.inverted)
+    Outcome::new(solid, origins, notes)
 }
 
 /// Sorts operands so that neighbours in the list are neighbours in space.
@@ -177,8 +195,10 @@ fn in_morton_order(partials: Vec<Partial<'_>>) -> Vec<Partial<'_>> {
     let centres: Vec<[f64; 3]> = partials
         .iter()
         .map(|partial| {
-            let (low, high) = partial.solid.bounds().unwrap_or(([0.0; 3], [0.0; 3]));
-            std::array::from_fn(|k| 0.5 * low[k] + 0.5 * high[k])
+            partial
+                .solid
+                .bounds()
+                .map_or([0.0; 3], |b| std::array::from_fn(|k| 0.5 * b.low[k] + 0.5 * b.high[k]))
         })
         .collect();
     let codes = crate::spatial::morton_codes(&centres);

@@ -1,13 +1,11 @@
 //! What of each operand can meet the other: a few passes over the arrays, before anything is built.
 
 use super::operands::Operand;
-
-/// Lower and upper corner of a box.
-pub(super) type Bounds = ([f64; 3], [f64; 3]);
+use crate::mesh::Bounds;
 
 /// For each vertex on which sides of a box it lies outside, as six bits; 0 inside or on the boundary.
 pub(super) fn outcodes(operand: &Operand<'_>, bounds: &Bounds) -> Vec<u8> {
-    let (low, high) = bounds;
+    let Bounds { low, high } = bounds;
     operand
         .positions
         .iter()
@@ -35,7 +33,7 @@ pub(super) fn near_triangles(operand: &Operand<'_>, outcodes: &[u8]) -> Vec<u32>
 
 /// The common part of two boxes, if there is one (touching boxes have one).
 pub(super) fn intersection(a: &Bounds, b: &Bounds) -> Option<Bounds> {
-    let low: [f64; 3] = std::array::from_fn(|k| a.0[k].max(b.0[k]));
-    let high: [f64; 3] = std::array::from_fn(|k| a.1[k].min(b.1[k]));
-    (0..3).all(|k| low[k] <= high[k]).then_some((low, high))
+    let low: [f64; 3] = std::array::from_fn(|k| a.low[k].max(b.low[k]));
+    let high: [f64; 3] = std::array::from_fn(|k| a.high[k].min(b.high[k]));
+    (0..3).all(|k| low[k] <= high[k]).then_some(Bounds { low, high })
 }

@@ -9,57 +9,52 @@ use super::cut_faces::CutFaces;
 use super::identify::Identification;
 use super::multiplicity;
 use super::operands::{Operand, Operands};
-use super::overlap::{self, Bounds};
+use super::outcome::Origin;
+use super::overlap;
 use super::tidy;
 use super::winding;
-use super::PairOrigin;
+use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame, overlapping_pairs};
 use crate::{Error, Solid};
 
-fn bounds_of(positions: &[[f64; 3]]) -> Bounds {
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for p in positions {
-        for k in 0..3 {
-            low[k] = low[k].min(p[k]);
-            high[k] = high[k].max(p[k]);
-        }
-    }
-    (low, high)
+/// Settings of one combination.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings<'a> {
+    /// Whether A swells by an infinitesimal (else it shrinks): touching parts fuse.
+    pub(super) swell: bool,
+    /// Whether vertices that nobody needs are removed.
+    pub(super) remove_vertices: bool,
+    /// The result's group of each triangle of A and of B; empty if there are no groups.
+    pub(super) groups: [&'a [u32]; 2],
 }
 
 /// Combines two solids.
-pub(super) fn combine(operation: Operation, a: &Solid, b: &Solid, runner: Runner<'_>) -> Result<Assembled, Error> {
+pub(super) fn combine(
+    operation: Operation,
+    a: &Solid,
+    b: &Solid,
+    settings: Settings<'_>,
+    runner: Runner<'_>,
+) -> Result<Assembled, Error> {
     let sides = [a, b].map(|solid| Operand {
         positions: solid.mesh().positions.as_slice(),
         triangles: solid.mesh().triangles.as_slice(),
     });
+    // The box of an empty operand meets nothing.
+    let bounds = [a, b].map(|solid| solid.bounds().unwrap_or(Bounds::NOTHING));
     let parts = multiplicity::parts(operation);
-    let bounds = sides.map(|side| bounds_of(side.positions));
-    let sense = if operation == Operation::Union { 1 } else { -1 };
-    let largest = bounds.iter().flat_map(|(l, h)| l.iter().chain(h)).fold(0.0f64, |m, x| m.max(x.abs()));
 
     let outcodes = [overlap::outcodes(&sides[0], &bounds[1]), overlap::outcodes(&sides[1], &bounds[0])];
-    let near = [
-        overlap::near_triangles(&sides[0], &outcodes[0]),
-        overlap::near_triangles(&sides[1], &outcodes[1]),
-    ];
-    let operands = Operands::new(sides, sense, largest, near);
-    let pairs = match overlap::intersection(&bounds[0], &bounds[1]) {
-        Some(common) => {
-            let frame = Frame::of(common.0, common.1);
-            let tree = |side: usize| {
-                let operand = &operands.sides[side];
-                BoxTree::new(operands.near(side), |t| {
-                    frame.triangle(operand.triangles[t as usize].map(|v| &operand.positions[v as usize]))
-                })
-            };
-            overlapping_pairs(&tree(0), &tree(1), runner)?
-        }
-        None => Vec::new(),
-    };
+    let near = [0, 1].map(|side| overlap::near_triangles(&sides[side], &outcodes[side]));
+    let largest =
+        bounds.iter().flat_map(|b| b.low.iter().chain(&b.high)).fold(0.0f64, |most, x| most.max(x.abs()));
+    let operands = Operands::new(sides, if settings.swell { 1 } else { -1 }, largest, near);
+    runner.control.check()?;
+
+    let pairs = candidate_pairs(&operands, &bounds, runner)?;
     let crossings: Crossings = crossings::find(&operands, &pairs, runner)?;
+    drop(pairs);
     let edges = CutEdges::new(&operands, &crossings, runner)?;
     let faces = [0, 1].map(|side| CutFaces::new(&operands, side, &crossings, &edges));
     let mut windings = [Vec::new(), Vec::new()];
@@ -84,20 +79,29 @@ pub(super) fn combine(operation: Operation, a: &Solid, b: &Solid, runner: Runner
         windings: &windings,
         identification: &identification,
     };
-    let mut new = Vec::new();
+    let (mut pieces, mut inverted) = (Vec::new(), 0);
     for &part in &parts {
-        new.extend(cutter.cut(part, runner)?.into_iter().map(|piece| NewTriangle {
+        let cut = cutter.cut(part, runner)?;
+        inverted += cut.inverted;
+        pieces.extend(cut.pieces.into_iter().map(|piece| NewTriangle {
             corners: piece.corners,
-            origin: PairOrigin::new(part.side, piece.triangle, part.reversed),
+            origin: Origin { operand: part.side as u32, triangle: piece.triangle, reversed: part.reversed },
         }));
     }
-    let settings = tidy::Settings { remove_vertices: true, groups: [&[], &[]], irregular: [&[], &[]] };
-    let tidied = tidy::tidy(&cutter, &outcodes, &parts, &new, &settings, runner)?;
+    let tidy_settings = tidy::Settings {
+        remove_vertices: settings.remove_vertices,
+        groups: settings.groups,
+        irregular: [&[], &[]],
+        // All parts of both surfaces meet in the curve: four triangles at each of its edges.
+        always: operation == Operation::SymmetricDifference,
+    };
+    let tidied = tidy::tidy(&cutter, &outcodes, &parts, &pieces, &tidy_settings, runner)?;
     let (new, replaced, copies) = match tidied {
         Some(tidied) => (tidied.new, Some(tidied.replaced), tidied.copies),
-        None => (new, None, Vec::new()),
+        None => (pieces, None, Vec::new()),
     };
-    Ok(Ingredients {
+    runner.control.check()?;
+    let ingredients = Ingredients {
         operands: &operands,
         parts: &parts,
         faces: &faces,
@@ -107,6 +111,24 @@ pub(super) fn combine(operation: Operation, a: &Solid, b: &Solid, runner: Runner
         new: &new,
         replaced: replaced.as_ref(),
         copies: &copies,
-    }
-    .assemble())
+    };
+    Ok(Assembled { ties: operands.ties(), inverted, ..ingredients.assemble() })
+}
+
+/// Pairs of triangles whose boxes meet.
+fn candidate_pairs(
+    operands: &Operands<'_>,
+    bounds: &[Bounds; 2],
+    runner: Runner<'_>,
+) -> Result<Vec<[u32; 2]>, Error> {
+    let Some(common) = overlap::intersection(&bounds[0], &bounds[1]) else { return Ok(Vec::new()) };
+    let frame = Frame::of(common.low, common.high);
+    let tree = |side: usize| {
+        let operand = &operands.sides[side];
+        BoxTree::new(operands.near(side), |t| {
+            frame.triangle(operand.triangles[t as usize].map(|v| &operand.positions[v as usize]))
+        })
+    };
+    let (a, b) = runner.both(|| tree(0), || tree(1));
+    overlapping_pairs(&a, &b, runner)
 }

@@ -13,8 +13,18 @@ pub(crate) fn cube(lo: [f64; 3], hi: [f64; 3]) -> Mesh {
     Mesh::new(
         (0..8).map(p).collect(),
         vec![
-            [0, 2, 1], [1, 2, 3], [4, 5, 6], [5, 7, 6], [0, 1, 4], [1, 5, 4],
-            [2, 6, 3], [3, 6, 7], [0, 4, 2], [2, 4, 6], [1, 3, 5], [3, 7, 5],
+            [0, 2, 1],
+            [1, 2, 3],
+            [4, 5, 6],
+            [5, 7, 6],
+            [0, 1, 4],
+            [1, 5, 4],
+            [2, 6, 3],
+            [3, 6, 7],
+            [0, 4, 2],
+            [2, 4, 6],
+            [1, 3, 5],
+            [3, 7, 5],
         ],
     )
 }
@@ -30,7 +40,15 @@ pub(crate) fn sphere(n: u32, c: [f64; 3], turn: f64) -> Mesh {
             p.push([a.sin() * b.cos(), a.sin() * b.sin(), a.cos()]);
         }
     }
-    let id = |i: u32, j: u32| if i == 0 { 0 } else if i == n { 1 } else { 2 + (i - 1) * m + j % m };
+    let id = |i: u32, j: u32| {
+        if i == 0 {
+            0
+        } else if i == n {
+            1
+        } else {
+            2 + (i - 1) * m + j % m
+        }
+    };
     for i in 0..n {
         for j in 0..m {
             let (a, b, c, d) = (id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1));
@@ -55,7 +73,10 @@ pub(crate) fn volume(m: &Mesh) -> f64 {
         .iter()
         .map(|t| {
             let [a, b, c] = t.map(|v| m.positions[v as usize]);
-            (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6.0
+            (a[0] * (b[1] * c[2] - b[2] * c[1])
+                + a[1] * (b[2] * c[0] - b[0] * c[2])
+                + a[2] * (b[0] * c[1] - b[1] * c[0]))
+                / 6.0
         })
         .sum()
 }
@@ -73,7 +94,13 @@ pub(crate) fn state(m: &Mesh) -> (usize, usize, bool, bool, usize) {
             zero += 1;
         }
     }
-    (m.positions.len(), m.triangles.len(), e.values().all(|x| x.0 == x.1), e.values().all(|x| *x == (1, 1)), zero)
+    (
+        m.positions.len(),
+        m.triangles.len(),
+        e.values().all(|x| x.0 == x.1),
+        e.values().all(|x| *x == (1, 1)),
+        zero,
+    )
 }
 pub(crate) fn run(op: Operation, a: &Mesh, b: &Mesh) -> Mesh {
     let s = |m: &Mesh| Solid::try_from(m.clone()).unwrap();
@@ -101,7 +128,9 @@ fn table() {
         ("same spheres", sphere(20, [0.; 3], 0.3), sphere(20, [0.; 3], 0.3)),
     ];
     for (n, a, b) in &cases {
-        for op in [Operation::Union, Operation::Intersection, Operation::Difference, Operation::SymmetricDifference] {
+        for op in
+            [Operation::Union, Operation::Intersection, Operation::Difference, Operation::SymmetricDifference]
+        {
             let r = run(op, a, b);
             println!("{n:14} {op:?} vol {:.6} v,t,closed,manifold,zero {:?}", volume(&r), state(&r));
         }

@@ -49,8 +49,9 @@ fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     let nothing = Operand { positions: &[], triangles: &[] };
     let operands = Operands::alone([operand, nothing], largest, all.clone());
     let frame = Frame::of(bounds.low, bounds.high);
-    let tree =
-        BoxTree::new(&all, |t| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize])));
+    let tree = BoxTree::new(&all, |t| {
+        frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]))
+    });
     let surface = Surface { operands, tree, frame, high: bounds.high, low: bounds.low, tolerance };
     let pairs = self_overlapping_pairs(&surface.tree, runner, |[s, t]| {
         let (a, b) = (mesh.triangles[s as usize], mesh.triangles[t as usize]);
@@ -142,7 +143,8 @@ impl Surface<'_> {
     /// As [`crossing`](Self::crossing), for triangles with one corner in common: one of the sides opposite it must pass the
     /// other triangle.
     fn crossing_at_common_corner(&self, a: &[Corner; 3], b: &[Corner; 3]) -> Option<[[f64; 3]; 2]> {
-        let shared = |t: &[Corner; 3], other: &[Corner; 3]| t.iter().position(|x| other.iter().any(|y| y.id == x.id));
+        let shared =
+            |t: &[Corner; 3], other: &[Corner; 3]| t.iter().position(|x| other.iter().any(|y| y.id == x.id));
         let (i, j) = (shared(a, b)?, shared(b, a)?);
         for (t, k, plane) in [(a, i, b), (b, j, a)] {
             let (p, q) = (&t[(k + 1) % 3], &t[(k + 2) % 3]);
@@ -157,7 +159,8 @@ impl Surface<'_> {
     /// Whether a line through a plane passes the triangle in it.
     fn passes(&self, p: &Corner, q: &Corner, t: &[Corner; 3]) -> bool {
         let first = self.operands.positive(p, q, &t[0], &t[1]);
-        self.operands.positive(p, q, &t[1], &t[2]) == first && self.operands.positive(p, q, &t[2], &t[0]) == first
+        self.operands.positive(p, q, &t[1], &t[2]) == first
+            && self.operands.positive(p, q, &t[2], &t[0]) == first
     }
 
     /// Whether some point beside a shallow crossing, clear of the surface, has a winding number other than 0 and 1.
@@ -189,7 +192,8 @@ impl Surface<'_> {
         let end = Corner { id: first_free + 1, position: [end_x, point[1], point[2]] };
         let query = self.frame.triangle([&start.position, &start.position, &end.position]);
         let mut sum = 0;
-        self.tree.meeting(&query, |t| sum += super::winding::ray_crossing(&self.operands, 0, t, &start, &end));
+        self.tree
+            .meeting(&query, |t| sum += super::winding::ray_crossing(&self.operands, 0, t, &start, &end));
         sum
     }
 
@@ -200,7 +204,8 @@ impl Surface<'_> {
         let mut clear = true;
         self.tree.meeting(&self.frame.triangle([&low, &high, &high]), |t| {
             let corners = self.operands.corners(0, t);
-            let near = unit_normal(&corners).is_none_or(|normal| height(&normal, &corners[0].position, point).abs() < reach);
+            let near = unit_normal(&corners)
+                .is_none_or(|normal| height(&normal, &corners[0].position, point).abs() < reach);
             let boxed = (0..3).all(|k| {
                 let [a, b, c] = corners.map(|corner| corner.position[k]);
                 a.min(b).min(c) <= high[k] && low[k] <= a.max(b).max(c)
@@ -242,7 +247,8 @@ fn unit_normal(t: &[Corner; 3]) -> Option<[f64; 3]> {
     }
     u = u.map(|x| x / size);
     v = v.map(|x| x / size);
-    let cross: [f64; 3] = std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+    let cross: [f64; 3] =
+        std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
     let length = norm(&cross);
     (length > 0.0).then(|| cross.map(|x| x / length))
 }

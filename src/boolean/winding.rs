@@ -9,8 +9,8 @@ use super::crossings::Crossings;
 use super::cut_edges::CutEdges;
 use super::cut_faces::{CutFaces, UNCUT};
 use super::operands::{Corner, Operands};
-use super::overlap::Bounds;
 use crate::Error;
+use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame};
 
@@ -173,7 +173,7 @@ fn cast_rays(
     runner: Runner<'_>,
 ) -> Result<Vec<i32>, Error> {
     let other = &operands.sides[1 - side];
-    let end_x = beyond(bounds.0[0], bounds.1[0]);
+    let end_x = beyond(bounds.low[0], bounds.high[0]);
     let ray = |index: usize| {
         let start = operands.corner(operands.first_vertex(side) + seeds[index]);
         let end = Corner {
@@ -186,13 +186,15 @@ fn cast_rays(
         let values = runner.pieces(seeds.len(), 1, |range| {
             let (start, end) = ray(range.start);
             (0..other.triangles.len() as u32)
-                .filter(|&t| may_meet(other.triangles[t as usize].map(|v| &other.positions[v as usize]), &start))
+                .filter(|&t| {
+                    may_meet(other.triangles[t as usize].map(|v| &other.positions[v as usize]), &start)
+                })
                 .map(|t| ray_crossing(operands, 1 - side, t, &start, &end))
                 .sum()
         })?;
         return Ok(values);
     }
-    let frame = Frame::of(bounds.0, bounds.1);
+    let frame = Frame::of(bounds.low, bounds.high);
     let all: Vec<u32> = (0..other.triangles.len() as u32).collect();
     let box_of = |t: u32| frame.triangle(other.triangles[t as usize].map(|v| &other.positions[v as usize]));
     let tree = BoxTree::new(&all, box_of);
@@ -224,7 +226,13 @@ fn may_meet(corners: [&[f64; 3]; 3], start: &Corner) -> bool {
 }
 
 /// +1 where the way from `start` to `end` leaves the triangle's solid, -1 where it enters it, 0 where they do not meet.
-pub(super) fn ray_crossing(operands: &Operands<'_>, side: usize, triangle: u32, start: &Corner, end: &Corner) -> i32 {
+pub(super) fn ray_crossing(
+    operands: &Operands<'_>,
+    side: usize,
+    triangle: u32,
+    start: &Corner,
+    end: &Corner,
+) -> i32 {
     let [a, b, c] = operands.corners(side, triangle);
     let start_inside = operands.positive(&a, &b, &c, start);
     if operands.positive(&a, &b, &c, end) == start_inside {

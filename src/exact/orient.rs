@@ -209,7 +209,7 @@ mod tests {
         let mut zeros = 0;
         for round in 0..20_000 {
             let kind = round % 9;
-            let mut point = |rng: &mut ChaCha8Rng| -> [f64; 3] {
+            let point = |rng: &mut ChaCha8Rng| -> [f64; 3] {
                 std::array::from_fn(|_| {
                     let kind = if kind == 8 { rng.random_range(0..8) } else { kind };
                     wild(rng, kind)

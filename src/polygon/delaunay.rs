@@ -54,8 +54,10 @@ fn attempt(points: &[[f64; 2]], rings: &[&[u32]]) -> Option<Vec<[u32; 3]>> {
     let count = vertices.len();
     let mut conflict = false;
     let triangulation =
-        ConstrainedDelaunayTriangulation::<Vertex>::try_bulk_load_cdt(vertices, constraints, |_| conflict = true)
-            .ok()?;
+        ConstrainedDelaunayTriangulation::<Vertex>::try_bulk_load_cdt(vertices, constraints, |_| {
+            conflict = true
+        })
+        .ok()?;
     if conflict || triangulation.num_vertices() != count {
         return None;
     }

@@ -9,7 +9,7 @@ pub(super) fn is_counter_clockwise(points: &[[f64; 2]], corners: [u32; 3]) -> bo
 }
 
 /// Shape of a triangle: twice its signed area over the square of its longest side; about 0.87 for an equilateral one.
-pub(crate) fn triangle_quality(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+fn triangle_quality(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     let edge = |p: [f64; 2], q: [f64; 2]| [q[0] - p[0], q[1] - p[1]];
     let square = |v: [f64; 2]| v[0] * v[0] + v[1] * v[1];
     let (u, v, w) = (edge(a, b), edge(b, c), edge(c, a));
@@ -40,7 +40,12 @@ pub(super) struct EarClipper {
 impl EarClipper {
     /// Triangulates a closed loop into `n - 2` triangles that use each of its edges once. Returns whether all are
     /// counter-clockwise; where no ear is left, the least bad corner is cut off.
-    pub(super) fn clip(&mut self, points: &[[f64; 2]], polygon: &[u32], triangles: &mut Vec<[u32; 3]>) -> bool {
+    pub(super) fn clip(
+        &mut self,
+        points: &[[f64; 2]],
+        polygon: &[u32],
+        triangles: &mut Vec<[u32; 3]>,
+    ) -> bool {
         let n = polygon.len();
         if n < 3 {
             return true;
@@ -95,8 +100,7 @@ impl EarClipper {
         for link in 0..n {
             self.links[link as usize].quality = self.quality(points, link);
         }
-        self.repeated =
-            (1..polygon.len()).any(|i| polygon[..i].contains(&polygon[i]));
+        self.repeated = (1..polygon.len()).any(|i| polygon[..i].contains(&polygon[i]));
     }
 
     fn corners(&self, link: u32) -> [u32; 3] {

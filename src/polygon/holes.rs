@@ -146,7 +146,11 @@ fn sight_line(
 fn in_cone(before: [f64; 2], here: [f64; 2], after: [f64; 2], target: [f64; 2]) -> bool {
     let left_of_out = orient2d(here, after, target) == Sign::Positive;
     let left_of_in = orient2d(before, here, target) == Sign::Positive;
-    if orient2d(before, here, after) == Sign::Positive { left_of_out && left_of_in } else { left_of_out || left_of_in }
+    if orient2d(before, here, after) == Sign::Positive {
+        left_of_out && left_of_in
+    } else {
+        left_of_out || left_of_in
+    }
 }
 
 /// Whether the segment between two vertices meets an edge of a loop other than at the vertices themselves.

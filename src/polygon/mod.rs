@@ -10,8 +10,6 @@ mod ears;
 mod holes;
 mod loops;
 
-pub(crate) use ears::triangle_quality;
-
 /// From this many vertices a constrained Delaunay triangulation replaces ear clipping.
 const DELAUNAY_FROM: usize = 40;
 
@@ -47,14 +45,24 @@ impl Triangulator {
     }
 
     /// Triangulates one closed loop; `false` if some triangle is not counter-clockwise.
-    pub(crate) fn simple(&mut self, points: &[[f64; 2]], polygon: &[u32], triangles: &mut Vec<[u32; 3]>) -> bool {
+    pub(crate) fn simple(
+        &mut self,
+        points: &[[f64; 2]],
+        polygon: &[u32],
+        triangles: &mut Vec<[u32; 3]>,
+    ) -> bool {
         if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate(points, &[polygon], triangles) {
             return true;
         }
         self.ears.clip(points, polygon, triangles)
     }
 
-    fn with_holes(&mut self, points: &[[f64; 2]], polygon: &holes::Polygon, triangles: &mut Vec<[u32; 3]>) -> bool {
+    fn with_holes(
+        &mut self,
+        points: &[[f64; 2]],
+        polygon: &holes::Polygon,
+        triangles: &mut Vec<[u32; 3]>,
+    ) -> bool {
         if polygon.holes.is_empty() {
             return self.simple(points, &polygon.outer, triangles);
         }
@@ -84,7 +92,8 @@ impl Triangulator {
 fn single_triangle(edges: &[[u32; 2]]) -> Option<[u32; 3]> {
     let [first, second, third] = edges else { return None };
     let (next, last) = if second[0] == first[1] { (second, third) } else { (third, second) };
-    (first[1] == next[0] && next[1] == last[0] && last[1] == first[0]).then_some([first[0], first[1], next[1]])
+    (first[1] == next[0] && next[1] == last[0] && last[1] == first[0])
+        .then_some([first[0], first[1], next[1]])
 }
 
 #[cfg(test)]

@@ -112,7 +112,11 @@ impl BoxTree {
 }
 
 /// All pairs of an item of `a` and an item of `b` whose boxes meet, in an order that depends on the trees alone.
-pub(crate) fn overlapping_pairs(a: &BoxTree, b: &BoxTree, runner: Runner<'_>) -> Result<Vec<[u32; 2]>, Error> {
+pub(crate) fn overlapping_pairs(
+    a: &BoxTree,
+    b: &BoxTree,
+    runner: Runner<'_>,
+) -> Result<Vec<[u32; 2]>, Error> {
     // Open the pair of roots until there are enough pairs of subtrees to share out.
     const TASKS: usize = 256;
     let (Some(root_a), Some(root_b)) = (a.root(), b.root()) else { return Ok(Vec::new()) };
@@ -234,11 +238,13 @@ fn walk(a: &BoxTree, b: &BoxTree, x: Node, y: Node, pairs: &mut Vec<[u32; 2]>) {
 }
 
 fn union(boxes: &[Aabb]) -> Aabb {
-    boxes[1..].iter().fold(boxes[0], |sum, aabb| Aabb { min: sum.min.min(aabb.min), max: sum.max.max(aabb.max) })
+    boxes[1..]
+        .iter()
+        .fold(boxes[0], |sum, aabb| Aabb { min: sum.min.min(aabb.min), max: sum.max.max(aabb.max) })
 }
 
 /// The Morton code of a point with coordinates in 0..=1023.
-fn morton(point: Vec3A) -> u32 {
+pub(super) fn morton(point: Vec3A) -> u32 {
     let spread = |x: f32| {
         let mut bits = (x as u32).min(1023);
         bits = (bits | bits << 16) & 0x0300_00ff;
@@ -277,7 +283,8 @@ mod tests {
             };
             let (tree_a, tree_b) = (tree(&a), tree(&b));
             let control = Control::new();
-            let mut pairs = overlapping_pairs(&tree_a, &tree_b, Runner::new(&control, true)).expect("no limits");
+            let mut pairs =
+                overlapping_pairs(&tree_a, &tree_b, Runner::new(&control, true)).expect("no limits");
             pairs.sort_unstable();
             let mut expected = Vec::new();
             for (i, x) in a.iter().enumerate() {
@@ -302,7 +309,8 @@ mod tests {
             let tree = BoxTree::new(&items, |i| boxes[i as usize]);
             let control = Control::new();
             let mut pairs =
-                self_overlapping_pairs(&tree, Runner::new(&control, true), |pair| pair[0] % 7 != 3).expect("no limits");
+                self_overlapping_pairs(&tree, Runner::new(&control, true), |pair| pair[0] % 7 != 3)
+                    .expect("no limits");
             pairs.sort_unstable();
             let mut expected = Vec::new();
             for i in 0..n {

@@ -6,3 +6,12 @@ mod frame;
 
 pub(crate) use box_tree::{BoxTree, overlapping_pairs, self_overlapping_pairs};
 pub(crate) use frame::Frame;
+
+/// For each point a number that sorts points which are near each other near each other.
+pub(crate) fn morton_codes(points: &[[f64; 3]]) -> Vec<u64> {
+    let low: [f64; 3] = std::array::from_fn(|k| points.iter().fold(f64::INFINITY, |low, p| low.min(p[k])));
+    let high: [f64; 3] =
+        std::array::from_fn(|k| points.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[k])));
+    let frame = Frame::of(low, high);
+    points.iter().map(|point| u64::from(box_tree::morton((frame.point(point) + 2.0) * 255.0))).collect()
+}

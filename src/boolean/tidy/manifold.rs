@@ -144,7 +144,9 @@ impl Around {
         [(0, 1), (1, 2), (2, 0)]
             .iter()
             .map(|&(i, j)| {
-                let side = |p: &[f64; 3]| orient2d([self.from[i], self.from[j]], [self.to[i], self.to[j]], [p[i], p[j]]);
+                let side = |p: &[f64; 3]| {
+                    orient2d([self.from[i], self.from[j]], [self.to[i], self.to[j]], [p[i], p[j]])
+                };
                 (side(x), side(y))
             })
             .find(|&(x, _)| x != Sign::Zero)
@@ -244,7 +246,8 @@ fn separate_parallel_edges(patch: &mut Patch<'_>, twins: &[HalfEdge]) {
         let start = (0..outline.len()).find(|&i| !face.corners.contains(&outline[i])).unwrap_or(0);
         outline.rotate_left(start);
         let fan = (1..outline.len() - 1).map(|i| [outline[0], outline[i], outline[i + 1]]);
-        let new: Vec<_> = fan.map(|corners| super::patch::Face { corners, untouched: false, ..face }).collect();
+        let new: Vec<_> =
+            fan.map(|corners| super::patch::Face { corners, untouched: false, ..face }).collect();
         patch.faces[index as usize] = new[0];
         patch.faces.extend_from_slice(&new[1..]);
     }

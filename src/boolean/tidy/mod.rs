@@ -37,6 +37,8 @@ pub(super) struct Settings<'a> {
     pub(super) groups: [&'a [u32]; 2],
     /// Vertices of each operand at which its own surface is not 2-manifold, ascending.
     pub(super) irregular: [&'a [u32]; 2],
+    /// Whether to look even where nothing points to work.
+    pub(super) always: bool,
 }
 
 /// Tidies the pieces of a result; `None` where there is nothing to do.
@@ -50,7 +52,8 @@ pub(super) fn tidy(
 ) -> Result<Option<Tidied>, Error> {
     let planes = planes::Planes { operands: cutter.operands, groups: settings.groups };
     let mut candidates = if settings.remove_vertices { planes.removable_nodes(cutter) } else { Vec::new() };
-    let regular = cutter.identification.is_empty()
+    let regular = !settings.always
+        && cutter.identification.is_empty()
         && candidates.is_empty()
         && settings.irregular.iter().all(|list| list.is_empty())
         && !has_repeats(cutter);
@@ -65,7 +68,13 @@ pub(super) fn tidy(
     patch.cancel();
     runner.control.check()?;
     let copied_from = manifold::make_manifold(&mut patch);
-    candidates.extend(copied_from.iter().filter(|(_, of)| candidates.contains(of)).map(|&(copy, _)| copy).collect::<Vec<_>>());
+    candidates.extend(
+        copied_from
+            .iter()
+            .filter(|(_, of)| candidates.contains(of))
+            .map(|&(copy, _)| copy)
+            .collect::<Vec<_>>(),
+    );
     patch.connect();
     runner.control.check()?;
     zero_area::flip(&mut patch);

@@ -2,19 +2,18 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::super::PairOrigin;
 use super::super::assemble::NewTriangle;
 use super::super::cut::Cutter;
 use super::super::cut_faces::BitSet;
 use super::super::multiplicity::Part;
-use super::super::operands::Operands;
+use super::super::outcome::Origin;
 use super::Tidied;
 
 /// A triangle of the patch.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
     pub(super) corners: [u32; 3],
-    pub(super) origin: PairOrigin,
+    pub(super) origin: Origin,
     /// The only copy of an uncut triangle, with its corners as they were.
     pub(super) untouched: bool,
     pub(super) alive: bool,
@@ -111,10 +110,6 @@ impl<'a> Patch<'a> {
         patch
     }
 
-    pub(super) fn operands(&self) -> &'a Operands<'a> {
-        self.cutter.operands
-    }
-
     /// Whether all triangles at a point are in the patch.
     pub(super) fn is_complete(&self, point: u32) -> bool {
         point >= self.first_copy || self.complete.get(point)
@@ -173,7 +168,7 @@ impl<'a> Patch<'a> {
             let [a, b, c] = points;
             let face = Face {
                 corners: if reversed { [a, c, b] } else { [a, b, c] },
-                origin: PairOrigin::new(part.side, t, reversed),
+                origin: Origin { operand: part.side as u32, triangle: t, reversed },
                 untouched: count.abs() == 1,
                 alive: true,
             };
@@ -276,7 +271,7 @@ impl<'a> Patch<'a> {
     }
 
     /// Replaces triangles by others.
-    pub(super) fn replace(&mut self, old: &[u32], new: &[([u32; 3], PairOrigin)]) {
+    pub(super) fn replace(&mut self, old: &[u32], new: &[([u32; 3], Origin)]) {
         for &index in old {
             let corners = self.faces[index as usize].corners;
             for k in 0..3 {
@@ -326,12 +321,12 @@ impl<'a> Patch<'a> {
         let mut new = Vec::new();
         for face in self.faces.iter().filter(|face| face.alive) {
             if face.untouched {
-                replaced[face.origin.0.operand as usize].remove(face.origin.0.triangle);
+                replaced[face.origin.operand as usize].remove(face.origin.triangle);
             } else {
                 new.push(NewTriangle { corners: face.corners, origin: face.origin });
             }
         }
-        new.sort_by_key(|triangle| (triangle.origin.0.operand, triangle.origin.0.triangle));
+        new.sort_by_key(|triangle| (triangle.origin.operand, triangle.origin.triangle));
         Tidied { new, replaced, copies: self.copies }
     }
 }

@@ -1,8 +1,8 @@
 //! Which faces of the result lie in one plane, by the exact planes of their source triangles.
 
-use super::super::PairOrigin;
 use super::super::cut::Cutter;
 use super::super::operands::Operands;
+use super::super::outcome::Origin;
 use crate::exact::{Sign, collinear, orient3d, orient3d_filter};
 
 /// Compares source planes of triangles of the result.
@@ -13,37 +13,35 @@ pub(super) struct Planes<'a> {
 }
 
 impl Planes<'_> {
-    fn corners(&self, origin: PairOrigin) -> [[f64; 3]; 3] {
-        let origin = origin.0;
+    fn corners(&self, origin: Origin) -> [[f64; 3]; 3] {
         let [a, b, c] =
             self.operands.corners(origin.operand as usize, origin.triangle).map(|corner| corner.position);
         if origin.reversed { [a, c, b] } else { [a, b, c] }
     }
 
-    fn group(&self, origin: PairOrigin) -> u32 {
-        let origin = origin.0;
+    fn group(&self, origin: Origin) -> u32 {
         self.groups[origin.operand as usize].get(origin.triangle as usize).copied().unwrap_or(0)
     }
 
     /// The source triangle of a face, as it is oriented in the result.
-    pub(super) fn source(&self, origin: PairOrigin) -> [[f64; 3]; 3] {
+    pub(super) fn source(&self, origin: Origin) -> [[f64; 3]; 3] {
         self.corners(origin)
     }
 
     /// Whether two faces look the same way from the same plane and belong to the same group, so that the border between
     /// them means nothing.
-    pub(super) fn mergeable(&self, x: PairOrigin, y: PairOrigin) -> bool {
+    pub(super) fn mergeable(&self, x: Origin, y: Origin) -> bool {
         if self.group(x) != self.group(y) {
             return false;
         }
-        if x.0.operand == y.0.operand && x.0.triangle == y.0.triangle {
-            return x.0.reversed == y.0.reversed;
+        if x.operand == y.operand && x.triangle == y.triangle {
+            return x.reversed == y.reversed;
         }
         self.coplanar(x, y) && same_way(&self.corners(x), &self.corners(y))
     }
 
     /// Whether two faces lie in the same plane, exactly; false for source triangles without area.
-    pub(super) fn coplanar(&self, x: PairOrigin, y: PairOrigin) -> bool {
+    pub(super) fn coplanar(&self, x: Origin, y: Origin) -> bool {
         let ([a, b, c], other) = (self.corners(x), self.corners(y));
         other.iter().all(|d| orient3d(&a, &b, &c, d) == Sign::Zero)
             && !collinear(&a, &b, &c)
@@ -79,7 +77,11 @@ impl Planes<'_> {
                     let (determinant, bound) = orient3d_filter(&a, &b, &c, &d.position);
                     determinant.abs() > bound
                 });
-                !visible && self.mergeable(PairOrigin::new(side, t, false), PairOrigin::new(side, u, false))
+                !visible
+                    && self.mergeable(
+                        Origin { operand: side as u32, triangle: t, reversed: false },
+                        Origin { operand: side as u32, triangle: u, reversed: false },
+                    )
             })
             .map(|node| first_node + node as u32)
             .collect()

@@ -4,8 +4,8 @@
 //! operation made, or met, are asked about. The hole is triangulated anew, in the projection of its plane, and only where
 //! all new triangles are sound and no edge would occur twice.
 
-use super::super::PairOrigin;
 use super::super::cut::dominant_axis;
+use super::super::outcome::Origin;
 use super::patch::Patch;
 use super::planes::Planes;
 use crate::exact::collinear;
@@ -62,9 +62,10 @@ impl Remover<'_> {
         let n = star.len();
         let origin = |i: usize| patch.faces[star[i % n].0 as usize].origin;
         // Where the plane changes from one triangle to the next; the ring vertex there is a crease's end.
-        let changes: Vec<usize> = (0..n).filter(|&i| !self.planes.mergeable(origin(i + n - 1), origin(i))).collect();
+        let changes: Vec<usize> =
+            (0..n).filter(|&i| !self.planes.mergeable(origin(i + n - 1), origin(i))).collect();
         let ring: Vec<u32> = star.iter().map(|&(_, vertex)| vertex).collect();
-        let arcs: Vec<(Vec<u32>, PairOrigin)> = match changes.as_slice() {
+        let arcs: Vec<(Vec<u32>, Origin)> = match changes.as_slice() {
             [] => vec![(ring.clone(), origin(0))],
             &[i, j] => {
                 if !self.is_straight(patch, point, [ring[i], ring[j]], [origin(i), origin(j)]) {
@@ -93,9 +94,10 @@ impl Remover<'_> {
     }
 
     /// Whether the crease through a point runs straight on, from one end to the other.
-    fn is_straight(&self, patch: &Patch<'_>, point: u32, ends: [u32; 2], planes: [PairOrigin; 2]) -> bool {
+    fn is_straight(&self, patch: &Patch<'_>, point: u32, ends: [u32; 2], planes: [Origin; 2]) -> bool {
         let [p, q, r] = [ends[0], point, ends[1]].map(|point| *patch.position(point));
-        let ahead: f64 = (0..3).map(|k| (p[k] - q[k]).signum() * (r[k] - q[k]).signum() * weight(&p, &q, &r, k)).sum();
+        let ahead: f64 =
+            (0..3).map(|k| (p[k] - q[k]).signum() * (r[k] - q[k]).signum() * weight(&p, &q, &r, k)).sum();
         // Two different planes meet in one line, which holds all three points; in one plane that must be looked at.
         ahead < 0.0 && (!self.planes.coplanar(planes[0], planes[1]) || collinear(&p, &q, &r))
     }
@@ -105,8 +107,8 @@ impl Remover<'_> {
         &mut self,
         patch: &Patch<'_>,
         outline: &[u32],
-        origin: PairOrigin,
-        new: &mut Vec<([u32; 3], PairOrigin)>,
+        origin: Origin,
+        new: &mut Vec<([u32; 3], Origin)>,
     ) -> bool {
         if outline.len() < 3 {
             return true;
@@ -131,7 +133,7 @@ impl Remover<'_> {
     }
 
     /// Whether the new triangles would use a directed edge that is taken.
-    fn makes_double_edge(&self, patch: &Patch<'_>, ring: &[u32], new: &[([u32; 3], PairOrigin)]) -> bool {
+    fn makes_double_edge(&self, patch: &Patch<'_>, ring: &[u32], new: &[([u32; 3], Origin)]) -> bool {
         let n = ring.len();
         let freed = |edge: (u32, u32)| (0..n).any(|i| (ring[i], ring[(i + 1) % n]) == edge);
         let mut edges: Vec<(u32, u32)> =

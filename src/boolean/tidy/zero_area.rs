@@ -56,6 +56,8 @@ fn flip_longest_side(patch: &mut Patch<'_>, index: u32) -> Option<[u32; 2]> {
 fn middle(points: [[f64; 3]; 3]) -> Option<usize> {
     (0..3).find(|&k| {
         let (p, q, r) = (points[(k + 2) % 3], points[k], points[(k + 1) % 3]);
-        q != p && q != r && (0..3).all(|axis| p[axis].min(r[axis]) <= q[axis] && q[axis] <= p[axis].max(r[axis]))
+        q != p
+            && q != r
+            && (0..3).all(|axis| p[axis].min(r[axis]) <= q[axis] && q[axis] <= p[axis].max(r[axis]))
     })
 }

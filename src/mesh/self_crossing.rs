@@ -1,0 +1,50 @@
+//! What is known of a surface's crossings with itself.
+
+use std::fmt;
+
+/// A pair of triangles of one surface that cross.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SelfCrossing {
+    /// The two triangles, the lower index first.
+    pub triangles: [u32; 2],
+    /// A point of the crossing, roughly.
+    pub place: [f64; 3],
+    /// How deep the one reaches through the other: the length or height of the smaller of what crosses, in units of the
+    /// coordinates; 0 where they overlap in one plane or along an edge.
+    pub depth: f64,
+}
+
+/// The crossings of a surface with itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct SelfCrossings {
+    /// Pairs of triangles that cross each other in earnest: the surface encloses something twice, or inside out.
+    pub count: usize,
+    /// Pairs that cross no deeper than rounding; every computed mesh may have some. They are tolerated.
+    pub tolerated: usize,
+    /// The depth that counts as rounding, in units of the coordinates.
+    pub tolerance: f64,
+    /// The deepest few of the `count` pairs.
+    pub places: Vec<SelfCrossing>,
+}
+
+impl SelfCrossings {
+    /// Whether the surface does not cross itself (but for rounding).
+    #[must_use]
+    pub fn is_clean(&self) -> bool {
+        self.count == 0
+    }
+}
+
+impl fmt::Display for SelfCrossings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} pairs of triangles cross each other", self.count)?;
+        for (i, crossing) in self.places.iter().enumerate().take(2) {
+            let [s, t] = crossing.triangles;
+            let [x, y, z] = crossing.place;
+            write!(f, "{} triangles {s} and {t} at ({x}, {y}, {z})", if i == 0 { "," } else { ";" })?;
+            write!(f, ", {:.2e} deep", crossing.depth)?;
+        }
+        Ok(())
+    }
+}
