@@ -5,6 +5,7 @@
 //! before, opposite edges cancel, and only then the region is triangulated, in the projection along the axis its face looks
 //! along most (dropping a coordinate rounds nothing).
 
+use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
 
 use super::crossings::Crossings;
@@ -16,7 +17,7 @@ use super::operands::Operands;
 use crate::Error;
 use crate::exact::{Sign, orient2d};
 use crate::parallel::Runner;
-use crate::polygon::Triangulator;
+use crate::polygon::{Shape, Triangulator};
 
 /// A triangle cut out of a face.
 #[derive(Clone, Copy, Debug)]
@@ -57,13 +58,21 @@ struct Scratch {
 }
 
 impl Cutter<'_> {
-    /// The pieces of a part, face by face.
-    pub(super) fn cut(&self, part: Part, runner: Runner<'_>) -> Result<Cut, Error> {
+    /// The pieces of a part, face by face, but for the faces `done` otherwise.
+    pub(super) fn cut(
+        &self,
+        part: Part,
+        done: &FxHashSet<(usize, u32)>,
+        runner: Runner<'_>,
+    ) -> Result<Cut, Error> {
         let all = &self.faces[part.side].faces;
         let pieces = runner.pieces(all.len(), 512, |range| {
             let mut scratch = Scratch::default();
             let mut cut = Cut::default();
-            for face in &all[range] {
+            for face in all[range]
+                .iter()
+                .filter(|face| done.is_empty() || !done.contains(&(part.side, face.triangle)))
+            {
                 self.cut_face(part, face, &mut scratch, &mut cut);
             }
             cut
@@ -104,7 +113,9 @@ impl Cutter<'_> {
             [position[x], position[y]]
         }));
         scratch.triangles.clear();
-        if !scratch.triangulator.triangulate(&scratch.points, &scratch.boundary, &mut scratch.triangles) {
+        let shape =
+            scratch.triangulator.triangulate(&scratch.points, &scratch.boundary, &mut scratch.triangles);
+        if shape == Shape::Folded {
             let is_inverted = |t: &&[u32; 3]| {
                 let [a, b, c] = t.map(|point| scratch.points[point as usize]);
                 orient2d(a, b, c) == Sign::Negative
@@ -118,7 +129,7 @@ impl Cutter<'_> {
     }
 
     /// The directed edges that bound the kept region of a face, to their left; each as often as it counts.
-    fn boundary(&self, part: Part, face: &CutFace, boundary: &mut Vec<[u32; 2]>) {
+    pub(super) fn boundary(&self, part: Part, face: &CutFace, boundary: &mut Vec<[u32; 2]>) {
         boundary.clear();
         let first_node = self.operands.vertex_count();
         let first_vertex = self.operands.first_vertex(part.side);

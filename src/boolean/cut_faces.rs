@@ -96,6 +96,23 @@ impl CutFaces {
         self.is_cut.contains(triangle)
     }
 
+    /// A cut triangle by its number.
+    pub(super) fn face(&self, triangle: u32) -> Option<CutFace> {
+        let place = self.faces.binary_search_by_key(&triangle, |face| face.triangle).ok()?;
+        Some(self.faces[place])
+    }
+
+    /// Counts triangles without crossings as cut, so that their pieces (all or nothing) can be added to others.
+    pub(super) fn add_uncut(&mut self, triangles: impl IntoIterator<Item = u32>) {
+        for triangle in triangles {
+            if !self.is_cut(triangle) {
+                self.is_cut.insert(triangle);
+                self.faces.push(CutFace { triangle, first: 0, end: 0, edges: [UNCUT; 3] });
+            }
+        }
+        self.faces.sort_by_key(|face| face.triangle);
+    }
+
     /// The segments on a cut face.
     pub(super) fn segments(&self, face: &CutFace) -> &[u32] {
         &self.segments[face.first as usize..face.end as usize]

@@ -1,6 +1,6 @@
 //! The direction each vertex of A is perturbed along: outwards with respect to every face around it, where that exists.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::operands::Operand;
 
@@ -9,19 +9,21 @@ const SCALE: f64 = 511.0;
 /// Rounds of improvement for a vertex some of whose faces its direction does not look away from.
 const ROUNDS: usize = 32;
 
-/// Outward directions of the vertices near the other operand. Vertices at the same place can share one: else bodies that
-/// touch inside A would swell into each other.
+/// Outward directions of the vertices near the other operand. Each vertex has its own, also where several are at the same
+/// place: bodies that touch inside A then swell into each other by an infinitesimal, which the multiplicities carry, while a
+/// common direction would have to look away from both, and there is none.
 #[derive(Debug)]
 pub(super) struct Directions {
     of_vertex: FxHashMap<u32, u32>,
     directions: Vec<[i32; 3]>,
+    /// Vertices some of whose faces their direction does not look away from.
+    stuck: FxHashSet<u32>,
 }
 
 impl Directions {
     /// Directions of the vertices of the triangles `near`: angle-weighted normals, improved by perceptron steps while the
     /// worst dot product with a face normal is not positive, quantised.
-    pub(super) fn new(operand: &Operand<'_>, near: &[u32], share_places: bool) -> Self {
-        let mut of_place: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+    pub(super) fn new(operand: &Operand<'_>, near: &[u32]) -> Self {
         let mut of_vertex: FxHashMap<u32, u32> = FxHashMap::default();
         let mut faces: Vec<(u32, [f64; 3])> = Vec::with_capacity(3 * near.len());
         let mut sums: Vec<[f64; 3]> = Vec::new();
@@ -30,14 +32,9 @@ impl Directions {
             let positions = corners.map(|v| operand.positions[v as usize]);
             let (normal, angles) = normal_and_angles(&positions);
             for k in 0..3 {
-                // Adding 0.0 makes the two zeros one place.
-                let place = positions[k].map(|x| (x + 0.0).to_bits());
                 let index = *of_vertex.entry(corners[k]).or_insert_with(|| {
-                    let mut add = || {
-                        sums.push([0.0; 3]);
-                        sums.len() as u32 - 1
-                    };
-                    if share_places { *of_place.entry(place).or_insert_with(add) } else { add() }
+                    sums.push([0.0; 3]);
+                    sums.len() as u32 - 1
                 });
                 if let Some(normal) = normal {
                     let sum = &mut sums[index as usize];
@@ -50,16 +47,24 @@ impl Directions {
         }
         faces.sort_by_key(|&(index, _)| index);
         let mut directions = vec![[0; 3]; sums.len()];
+        let mut is_stuck = vec![false; sums.len()];
         for group in faces.chunk_by(|x, y| x.0 == y.0) {
             let index = group[0].0 as usize;
-            directions[index] = outward(sums[index], group);
+            (directions[index], is_stuck[index]) = outward(sums[index], group);
         }
-        Self { of_vertex, directions }
+        let stuck =
+            of_vertex.iter().filter(|&(_, &index)| is_stuck[index as usize]).map(|(&v, _)| v).collect();
+        Self { of_vertex, directions, stuck }
     }
 
     /// The direction of a vertex; zero for one that no triangle near the other operand uses.
     pub(super) fn of(&self, vertex: u32) -> [i32; 3] {
         self.of_vertex.get(&vertex).map_or([0; 3], |&index| self.directions[index as usize])
+    }
+
+    /// Vertices for which there seems to be no direction away from all their faces: saddles.
+    pub(super) fn stuck(&self) -> &FxHashSet<u32> {
+        &self.stuck
     }
 }
 
@@ -98,8 +103,8 @@ fn normal_and_angles(positions: &[[f64; 3]; 3]) -> (Option<[f64; 3]>, [f64; 3]) 
     (Some(cross.map(|x| x / length)), [angle(0), angle(1), angle(2)])
 }
 
-/// A quantised direction with positive dot product with all `faces`, if the search finds one; else the best start.
-fn outward(sum: [f64; 3], faces: &[(u32, [f64; 3])]) -> [i32; 3] {
+/// A quantised direction with positive dot product with all `faces`, if the search finds one; else the best seen, and true.
+fn outward(sum: [f64; 3], faces: &[(u32, [f64; 3])]) -> ([i32; 3], bool) {
     let quantise = |v: &[f64; 3]| -> [i32; 3] {
         let size = v.iter().fold(0.0f64, |size, x| size.max(x.abs()));
         if size == 0.0 { [0; 3] } else { v.map(|x| (x / size * SCALE).round() as i32) }
@@ -116,7 +121,7 @@ fn outward(sum: [f64; 3], faces: &[(u32, [f64; 3])]) -> [i32; 3] {
     let mut best = (f64::NEG_INFINITY, [0; 3]);
     for _ in 0..ROUNDS {
         let quantised = quantise(&current);
-        let Some((value, normal)) = worst(&quantised) else { return quantised };
+        let Some((value, normal)) = worst(&quantised) else { return (quantised, false) };
         if value > best.0 {
             best = (value, quantised);
         }
@@ -129,7 +134,7 @@ fn outward(sum: [f64; 3], faces: &[(u32, [f64; 3])]) -> [i32; 3] {
         let step = 0.5 - value.min(0.0);
         current = std::array::from_fn(|k| unit[k] + step * normal[k]);
     }
-    best.1
+    (best.1, best.0 <= 1e-9)
 }
 
 #[cfg(test)]
@@ -141,7 +146,7 @@ mod tests {
         let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
         let operand = Operand { positions: &positions, triangles: &triangles };
-        let directions = Directions::new(&operand, &[0, 1, 2, 3], true);
+        let directions = Directions::new(&operand, &[0, 1, 2, 3]);
         let corner = directions.of(0);
         assert!(corner.iter().all(|&x| x < -300), "{corner:?}");
         assert_eq!(directions.of(9), [0; 3]);
@@ -152,20 +157,16 @@ mod tests {
         // A deep notch: the angle-weighted normal points into one of the steep faces.
         let faces: Vec<(u32, [f64; 3])> =
             vec![(0, [0.0, 0.1, 0.995]), (0, [0.0, 0.995, -0.0998]), (0, [0.999, 0.0, 0.04])];
-        let direction = outward([-0.9, 0.3, 0.1], &faces);
+        let (direction, stuck) = outward([-0.9, 0.3, 0.1], &faces);
+        assert!(!stuck);
         for (_, normal) in &faces {
             assert!(dot(&direction.map(f64::from), normal) > 0.0, "{direction:?} {normal:?}");
         }
     }
 
     #[test]
-    fn coincident_vertices_share_a_direction() {
-        let positions = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-0.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
-        let triangles = vec![[0, 1, 2], [3, 2, 4]];
-        let operand = Operand { positions: &positions, triangles: &triangles };
-        let directions = Directions::new(&operand, &[0, 1], true);
-        assert_eq!(directions.of(0), directions.of(3));
-        let apart = Directions::new(&operand, &[0, 1], false);
-        assert_ne!(apart.of(0), apart.of(3));
+    fn a_saddle_has_no_direction() {
+        let away = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(|normal| (0, normal));
+        assert!(outward([0.0, 1.0, 0.0], &away).1);
     }
 }

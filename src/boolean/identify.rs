@@ -4,7 +4,6 @@
 //! other stay apart, even at the same place: bodies that touch are not glued.
 
 use rustc_hash::FxHashMap;
-use smallvec::SmallVec;
 
 use super::crossings::Crossings;
 use super::cut_edges::CutEdges;
@@ -23,12 +22,13 @@ pub(super) struct Identification {
 }
 
 impl Identification {
-    /// Identifies the points of every cut face.
+    /// Identifies the points of every cut face, and those of every set of faces that are cut together.
     pub(super) fn new(
         operands: &Operands<'_>,
         crossings: &Crossings,
         edges: &CutEdges,
         faces: &[CutFaces; 2],
+        sheets: &[Vec<(usize, u32)>],
         runner: Runner<'_>,
     ) -> Result<Self, Error> {
         let mut result = Self::default();
@@ -36,12 +36,27 @@ impl Identification {
             let all = &faces[side].faces;
             let pairs = runner.pieces(all.len(), 1024, |range| {
                 let mut pairs = Vec::new();
+                let mut points = Vec::new();
                 for face in &all[range] {
-                    coincidences(operands, side, face, &faces[side], crossings, edges, &mut pairs);
+                    points.clear();
+                    collect_points(operands, side, face, &faces[side], crossings, edges, &mut points);
+                    coincidences(&mut points, &mut pairs);
                 }
                 pairs
             })?;
             for [u, v] in pairs.concat() {
+                result.join(u, v);
+            }
+        }
+        for sheet in sheets {
+            let (mut points, mut pairs) = (Vec::new(), Vec::new());
+            for &(side, triangle) in sheet {
+                if let Some(face) = faces[side].face(triangle) {
+                    collect_points(operands, side, &face, &faces[side], crossings, edges, &mut points);
+                }
+            }
+            coincidences(&mut points, &mut pairs);
+            for [u, v] in pairs {
                 result.join(u, v);
             }
         }
@@ -88,18 +103,20 @@ impl Identification {
     }
 }
 
-/// Appends pairs of points of a face that have equal coordinates; enough of them to join all.
-fn coincidences(
+/// A point's number and where it is.
+type Point = (u32, [f64; 3]);
+
+/// Appends the corners and nodes of a face.
+fn collect_points(
     operands: &Operands<'_>,
     side: usize,
     face: &CutFace,
     faces: &CutFaces,
     crossings: &Crossings,
     edges: &CutEdges,
-    pairs: &mut Vec<[u32; 2]>,
+    points: &mut Vec<Point>,
 ) {
     let first_node = operands.vertex_count();
-    let mut points: SmallVec<[(u32, [f64; 3]); 24]> = SmallVec::new();
     points.extend(operands.corners(side, face.triangle).map(|corner| (corner.id, corner.position)));
     let mut add = |node: u32| points.push((first_node + node, edges.positions[node as usize]));
     for edge in face.edges {
@@ -116,6 +133,10 @@ fn coincidences(
             }
         }
     }
+}
+
+/// Appends pairs of points that have equal coordinates; enough of them to join all.
+fn coincidences(points: &mut [Point], pairs: &mut Vec<[u32; 2]>) {
     if points.len() <= FEW {
         for i in 1..points.len() {
             for j in 0..i {
@@ -126,7 +147,7 @@ fn coincidences(
         }
         return;
     }
-    let key = |point: &(u32, [f64; 3])| (point.1.map(|x| (x + 0.0).to_bits()), point.0);
+    let key = |point: &Point| (point.1.map(|x| (x + 0.0).to_bits()), point.0);
     points.sort_unstable_by_key(key);
     for pair in points.windows(2) {
         if pair[0].1 == pair[1].1 && pair[0].0 != pair[1].0 {

@@ -35,6 +35,7 @@ mod pair;
 mod scratch_tests;
 mod self_crossings;
 mod tidy;
+mod walls;
 mod winding;
 
 pub use certificate::{Certificate, OperandState};

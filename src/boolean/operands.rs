@@ -10,6 +10,8 @@
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use rustc_hash::FxHashSet;
+
 use super::directions::Directions;
 use crate::exact::perturbed::{self, PerturbedPoint, jitter};
 use crate::exact::{Sign, orient3d_filter};
@@ -40,8 +42,6 @@ pub(super) struct Operands<'a> {
     filter_floor: f64,
     /// Triangles that may meet the other operand, by side: what the directions are computed from.
     near: [Vec<u32>; 2],
-    /// Whether vertices at the same place share a direction.
-    coincident_vertices_move_together: bool,
     directions: OnceLock<Directions>,
     ties: AtomicU64,
 }
@@ -56,15 +56,16 @@ impl<'a> Operands<'a> {
             sense,
             filter_floor: if largest <= FILTER_LIMIT { 0.0 } else { f64::INFINITY },
             near,
-            coincident_vertices_move_together: true,
             directions: OnceLock::new(),
             ties: AtomicU64::new(0),
         }
     }
 
-    /// One operand to be tested against itself: every vertex shrinks by itself, so that parts that touch separate.
-    pub(super) fn alone(sides: [Operand<'a>; 2], largest: f64, all: Vec<u32>) -> Self {
-        Self { coincident_vertices_move_together: false, ..Self::new(sides, -1, largest, [all, Vec::new()]) }
+    /// One operand to be tested against itself, shrunk: parts that touch separate.
+    pub(super) fn alone(operand: Operand<'a>, largest: f64) -> Self {
+        let nothing = Operand { positions: &[], triangles: &[] };
+        let all = (0..operand.triangles.len() as u32).collect();
+        Self::new([operand, nothing], -1, largest, [all, Vec::new()])
     }
 
     /// Triangles of a side in the overlap of the operands' boxes, ascending.
@@ -137,12 +138,15 @@ impl<'a> Operands<'a> {
         }
     }
 
+    /// Vertices of A that no direction moves away from all their faces, if directions were needed and there are such.
+    pub(super) fn vertices_without_direction(&self) -> Option<&FxHashSet<u32>> {
+        self.directions.get().map(Directions::stuck).filter(|stuck| !stuck.is_empty())
+    }
+
     /// A corner with the directions it is perturbed along.
     pub(super) fn perturbed(&self, corner: &Corner) -> PerturbedPoint {
         let first = if corner.id < self.first_of_b {
-            let directions = self.directions.get_or_init(|| {
-                Directions::new(&self.sides[0], &self.near[0], self.coincident_vertices_move_together)
-            });
+            let directions = self.directions.get_or_init(|| Directions::new(&self.sides[0], &self.near[0]));
             directions.of(corner.id).map(|component| self.sense * component)
         } else {
             [0; 3]

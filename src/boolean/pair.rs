@@ -1,5 +1,7 @@
 //! The pipeline for two operands, one function per step.
 
+use rustc_hash::FxHashSet;
+
 use super::Operation;
 use super::assemble::{Assembled, Ingredients, NewTriangle};
 use super::crossings::{self, Crossings};
@@ -12,6 +14,7 @@ use super::operands::{Operand, Operands};
 use super::outcome::Origin;
 use super::overlap;
 use super::tidy;
+use super::walls;
 use super::winding;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
@@ -54,9 +57,8 @@ pub(super) fn combine(
 
     let pairs = candidate_pairs(&operands, &bounds, runner)?;
     let crossings: Crossings = crossings::find(&operands, &pairs, runner)?;
-    drop(pairs);
     let edges = CutEdges::new(&operands, &crossings, runner)?;
-    let faces = [0, 1].map(|side| CutFaces::new(&operands, side, &crossings, &edges));
+    let mut faces = [0, 1].map(|side| CutFaces::new(&operands, side, &crossings, &edges));
     let mut windings = [Vec::new(), Vec::new()];
     for side in 0..2 {
         windings[side] = winding::of_vertices(
@@ -70,7 +72,13 @@ pub(super) fn combine(
             runner,
         )?;
     }
-    let identification = Identification::new(&operands, &crossings, &edges, &faces, runner)?;
+    let sheets = walls::touching_sheets(&operands, &pairs, &parts);
+    drop(pairs);
+    for side in 0..2 {
+        let of_side = sheets.iter().flatten().filter(|face| face.0 == side).map(|face| face.1);
+        faces[side].add_uncut(of_side);
+    }
+    let identification = Identification::new(&operands, &crossings, &edges, &faces, &sheets, runner)?;
     let cutter = Cutter {
         operands: &operands,
         crossings: &crossings,
@@ -80,8 +88,15 @@ pub(super) fn combine(
         identification: &identification,
     };
     let (mut pieces, mut inverted) = (Vec::new(), 0);
+    let mut done = FxHashSet::default();
+    for sheet in &sheets {
+        if let Some(left) = walls::add_up(&cutter, &parts, sheet) {
+            pieces.extend(left);
+            done.extend(sheet);
+        }
+    }
     for &part in &parts {
-        let cut = cutter.cut(part, runner)?;
+        let cut = cutter.cut(part, &done, runner)?;
         inverted += cut.inverted;
         pieces.extend(cut.pieces.into_iter().map(|piece| NewTriangle {
             corners: piece.corners,
@@ -93,9 +108,9 @@ pub(super) fn combine(
         groups: settings.groups,
         irregular: [&[], &[]],
         // All parts of both surfaces meet in the curve: four triangles at each of its edges.
-        always: operation == Operation::SymmetricDifference,
+        always: operation == Operation::SymmetricDifference || !sheets.is_empty(),
     };
-    let tidied = tidy::tidy(&cutter, &outcodes, &parts, &pieces, &tidy_settings, runner)?;
+    let tidied = tidy::tidy(&cutter, &parts, &pieces, &tidy_settings, runner)?;
     let (new, replaced, copies) = match tidied {
         Some(tidied) => (tidied.new, Some(tidied.replaced), tidied.copies),
         None => (pieces, None, Vec::new()),

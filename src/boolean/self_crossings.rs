@@ -46,8 +46,7 @@ fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     let largest = mesh.positions.iter().flatten().fold(0.0f64, |largest, x| largest.max(x.abs()));
     let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
-    let nothing = Operand { positions: &[], triangles: &[] };
-    let operands = Operands::alone([operand, nothing], largest, all.clone());
+    let operands = Operands::alone(operand, largest);
     let frame = Frame::of(bounds.low, bounds.high);
     let tree = BoxTree::new(&all, |t| {
         frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]))

@@ -1,7 +1,9 @@
-//! Big polygons: a constrained Delaunay triangulation, checked for completeness.
+//! Constrained Delaunay triangulation: of big polygons, and of whatever edges bound, by winding number.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
+
+use crate::exact::{Sign, orient2d};
 
 /// A vertex that remembers its index.
 struct Vertex {
@@ -26,68 +28,141 @@ pub(super) fn triangulate(points: &[[f64; 2]], rings: &[&[u32]], triangles: &mut
 }
 
 fn attempt(points: &[[f64; 2]], rings: &[&[u32]]) -> Option<Vec<[u32; 3]>> {
-    let mut of_vertex: FxHashMap<u32, usize> = FxHashMap::default();
-    let mut vertices = Vec::new();
-    let mut edges: FxHashSet<(u32, u32)> = FxHashSet::default();
-    let mut constraints = Vec::new();
     let mut corners = 0;
+    let mut edges = Vec::new();
     for ring in rings {
         corners += ring.len();
-        for (i, &v) in ring.iter().enumerate() {
-            let w = ring[(i + 1) % ring.len()];
-            let place = |v: u32, vertices: &mut Vec<Vertex>, of_vertex: &mut FxHashMap<u32, usize>| {
-                *of_vertex.entry(v).or_insert_with(|| {
-                    // Spade takes nothing but zero below 2^-142; such a difference is far below an ulp of the polygon's size.
-                    let [x, y] = points[v as usize].map(|x| if x.abs() < 1e-42 { 0.0 } else { x });
-                    vertices.push(Vertex { position: Point2::new(x, y), index: v });
-                    vertices.len() - 1
-                })
-            };
-            let from = place(v, &mut vertices, &mut of_vertex);
-            let to = place(w, &mut vertices, &mut of_vertex);
-            constraints.push([from, to]);
-            if v == w || !edges.insert((v, w)) || edges.contains(&(w, v)) {
-                return None;
+        edges.extend((0..ring.len()).map(|i| ([ring[i], ring[(i + 1) % ring.len()]], 1)));
+    }
+    let found = between(points, &edges)?;
+    // Complete: the count of Euler's formula for one outline (vertices visited twice count twice).
+    (found.len() + 4 == corners + 2 * rings.len() && found.iter().all(|&(_, winding)| winding == 1))
+        .then(|| found.into_iter().map(|(triangle, _)| triangle).collect())
+}
+
+/// Triangulates what edges, each with a count, wind round: triangles (counter-clockwise) with their winding numbers. The
+/// boundary of their sum is the sum of the edges, exactly: where an edge runs through a vertex that is not its end, there
+/// are triangles without area between it and the chain of edges in its place. `None` for edges that cross.
+pub(crate) fn by_winding(points: &[[f64; 2]], edges: &[([u32; 2], i32)]) -> Option<Vec<([u32; 3], i32)>> {
+    let (split, slivers) = split_at_vertices(points, edges);
+    let mut found = between(points, &split)?;
+    found.extend(slivers);
+    Some(found)
+}
+
+/// Replaces edges that run through vertices by chains of edges, and returns with them the triangles without area that,
+/// together with the chain, bound the same as the edge.
+fn split_at_vertices(
+    points: &[[f64; 2]],
+    edges: &[([u32; 2], i32)],
+) -> (Vec<([u32; 2], i32)>, Vec<([u32; 3], i32)>) {
+    let mut vertices: Vec<u32> = edges.iter().flat_map(|(edge, _)| *edge).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let mut split = Vec::with_capacity(edges.len());
+    let mut slivers = Vec::new();
+    for &([u, v], count) in edges {
+        let (p, q) = (points[u as usize], points[v as usize]);
+        // Along the axis on which the edge is longer.
+        let k = usize::from((q[1] - p[1]).abs() > (q[0] - p[0]).abs());
+        let along = |x: u32| if q[k] > p[k] { points[x as usize][k] } else { -points[x as usize][k] };
+        let mut on: Vec<u32> = vertices
+            .iter()
+            .copied()
+            .filter(|&x| x != u && x != v && along(u) < along(x) && along(x) < along(v))
+            .filter(|&x| orient2d(p, q, points[x as usize]) == Sign::Zero)
+            .collect();
+        on.sort_by(|&x, &y| along(x).total_cmp(&along(y)));
+        on.push(v);
+        let mut from = u;
+        for &x in &on {
+            split.push(([from, x], count));
+            if from != u {
+                slivers.push(([u, x, from], count));
             }
+            from = x;
         }
     }
+    (split, slivers)
+}
+
+/// Triangulates the plane between edges that each count a number of times, and returns the counter-clockwise triangles
+/// round which they wind, with the winding number. `None` where the triangulation does not hold every edge as it is.
+fn between(points: &[[f64; 2]], edges: &[([u32; 2], i32)]) -> Option<Vec<([u32; 3], i32)>> {
+    // How often an edge counts from its lower vertex to its higher one.
+    let mut counts: FxHashMap<(u32, u32), i32> = FxHashMap::default();
+    for &([u, v], count) in edges {
+        if u == v {
+            return None;
+        }
+        *counts.entry((u.min(v), u.max(v))).or_default() += if u < v { count } else { -count };
+    }
+    counts.retain(|_, count| *count != 0);
+    let mut constraints: Vec<(u32, u32)> = counts.keys().copied().collect();
+    constraints.sort_unstable();
+    let mut indices: Vec<u32> = constraints.iter().flat_map(|&(u, v)| [u, v]).collect();
+    indices.sort_unstable();
+    indices.dedup();
+    let place = |v: u32| indices.binary_search(&v).expect("collected above");
+    // Spade takes nothing but zero below 2^-142; such a difference is far below an ulp of the polygon's size.
+    let vertices: Vec<Vertex> = indices
+        .iter()
+        .map(|&index| {
+            let [x, y] = points[index as usize].map(|x| if x.abs() < 1e-42 { 0.0 } else { x });
+            Vertex { position: Point2::new(x, y), index }
+        })
+        .collect();
     let count = vertices.len();
+    let pairs = constraints.iter().map(|&(u, v)| [place(u), place(v)]).collect();
     let mut conflict = false;
     let triangulation =
-        ConstrainedDelaunayTriangulation::<Vertex>::try_bulk_load_cdt(vertices, constraints, |_| {
-            conflict = true
-        })
-        .ok()?;
+        ConstrainedDelaunayTriangulation::<Vertex>::try_bulk_load_cdt(vertices, pairs, |_| conflict = true)
+            .ok()?;
     if conflict || triangulation.num_vertices() != count {
         return None;
     }
-    // Flood from the boundary's left sides; a boundary edge is never passed.
-    let mut inside: FxHashSet<usize> = FxHashSet::default();
-    let mut stack = Vec::new();
-    for edge in triangulation.directed_edges() {
-        if edges.contains(&(edge.from().data().index, edge.to().data().index)) {
-            stack.push(edge.face().as_inner()?.fix());
-        }
-    }
+    // Flood from outside, where the winding number is 0; an edge passed from its right to its left adds its count.
+    let mut winding: Vec<Option<i32>> = vec![None; triangulation.num_all_faces()];
+    let outer = triangulation.outer_face();
+    winding[outer.index()] = Some(0);
+    let mut stack = vec![outer.fix()];
+    let mut seen = 0;
     while let Some(face) = stack.pop() {
-        if !inside.insert(face.index()) {
-            continue;
-        }
-        for edge in triangulation.face(face).adjacent_edges() {
+        let here = winding[face.index()]?;
+        // Every edge once from each side, with its face to the left.
+        let around: Vec<_> = match triangulation.face(face).as_inner() {
+            Some(inner) => inner.adjacent_edges().to_vec(),
+            None => triangulation.convex_hull().map(|edge| edge.rev()).collect(),
+        };
+        for edge in around {
+            let edge = if edge.face().fix() == face { edge } else { edge.rev() };
             let (from, to) = (edge.from().data().index, edge.to().data().index);
-            if edges.contains(&(to, from)) {
-                return None;
-            }
-            if !edges.contains(&(from, to)) {
-                stack.push(edge.rev().face().as_inner()?.fix());
+            let count = counts.get(&(from.min(to), from.max(to))).copied().unwrap_or(0);
+            seen += usize::from(count != 0);
+            // What lies to the left of an edge winds once more than what lies to its right.
+            let there = here - if from < to { count } else { -count };
+            let other = edge.rev().face().fix();
+            match winding[other.index()] {
+                None => {
+                    winding[other.index()] = Some(there);
+                    stack.push(other);
+                }
+                Some(known) if known != there => return None,
+                Some(_) => {}
             }
         }
     }
-    // Complete: the count of Euler's formula for one outline (vertices visited twice count twice).
-    let found: Vec<[u32; 3]> = triangulation
-        .inner_faces()
-        .filter(|face| inside.contains(&face.fix().index()))
-        .map(|face| face.vertices().map(|vertex| vertex.data().index))
-        .collect();
-    (found.len() + 4 == corners + 2 * rings.len()).then_some(found)
+    if seen != 2 * counts.len() {
+        // Some edge runs through a vertex that is not its end.
+        return None;
+    }
+    Some(
+        triangulation
+            .inner_faces()
+            .filter_map(|face| {
+                let winding = winding[face.fix().index()].filter(|&winding| winding != 0)?;
+                Some((face.vertices().map(|vertex| vertex.data().index), winding))
+            })
+            .collect(),
+    )
 }

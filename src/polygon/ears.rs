@@ -1,11 +1,16 @@
 //! Ear clipping: exact where it decides, and with a way out where there is no ear.
 
+use super::Shape;
 use crate::exact::{Sign, orient2d};
 
-/// Whether the corners turn counter-clockwise, exactly.
-pub(super) fn is_counter_clockwise(points: &[[f64; 2]], corners: [u32; 3]) -> bool {
+/// How sound a triangle is, exactly.
+pub(super) fn shape_of(points: &[[f64; 2]], corners: [u32; 3]) -> Shape {
     let [a, b, c] = corners.map(|v| points[v as usize]);
-    orient2d(a, b, c) == Sign::Positive
+    match orient2d(a, b, c) {
+        Sign::Positive => Shape::Sound,
+        Sign::Zero => Shape::Flat,
+        Sign::Negative => Shape::Folded,
+    }
 }
 
 /// Shape of a triangle: twice its signed area over the square of its longest side; about 0.87 for an equilateral one.
@@ -35,35 +40,45 @@ struct Link {
 pub(super) struct EarClipper {
     links: Vec<Link>,
     repeated: bool,
+    /// Whether there may be spikes.
+    spikes: bool,
 }
 
 impl EarClipper {
-    /// Triangulates a closed loop into `n - 2` triangles that use each of its edges once. Returns whether all are
-    /// counter-clockwise; where no ear is left, the least bad corner is cut off.
+    /// Triangulates a closed loop into `n - 2` triangles that use each of its edges once. Where no ear is left, a corner
+    /// without area is cut off (the shape stays what it is), and only then the least bad one.
     pub(super) fn clip(
         &mut self,
         points: &[[f64; 2]],
         polygon: &[u32],
         triangles: &mut Vec<[u32; 3]>,
-    ) -> bool {
+    ) -> Shape {
         let n = polygon.len();
         if n < 3 {
-            return true;
+            return Shape::Sound;
         }
         if n == 4 && quadrilateral(points, polygon, triangles) {
-            return true;
+            return Shape::Sound;
         }
         self.start(points, polygon);
-        let mut sound = true;
+        let mut shape = Shape::Sound;
         let mut some = 0;
         for left in (3..=n).rev() {
-            let ear = if left == 3 { None } else { self.best_ear(points, some, left) };
-            let ear = ear.unwrap_or_else(|| {
-                let ear = self.least_bad(points, some, left);
-                sound &= self.quality(points, ear) > f64::NEG_INFINITY;
-                sound &= left == 3;
+            let ear = if left == 3 {
+                shape = shape.max(shape_of(points, self.corners(some)));
+                some
+            } else if let Some(ear) = self.spike(points, some, left) {
+                shape = shape.max(Shape::Flat);
                 ear
-            });
+            } else if let Some(ear) = self.best_ear(points, some, left) {
+                ear
+            } else if let Some(ear) = self.flat_corner(points, some, left) {
+                shape = shape.max(Shape::Flat);
+                ear
+            } else {
+                shape = Shape::Folded;
+                self.least_bad(points, some, left)
+            };
             let Link { vertex, previous, next, .. } = self.links[ear as usize];
             let (before, after) = (self.links[previous as usize].vertex, self.links[next as usize].vertex);
             // Cutting off a spike, or a vertex between two equal ones, leaves nothing behind.
@@ -84,7 +99,7 @@ impl EarClipper {
                 }
             }
         }
-        sound
+        shape
     }
 
     fn start(&mut self, points: &[[f64; 2]], polygon: &[u32]) {
@@ -101,6 +116,35 @@ impl EarClipper {
             self.links[link as usize].quality = self.quality(points, link);
         }
         self.repeated = (1..polygon.len()).any(|i| polygon[..i].contains(&polygon[i]));
+        self.spikes = (0..n).any(|link| self.is_spike(points, link));
+    }
+
+    /// Whether the boundary turns straight back at a corner.
+    fn is_spike(&self, points: &[[f64; 2]], link: u32) -> bool {
+        let corners = self.corners(link);
+        if shape_of(points, corners) != Shape::Flat {
+            return false;
+        }
+        let [a, b, c] = corners.map(|v| points[v as usize]);
+        (a[0] - b[0]) * (c[0] - b[0]) + (a[1] - b[1]) * (c[1] - b[1]) > 0.0
+    }
+
+    /// A corner at which the boundary turns straight back: it has to be cut off, sooner or later.
+    fn spike(&mut self, points: &[[f64; 2]], some: u32, left: usize) -> Option<u32> {
+        if !self.spikes {
+            return None;
+        }
+        self.around(some, left).find(|&link| self.is_spike(points, link))
+    }
+
+    /// A corner at which the boundary runs straight on.
+    fn flat_corner(&self, points: &[[f64; 2]], some: u32, left: usize) -> Option<u32> {
+        self.around(some, left).find(|&link| shape_of(points, self.corners(link)) == Shape::Flat)
+    }
+
+    /// The `left` corners from `some` on.
+    fn around(&self, some: u32, left: usize) -> impl Iterator<Item = u32> {
+        std::iter::successors(Some(some), |&link| Some(self.links[link as usize].next)).take(left)
     }
 
     fn corners(&self, link: u32) -> [u32; 3] {
@@ -110,7 +154,7 @@ impl EarClipper {
 
     fn quality(&self, points: &[[f64; 2]], link: u32) -> f64 {
         let corners = self.corners(link);
-        if is_counter_clockwise(points, corners) {
+        if shape_of(points, corners) == Shape::Sound {
             let [a, b, c] = corners.map(|v| points[v as usize]);
             triangle_quality(a, b, c).max(0.0)
         } else {

@@ -10,8 +10,21 @@ mod ears;
 mod holes;
 mod loops;
 
+pub(crate) use delaunay::by_winding;
+
 /// From this many vertices a constrained Delaunay triangulation replaces ear clipping.
 const DELAUNAY_FROM: usize = 40;
+
+/// How sound a triangulation is: what its worst triangle is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Shape {
+    /// All triangles are counter-clockwise, by exact test.
+    Sound,
+    /// Some have no area.
+    Flat,
+    /// Some are turned over.
+    Folded,
+}
 
 /// Triangulates regions; keeps its scratch memory between calls.
 #[derive(Debug, Default)]
@@ -22,37 +35,52 @@ pub(crate) struct Triangulator {
 
 impl Triangulator {
     /// Appends to `triangles` a triangulation of the region bounded by `edges`. Vertices are indices into `points`; every
-    /// vertex must be left as often as it is entered. Returns whether all triangles are counter-clockwise, by exact test.
+    /// vertex must be left as often as it is entered.
     pub(crate) fn triangulate(
         &mut self,
         points: &[[f64; 2]],
         edges: &[[u32; 2]],
         triangles: &mut Vec<[u32; 3]>,
-    ) -> bool {
+    ) -> Shape {
         if let Some(corners) = single_triangle(edges) {
             triangles.push(corners);
-            return ears::is_counter_clockwise(points, corners);
+            return ears::shape_of(points, corners);
         }
         let boundary = self.tracer.trace(points, edges);
-        if let [only] = boundary.as_slice() {
-            return self.simple(points, only, triangles);
+        let before = triangles.len();
+        let shape = if let [only] = boundary.as_slice() {
+            self.simple(points, only, triangles)
+        } else {
+            let polygons = holes::group(points, boundary);
+            polygons
+                .iter()
+                .fold(Shape::Sound, |shape, polygon| shape.max(self.with_holes(points, polygon, triangles)))
+        };
+        if shape < Shape::Folded {
+            return shape;
         }
-        let mut sound = true;
-        for polygon in holes::group(points, boundary) {
-            sound &= self.with_holes(points, &polygon, triangles);
+        // Loops that cross or touch in ways that tracing cannot tell: by winding number instead.
+        let counted: Vec<([u32; 2], i32)> = edges.iter().map(|&edge| (edge, 1)).collect();
+        let Some(found) = by_winding(points, &counted) else { return Shape::Folded };
+        triangles.truncate(before);
+        let mut shape = Shape::Sound;
+        for ([a, b, c], winding) in found {
+            let corners = if winding > 0 { [a, b, c] } else { [a, c, b] };
+            shape = shape.max(ears::shape_of(points, corners));
+            triangles.extend(std::iter::repeat_n(corners, winding.unsigned_abs() as usize));
         }
-        sound
+        shape
     }
 
-    /// Triangulates one closed loop; `false` if some triangle is not counter-clockwise.
+    /// Triangulates one closed loop.
     pub(crate) fn simple(
         &mut self,
         points: &[[f64; 2]],
         polygon: &[u32],
         triangles: &mut Vec<[u32; 3]>,
-    ) -> bool {
+    ) -> Shape {
         if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate(points, &[polygon], triangles) {
-            return true;
+            return Shape::Sound;
         }
         self.ears.clip(points, polygon, triangles)
     }
@@ -62,7 +90,7 @@ impl Triangulator {
         points: &[[f64; 2]],
         polygon: &holes::Polygon,
         triangles: &mut Vec<[u32; 3]>,
-    ) -> bool {
+    ) -> Shape {
         if polygon.holes.is_empty() {
             return self.simple(points, &polygon.outer, triangles);
         }
@@ -71,7 +99,7 @@ impl Triangulator {
             let rings: Vec<&[u32]> =
                 std::iter::once(&polygon.outer).chain(&polygon.holes).map(Vec::as_slice).collect();
             if delaunay::triangulate(points, &rings, triangles) {
-                return true;
+                return Shape::Sound;
             }
         }
         match holes::bridge(points, polygon) {
@@ -82,7 +110,7 @@ impl Triangulator {
                 for hole in &polygon.holes {
                     self.ears.clip(points, hole, triangles);
                 }
-                false
+                Shape::Folded
             }
         }
     }
@@ -134,7 +162,7 @@ mod tests {
         let mut triangles = Vec::new();
         let sound = Triangulator::default().triangulate(points, edges, &mut triangles);
         assert_complete(edges, &triangles);
-        assert!(sound);
+        assert_eq!(sound, Shape::Sound);
         assert_eq!(triangles.len(), expected_triangles);
         let sum: f64 = triangles.iter().map(|t| area(points, t)).sum();
         assert!((sum - expected_area).abs() < 1e-9, "{sum} {expected_area}");
@@ -194,6 +222,44 @@ mod tests {
             }
         }
         check(&points, &edges, 400.0 - 81.0, 4 + 4 * 81 + 2 * 81 - 2);
+    }
+
+    #[test]
+    fn opposite_regions_cancel_by_winding() {
+        // A square, and half of it turned over with a vertex more on its border: the other half is left.
+        let points = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 0.0], [1.0, 2.0]];
+        let mut edges: Vec<([u32; 2], i32)> =
+            [[0, 4], [4, 1], [1, 2], [2, 5], [5, 3], [3, 0]].map(|e| (e, 1)).to_vec();
+        edges.extend([[0, 4], [4, 5], [5, 3], [3, 0]].map(|e| (e, -1)));
+        let found = by_winding(&points, &edges).expect("a sound shape");
+        assert_eq!(found.len(), 2);
+        assert!(found.iter().all(|(t, winding)| *winding == 1 && area(&points, t) == 1.0));
+    }
+
+    #[test]
+    fn an_edge_through_a_vertex_is_kept_by_triangles_without_area() {
+        let points = [[0.0, 0.0], [2.0, 0.0], [1.0, 2.0], [1.0, 0.0], [1.5, -1.0]];
+        // A triangle with corner 3 on the side of another that does not have it.
+        let edges = [[0, 1], [1, 2], [2, 0], [3, 4], [4, 1], [1, 3]];
+        let counted: Vec<([u32; 2], i32)> = edges.iter().map(|&edge| (edge, 1)).collect();
+        let found = by_winding(&points, &counted).expect("a sound shape");
+        let triangles: Vec<[u32; 3]> =
+            found.iter().flat_map(|(t, winding)| std::iter::repeat_n(*t, *winding as usize)).collect();
+        assert_complete(&edges, &triangles);
+        assert_eq!(triangles.iter().map(|t| area(&points, t)).sum::<f64>(), 2.5);
+    }
+
+    #[test]
+    fn a_hole_along_its_outline_leaves_flat_triangles_only() {
+        // Two sides of the hole lie on the outline, one corner is the outline's own.
+        let points = [[0.0, 0.0], [2.0, 3.0], [0.0, 3.0], [1.0, 3.0], [1.0, 2.0], [0.0, 2.0]];
+        let mut edges = vec![[0, 1], [1, 2], [2, 0]];
+        edges.extend([[2, 3], [3, 4], [4, 5], [5, 2]]);
+        let mut triangles = Vec::new();
+        let shape = Triangulator::default().triangulate(&points, &edges, &mut triangles);
+        assert_complete(&edges, &triangles);
+        assert_eq!(shape, Shape::Flat);
+        assert_eq!(triangles.iter().map(|t| area(&points, t)).sum::<f64>(), 2.0);
     }
 
     #[test]

@@ -44,7 +44,6 @@ pub(super) struct Settings<'a> {
 /// Tidies the pieces of a result; `None` where there is nothing to do.
 pub(super) fn tidy(
     cutter: &Cutter<'_>,
-    outcodes: &[Vec<u8>; 2],
     parts: &[Part],
     pieces: &[NewTriangle],
     settings: &Settings<'_>,
@@ -64,9 +63,11 @@ pub(super) fn tidy(
     if settings.remove_vertices {
         candidates.extend(cutter.identification.representatives());
     }
-    let mut patch = Patch::new(cutter, outcodes, parts, pieces, settings.irregular);
+    let mut patch = Patch::new(cutter, parts, pieces, settings.irregular);
     patch.cancel();
     runner.control.check()?;
+    zero_area::flip_chain(&mut patch);
+    patch.cancel();
     let copied_from = manifold::make_manifold(&mut patch);
     candidates.extend(
         copied_from

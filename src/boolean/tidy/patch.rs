@@ -25,8 +25,6 @@ pub(super) struct Patch<'a> {
     pub(super) faces: Vec<Face>,
     /// Points all of whose triangles are here.
     complete: Flags,
-    /// Points of pieces: triangles with two of them are here, so that every side of a piece has both its triangles.
-    of_pieces: Flags,
     /// The triangle to the left of each directed edge; filled by [`connect`](Self::connect).
     left_of: FxHashMap<(u32, u32), u32>,
     /// Some triangle at each point.
@@ -60,7 +58,6 @@ impl<'a> Patch<'a> {
     /// The pieces and all kept triangles round their points (or round `irregular` vertices).
     pub(super) fn new(
         cutter: &'a Cutter<'a>,
-        outcodes: &[Vec<u8>; 2],
         parts: &[Part],
         pieces: &[NewTriangle],
         irregular: [&[u32]; 2],
@@ -68,19 +65,8 @@ impl<'a> Patch<'a> {
         let operands = cutter.operands;
         let points = operands.vertex_count() as usize + cutter.edges.positions.len();
         let mut complete = Flags::new(points);
-        // All triangles at a vertex in both boxes are near, and so found below. A vertex outside never needs mending.
-        let is_near = |point: u32| {
-            point >= operands.vertex_count() || {
-                let side = operands.side_of(point);
-                outcodes[side].get((point - operands.first_vertex(side)) as usize) == Some(&0)
-            }
-        };
-        let mut of_pieces = Flags::new(points);
         for point in pieces.iter().flat_map(|piece| piece.corners) {
-            of_pieces.set(point);
-            if is_near(point) {
-                complete.set(point);
-            }
+            complete.set(point);
         }
         for side in 0..2 {
             for &vertex in irregular[side] {
@@ -91,7 +77,6 @@ impl<'a> Patch<'a> {
             cutter,
             faces: Vec::with_capacity(2 * pieces.len()),
             complete,
-            of_pieces,
             left_of: FxHashMap::default(),
             some_face: FxHashMap::default(),
             beyond: FxHashSet::default(),
@@ -150,17 +135,11 @@ impl<'a> Patch<'a> {
         }
     }
 
-    /// Whether an uncut triangle belongs to the patch.
-    fn belongs(&self, points: [u32; 3]) -> bool {
-        points.iter().any(|&point| self.complete.get(point))
-            || points.iter().filter(|&&point| self.of_pieces.get(point)).count() >= 2
-    }
-
     fn take_kept_triangles(&mut self, parts: &[Part]) {
         let mut faces = Vec::new();
         let mut taken = [Vec::new(), Vec::new()];
         self.for_kept(parts, |part, t, points, count| {
-            if !self.belongs(points) {
+            if !points.iter().any(|&point| self.complete.get(point)) {
                 return;
             }
             taken[part.side].push(t);
@@ -185,7 +164,7 @@ impl<'a> Patch<'a> {
         }
         let mut beyond = FxHashSet::default();
         self.for_kept(parts, |part, _, points, count| {
-            if self.belongs(points) {
+            if points.iter().any(|&point| self.complete.get(point)) {
                 return;
             }
             for k in 0..3 {

@@ -9,7 +9,7 @@ use super::super::outcome::Origin;
 use super::patch::Patch;
 use super::planes::Planes;
 use crate::exact::collinear;
-use crate::polygon::Triangulator;
+use crate::polygon::{Shape, Triangulator};
 use crate::{Control, Error};
 
 /// Removes all candidates that can go.
@@ -125,7 +125,7 @@ impl Remover<'_> {
             .collect();
         let numbers: Vec<u32> = (0..outline.len() as u32).collect();
         let mut triangles = Vec::new();
-        if !self.triangulator.simple(&points, &numbers, &mut triangles) {
+        if self.triangulator.simple(&points, &numbers, &mut triangles) != Shape::Sound {
             return false;
         }
         new.extend(triangles.into_iter().map(|t| (t.map(|i| outline[i as usize]), origin)));

@@ -1,15 +1,87 @@
 //! Triangles without area: flip their longest side. The middle corner lies on that side, so the shape does not change.
 
-use super::patch::Patch;
+use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
+
+use super::patch::{Face, Patch};
 use crate::exact::collinear;
 
-/// Flips until no triangle without area can be flipped any more.
+/// A flip: the two triangles that share the longest side from `c` to `a` of the flat triangle `a, b, c`.
+struct Flip {
+    flat: u32,
+    other: u32,
+    a: u32,
+    b: u32,
+    c: u32,
+    d: u32,
+}
+
+fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
+    let face = &patch.faces[index as usize];
+    let [a, b, c] = face.corners.map(|point| patch.position(point));
+    face.alive && !face.untouched && collinear(a, b, c)
+}
+
+/// Flips as a sum of triangles, before the patch is a 2-manifold: at a side with several triangles beyond it any of them
+/// will do, one with area first.
+pub(super) fn flip_chain(patch: &mut Patch<'_>) {
+    let mut queue: Vec<u32> = (0..patch.faces.len() as u32).filter(|&index| is_flat(patch, index)).collect();
+    if queue.is_empty() {
+        return;
+    }
+    let mut left_of: FxHashMap<(u32, u32), SmallVec<[u32; 2]>> = FxHashMap::default();
+    for (index, face) in patch.faces.iter().enumerate().filter(|(_, face)| face.alive) {
+        for k in 0..3 {
+            left_of.entry((face.corners[k], face.corners[(k + 1) % 3])).or_default().push(index as u32);
+        }
+    }
+    let mut budget = 8 * queue.len();
+    while let Some(index) = queue.pop() {
+        if budget == 0 {
+            break;
+        }
+        budget -= 1;
+        if !is_flat(patch, index) {
+            continue;
+        }
+        let flip = longest_side(patch, index, |patch, a, c| {
+            let beyond = left_of.get(&(a, c))?;
+            beyond.iter().copied().find(|&other| !is_flat(patch, other)).or(beyond.first().copied())
+        });
+        let Some(flip) = flip else { continue };
+        let mut change = |patch: &mut Patch<'_>, index: u32, corners: Option<[u32; 3]>| {
+            let face = &mut patch.faces[index as usize];
+            for k in 0..3 {
+                if let Some(list) = left_of.get_mut(&(face.corners[k], face.corners[(k + 1) % 3])) {
+                    list.retain(|other| *other != index);
+                }
+            }
+            match corners {
+                None => face.alive = false,
+                Some(corners) => {
+                    face.corners = corners;
+                    face.untouched = false;
+                    for k in 0..3 {
+                        left_of.entry((corners[k], corners[(k + 1) % 3])).or_default().push(index);
+                    }
+                }
+            }
+        };
+        let Flip { flat, other, a, b, c, d } = flip;
+        if b == d {
+            change(patch, flat, None);
+            change(patch, other, None);
+            continue;
+        }
+        patch.faces[flat as usize].origin = patch.faces[other as usize].origin;
+        change(patch, flat, Some([a, b, d]));
+        change(patch, other, Some([b, c, d]));
+        queue.extend([flat, other].into_iter().filter(|&index| is_flat(patch, index)));
+    }
+}
+
+/// Flips in the 2-manifold, as long as that makes no double edge.
 pub(super) fn flip(patch: &mut Patch<'_>) {
-    let is_flat = |patch: &Patch<'_>, index: u32| {
-        let face = &patch.faces[index as usize];
-        let [a, b, c] = face.corners.map(|point| patch.position(point));
-        face.alive && !face.untouched && collinear(a, b, c)
-    };
     let mut queue: Vec<u32> = (0..patch.faces.len() as u32).filter(|&index| is_flat(patch, index)).collect();
     // Each flip moves a vertex off a longest side; the bound stops cycles among triangles that are all flat.
     let mut budget = 8 * queue.len();
@@ -21,35 +93,33 @@ pub(super) fn flip(patch: &mut Patch<'_>) {
         if !is_flat(patch, index) {
             continue;
         }
-        if let Some(changed) = flip_longest_side(patch, index) {
-            queue.extend(changed.into_iter().filter(|&index| is_flat(patch, index)));
+        let Some(flip) = longest_side(patch, index, |patch, a, c| patch.left_of(a, c)) else { continue };
+        let Flip { flat, other, a, b, c, d } = flip;
+        if d == b {
+            // The same triangle turned over: both enclose nothing.
+            patch.replace(&[flat, other], &[]);
+        } else if !patch.has_edge(b, d) && !patch.has_edge(d, b) {
+            let origin = patch.faces[other as usize].origin;
+            patch.replace(&[flat, other], &[([a, b, d], origin), ([b, c, d], origin)]);
+            queue.extend([flat, other].into_iter().filter(|&index| is_flat(patch, index)));
         }
     }
 }
 
-/// Flips the longest side of a flat triangle, if that makes no double edge. Returns the two changed triangles.
-fn flip_longest_side(patch: &mut Patch<'_>, index: u32) -> Option<[u32; 2]> {
-    let corners = patch.faces[index as usize].corners;
+/// The flip of the longest side of a flat triangle with the triangle that `beyond` finds on its other side.
+fn longest_side(
+    patch: &Patch<'_>,
+    flat: u32,
+    beyond: impl Fn(&Patch<'_>, u32, u32) -> Option<u32>,
+) -> Option<Flip> {
+    let corners = patch.faces[flat as usize].corners;
     // Rotate so that b is the middle corner, opposite the longest side.
     let k = middle(corners.map(|point| *patch.position(point)))?;
     let [b, c, a] = [0, 1, 2].map(|i| corners[(k + i) % 3]);
-    let other = patch.left_of(a, c)?;
-    let opposite = patch.faces[other as usize].corners;
+    let other = beyond(patch, a, c).filter(|&other| other != flat)?;
+    let Face { corners: opposite, .. } = patch.faces[other as usize];
     let d = *opposite.iter().find(|&&point| point != a && point != c)?;
-    if other == index {
-        return None;
-    }
-    if d == b {
-        // The same triangle turned over: both enclose nothing.
-        patch.replace(&[index, other], &[]);
-        return None;
-    }
-    if patch.has_edge(b, d) || patch.has_edge(d, b) {
-        return None;
-    }
-    let origin = patch.faces[other as usize].origin;
-    patch.replace(&[index, other], &[([a, b, d], origin), ([b, c, d], origin)]);
-    Some([index, other])
+    Some(Flip { flat, other, a, b, c, d })
 }
 
 /// Which of three collinear points lies strictly between the others.

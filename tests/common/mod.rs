@@ -1,0 +1,33 @@
+//! Helpers shared by the capability tests.
+#![allow(dead_code, reason = "each test program uses some of these")]
+
+use trisect::{Mesh, Operation, Options, Outcome, Solid};
+
+/// The solid of a mesh that must be one.
+pub(crate) fn solid(mesh: Mesh) -> Solid {
+    Solid::try_from(mesh).expect("a closed mesh")
+}
+
+/// A box between two corners.
+pub(crate) fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
+    solid(trisect::primitives::cuboid(low, high).expect("a box"))
+}
+
+/// A cube.
+pub(crate) fn cube(low: [f64; 3], side: f64) -> Solid {
+    cuboid(low, low.map(|x| x + side))
+}
+
+/// Runs an operation with default settings.
+pub(crate) fn run(operation: Operation, operands: &[&Solid]) -> Outcome {
+    Options::new().run(operation, operands).expect("booleans do not fail")
+}
+
+/// Asserts what every result promises: closed, 2-manifold, no triangle without area, one origin per triangle.
+pub(crate) fn assert_sound(outcome: &Outcome, context: &str) {
+    let certificate = outcome.certificate();
+    assert!(certificate.closed, "{context}: {certificate}");
+    assert!(certificate.manifold, "{context}: {certificate}");
+    assert_eq!(certificate.zero_area, 0, "{context}: {certificate}");
+    assert_eq!(outcome.origins().len(), certificate.triangles, "{context}");
+}

@@ -1,0 +1,264 @@
+//! Operands that touch, are flush, or coincide: the answers of regularised set operations, with minimal results.
+
+mod common;
+
+use common::{assert_sound, run, solid};
+use trisect::Operation::{Difference, Intersection, Union};
+use trisect::{Contact, Mesh, Operation, Options, Solid, primitives};
+
+/// What a result must be: volume, vertices, triangles.
+#[derive(Clone, Copy)]
+struct Expected(f64, usize, usize);
+
+const EMPTY: Expected = Expected(0.0, 0, 0);
+
+struct Contactual {
+    name: &'static str,
+    b: ([f64; 3], [f64; 3]),
+    union: Expected,
+    intersection: Expected,
+    difference: Expected,
+    reversed_difference: Expected,
+}
+
+/// Contacts of a box B with the cube A between (0, 0, 0) and (4, 4, 4); all coordinates small integers, so that volumes
+/// are exact.
+fn table() -> Vec<Contactual> {
+    const A: Expected = Expected(64.0, 8, 12);
+    let case = |name, b, union, intersection, difference, reversed_difference| Contactual {
+        name,
+        b,
+        union,
+        intersection,
+        difference,
+        reversed_difference,
+    };
+    let boxed = |volume| Expected(volume, 8, 12);
+    vec![
+        case("whole face", ([4., 0., 0.], [8., 4., 4.]), boxed(128.), EMPTY, A, boxed(64.)),
+        case("part of a face", ([4., 1., 2.], [8., 3., 6.]), Expected(96., 18, 32), EMPTY, A, boxed(32.)),
+        case(
+            "inside, one flush face",
+            ([1., 1., 2.], [3., 3., 4.]),
+            A,
+            boxed(8.),
+            Expected(56., 16, 28),
+            EMPTY,
+        ),
+        case(
+            "corner, three flush faces",
+            ([0., 0., 0.], [2., 2., 2.]),
+            A,
+            boxed(8.),
+            Expected(56., 14, 24),
+            EMPTY,
+        ),
+        case(
+            "through, two flush faces",
+            ([1., 1., 0.], [3., 3., 4.]),
+            A,
+            boxed(16.),
+            Expected(48., 16, 32),
+            EMPTY,
+        ),
+        case(
+            "half, four flush faces",
+            ([2., 0., 0.], [6., 4., 4.]),
+            boxed(96.),
+            boxed(32.),
+            boxed(32.),
+            boxed(32.),
+        ),
+        case("identical", ([0., 0., 0.], [4., 4., 4.]), A, A, EMPTY, EMPTY),
+        case("edge", ([4., 4., 0.], [8., 8., 4.]), Expected(128., 16, 24), EMPTY, A, boxed(64.)),
+        case("vertex", ([4., 4., 4.], [8., 8., 8.]), Expected(128., 16, 24), EMPTY, A, boxed(64.)),
+        case("apart", ([6., 0., 0.], [8., 4., 4.]), Expected(96., 16, 24), EMPTY, A, boxed(32.)),
+        case("nested", ([1., 1., 1.], [3., 3., 3.]), A, boxed(8.), Expected(56., 16, 24), EMPTY),
+    ]
+}
+
+/// A mesh with its axes permuted (an odd permutation mirrors, and so reverses the triangles) and scaled.
+fn arranged(mesh: &Mesh, order: [usize; 3], scale: f64) -> Solid {
+    let odd = [[0, 2, 1], [1, 0, 2], [2, 1, 0]].contains(&order);
+    let positions = mesh.positions.iter().map(|p| order.map(|k| scale * p[k])).collect();
+    let triangles = mesh.triangles.iter().map(|&[a, b, c]| if odd { [a, c, b] } else { [a, b, c] }).collect();
+    solid(Mesh::new(positions, triangles))
+}
+
+#[test]
+fn the_contact_table_in_every_axis_order_and_at_three_scales() {
+    let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [1, 0, 2], [2, 1, 0]];
+    for scale in [1.0, 2f64.powi(-40), 3.0 * 2f64.powi(50)] {
+        for order in orders {
+            let unit = primitives::cuboid([0.0; 3], [4.0; 3]).expect("a box");
+            let a = arranged(&unit, order, scale);
+            for case in table() {
+                let b = arranged(&primitives::cuboid(case.b.0, case.b.1).expect("a box"), order, scale);
+                let checks: [(Operation, [&Solid; 2], Expected); 6] = [
+                    (Union, [&a, &b], case.union),
+                    (Union, [&b, &a], case.union),
+                    (Intersection, [&a, &b], case.intersection),
+                    (Intersection, [&b, &a], case.intersection),
+                    (Difference, [&a, &b], case.difference),
+                    (Difference, [&b, &a], case.reversed_difference),
+                ];
+                for (i, (operation, operands, expected)) in checks.into_iter().enumerate() {
+                    let context = format!("{} {operation:?} ({i}), axes {order:?}, scale {scale}", case.name);
+                    let outcome = run(operation, &operands);
+                    assert_sound(&outcome, &context);
+                    let certificate = outcome.certificate();
+                    assert_eq!(certificate.volume, expected.0 * scale.powi(3), "{context}");
+                    assert_eq!(
+                        (certificate.vertices, certificate.triangles),
+                        (expected.1, expected.2),
+                        "{context}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn contacts_after_a_shared_rotation_stay_closed_and_right() {
+    // The planes are then only nearly equal.
+    for (axis, degrees) in [([1.0, 2.0, 3.0], 37.0), ([0.3, -1.0, 0.2], 123.4), ([0.0, 0.0, 1.0], 45.0)] {
+        let turned = |low, high| {
+            let mesh = primitives::cuboid(low, high).expect("a box");
+            solid(mesh.rotated(axis, degrees).expect("an axis"))
+        };
+        let a = turned([0.0; 3], [4.0; 3]);
+        for case in table() {
+            let b = turned(case.b.0, case.b.1);
+            for (operation, operands, expected) in [
+                (Union, [&a, &b], case.union),
+                (Union, [&b, &a], case.union),
+                (Intersection, [&a, &b], case.intersection),
+                (Difference, [&a, &b], case.difference),
+                (Difference, [&b, &a], case.reversed_difference),
+            ] {
+                let context = format!("{} {operation:?}, rotated {degrees} about {axis:?}", case.name);
+                let outcome = run(operation, &operands);
+                let certificate = outcome.certificate();
+                assert!(certificate.closed && certificate.manifold, "{context}: {certificate}");
+                assert!((certificate.volume - expected.0).abs() <= 1e-12 * 512.0, "{context}: {certificate}");
+            }
+        }
+    }
+}
+
+#[test]
+fn separate_contacts_keep_both_bodies() {
+    let (a, b) = (common::cube([0.0; 3], 1.0), common::cube([1.0, 0.0, 0.0], 1.0));
+    let outcome = Options::new().contact(Contact::Separate).run(Union, &[&a, &b]).expect("no limits");
+    assert_sound(&outcome, "separate");
+    assert_eq!((outcome.certificate().components, outcome.solid().volume()), (2, 2.0));
+}
+
+#[test]
+fn twenty_seven_cubes_in_any_order_become_one_box() {
+    use rand::seq::SliceRandom;
+    use rand::{SeedableRng, rngs::ChaCha8Rng};
+    let mut rng = ChaCha8Rng::seed_from_u64(27);
+    let mut cubes: Vec<Solid> = (0..27)
+        .map(|i| common::cube([f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)], 1.0))
+        .collect();
+    for round in 0..50 {
+        cubes.shuffle(&mut rng);
+        // One after the other, in this order.
+        let mut sum = cubes[0].clone();
+        for cube in &cubes[1..] {
+            let outcome = run(Union, &[&sum, cube]);
+            assert_sound(&outcome, &format!("round {round}"));
+            sum = outcome.into_solid();
+        }
+        assert_eq!(sum.volume(), 27.0, "round {round}");
+        assert_eq!((sum.mesh().positions.len(), sum.mesh().triangles.len()), (8, 12), "round {round}");
+    }
+    let all: Vec<&Solid> = cubes.iter().collect();
+    let together = run(Union, &all);
+    assert_sound(&together, "together");
+    assert_eq!((together.certificate().vertices, together.certificate().triangles), (8, 12));
+}
+
+#[test]
+fn menger_sponges() {
+    for depth in 1..=3u32 {
+        let sponge = run(Difference, &menger(depth).iter().collect::<Vec<_>>());
+        assert_sound(&sponge, &format!("depth {depth}"));
+        let certificate = sponge.certificate();
+        let size = 3f64.powi(depth as i32);
+        let expected = (20.0f64 / 27.0).powi(depth as i32) * size.powi(3);
+        assert!((certificate.volume - expected).abs() <= 1e-12 * expected, "{certificate}");
+        // Euler characteristic of the surface of the sponge on its own lattice, counted cell by cell.
+        assert_eq!(certificate.genus, Some(menger_genus(depth)), "{certificate}");
+    }
+}
+
+/// A cube of side 3^depth and, per axis, the square bars that bore it.
+fn menger(depth: u32) -> Vec<Solid> {
+    let size = 3i64.pow(depth);
+    let mut operands = vec![common::cube([0.0; 3], size as f64)];
+    for axis in 0..3 {
+        let mut bars = Mesh::default();
+        for level in 1..=depth {
+            let width = size / 3i64.pow(level);
+            for i in 0..3i64.pow(level) {
+                for j in 0..3i64.pow(level) {
+                    let hole = |i: i64, j: i64| i % 3 == 1 && j % 3 == 1;
+                    let (mut x, mut y, mut covered) = (i / 3, j / 3, false);
+                    while x > 0 || y > 0 {
+                        covered |= hole(x, y);
+                        (x, y) = (x / 3, y / 3);
+                    }
+                    if hole(i, j) && !covered {
+                        let mut low = [(i * width) as f64, (j * width) as f64].to_vec();
+                        let mut high = [((i + 1) * width) as f64, ((j + 1) * width) as f64].to_vec();
+                        low.insert(axis, -1.0);
+                        high.insert(axis, size as f64 + 1.0);
+                        let corner = |v: Vec<f64>| [v[0], v[1], v[2]];
+                        bars.append(&primitives::cuboid(corner(low), corner(high)).expect("a box"))
+                            .expect("few");
+                    }
+                }
+            }
+        }
+        operands.push(solid(bars));
+    }
+    operands
+}
+
+/// The genus of the sponge's surface from the cells of its lattice: chi(surface) = 2 chi(solid), and the Euler
+/// characteristic of the solid is counted over its cells, faces, edges and vertices.
+fn menger_genus(depth: u32) -> usize {
+    let n = 3i64.pow(depth);
+    let solid = |x: i64, y: i64, z: i64| {
+        if [x, y, z].iter().any(|&c| c < 0 || c >= n) {
+            return false;
+        }
+        let (mut x, mut y, mut z) = (x, y, z);
+        while x > 0 || y > 0 || z > 0 {
+            if [x % 3 == 1, y % 3 == 1, z % 3 == 1].iter().filter(|&&m| m).count() >= 2 {
+                return false;
+            }
+            (x, y, z) = (x / 3, y / 3, z / 3);
+        }
+        true
+    };
+    // An element of the closed solid: for each axis a vertex (even) or an interval (odd) of the doubled lattice.
+    let mut chi = 0i64;
+    let range = |i: i64| if i % 2 == 1 { vec![i / 2] } else { vec![i / 2 - 1, i / 2] };
+    for i in 0..=2 * n {
+        for j in 0..=2 * n {
+            for k in 0..=2 * n {
+                let present = range(i)
+                    .iter()
+                    .any(|&x| range(j).iter().any(|&y| range(k).iter().any(|&z| solid(x, y, z))));
+                if present {
+                    chi += if (i % 2 + j % 2 + k % 2) % 2 == 0 { 1 } else { -1 };
+                }
+            }
+        }
+    }
+    usize::try_from(1 - chi).expect("the sponge is connected")
+}
