@@ -34,6 +34,8 @@ pub(super) struct Cut {
     pub(super) pieces: Vec<Piece>,
     /// Triangles that rounding turned over.
     pub(super) inverted: u64,
+    /// Whether some triangle has no area, or an edge no longer than rounding.
+    pub(super) has_slivers: bool,
 }
 
 /// All that cutting needs to know.
@@ -46,6 +48,8 @@ pub(super) struct Cutter<'a> {
     /// Winding numbers of the vertices, by side.
     pub(super) windings: &'a [Vec<i32>; 2],
     pub(super) identification: &'a Identification,
+    /// The size of rounding.
+    pub(super) rounding: f64,
 }
 
 /// Scratch memory of one thread.
@@ -78,7 +82,8 @@ impl Cutter<'_> {
             cut
         })?;
         let inverted = pieces.iter().map(|cut| cut.inverted).sum();
-        Ok(Cut { pieces: pieces.into_iter().flat_map(|cut| cut.pieces).collect(), inverted })
+        let has_slivers = pieces.iter().any(|cut| cut.has_slivers);
+        Ok(Cut { pieces: pieces.into_iter().flat_map(|cut| cut.pieces).collect(), inverted, has_slivers })
     }
 
     /// Where a point is.
@@ -115,6 +120,7 @@ impl Cutter<'_> {
         scratch.triangles.clear();
         let shape =
             scratch.triangulator.triangulate(&scratch.points, &scratch.boundary, &mut scratch.triangles);
+        cut.has_slivers |= shape >= Shape::Flat || self.has_short_edge(&points, &scratch.boundary);
         if shape == Shape::Folded {
             let is_inverted = |t: &&[u32; 3]| {
                 let [a, b, c] = t.map(|point| scratch.points[point as usize]);
@@ -164,6 +170,14 @@ impl Cutter<'_> {
             let segment = &self.crossings.segments[segment as usize];
             add(first_node + segment.tail, first_node + segment.head, part.segment_direction());
         }
+    }
+
+    /// Whether two consecutive points of a boundary are no further apart than rounding.
+    fn has_short_edge(&self, points: &[u32], boundary: &[[u32; 2]]) -> bool {
+        boundary.iter().any(|edge| {
+            let [p, q] = edge.map(|i| self.position(points[i as usize]));
+            (0..3).all(|k| (p[k] - q[k]).abs() <= self.rounding)
+        })
     }
 
     /// The two axes onto which a face is projected, in the order in which the kept side is seen counter-clockwise.

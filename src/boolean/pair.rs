@@ -21,6 +21,10 @@ use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame, overlapping_pairs};
 use crate::{Error, Solid};
 
+/// Edges and heights of new triangles up to so many units in the last place of the largest coordinate are rounding: each of
+/// two points is off by less than one.
+const ROUNDING_ULPS: f64 = 4.0;
+
 /// Settings of one combination.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings<'a> {
@@ -79,6 +83,7 @@ pub(super) fn combine(
         faces[side].add_uncut(of_side);
     }
     let identification = Identification::new(&operands, &crossings, &edges, &faces, &sheets, runner)?;
+    let rounding = ROUNDING_ULPS * f64::EPSILON * largest;
     let cutter = Cutter {
         operands: &operands,
         crossings: &crossings,
@@ -86,8 +91,9 @@ pub(super) fn combine(
         faces: &faces,
         windings: &windings,
         identification: &identification,
+        rounding,
     };
-    let (mut pieces, mut inverted) = (Vec::new(), 0);
+    let (mut pieces, mut inverted, mut has_slivers) = (Vec::new(), 0, false);
     let mut done = FxHashSet::default();
     for sheet in &sheets {
         if let Some(left) = walls::add_up(&cutter, &parts, sheet) {
@@ -98,6 +104,7 @@ pub(super) fn combine(
     for &part in &parts {
         let cut = cutter.cut(part, &done, runner)?;
         inverted += cut.inverted;
+        has_slivers |= cut.has_slivers;
         pieces.extend(cut.pieces.into_iter().map(|piece| NewTriangle {
             corners: piece.corners,
             origin: Origin { operand: part.side as u32, triangle: piece.triangle, reversed: part.reversed },
@@ -108,7 +115,8 @@ pub(super) fn combine(
         groups: settings.groups,
         irregular: [&[], &[]],
         // All parts of both surfaces meet in the curve: four triangles at each of its edges.
-        always: operation == Operation::SymmetricDifference || !sheets.is_empty(),
+        rounding,
+        always: operation == Operation::SymmetricDifference || has_slivers || !sheets.is_empty(),
     };
     let tidied = tidy::tidy(&cutter, &parts, &pieces, &tidy_settings, runner)?;
     let (new, replaced, copies) = match tidied {

@@ -101,3 +101,13 @@ pub unsafe extern "C" fn trisect_copy(solid: *const Solid, positions: *mut [f64;
 pub unsafe extern "C" fn trisect_free(solid: *mut Solid) {
     drop(unsafe { Box::from_raw(solid) });
 }
+
+/// Number of pairs of triangles of a solid that cross each other in earnest.
+///
+/// # Safety
+/// `solid` must be live.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn trisect_self_crossings(solid: *const Solid) -> i64 {
+    let found = unsafe { (*solid).self_crossings(&trisect::Control::new()) };
+    found.map_or(-1, |found| found.count as i64)
+}

@@ -2,13 +2,14 @@
 //!
 //! Cutting always gives a closed surface, but where bodies touch it may pass through an edge or a vertex more than once,
 //! hold opposite copies of a triangle, triangles without area, and vertices nobody needs. Five steps mend that: cancel,
-//! pair (make it 2-manifold), flip, remove, collect. They work on a patch: the pieces of cut faces and the kept triangles
+//! pair (make it 2-manifold), flip, remove, collapse. They work on a patch: the pieces of cut faces and the kept triangles
 //! round their points. All else keeps its bits and its order.
 
 mod manifold;
 mod patch;
 mod planes;
 mod remove;
+mod short_edges;
 mod zero_area;
 
 use super::assemble::NewTriangle;
@@ -37,6 +38,8 @@ pub(super) struct Settings<'a> {
     pub(super) groups: [&'a [u32]; 2],
     /// Vertices of each operand at which its own surface is not 2-manifold, ascending.
     pub(super) irregular: [&'a [u32]; 2],
+    /// The size of rounding: edges and heights up to this are not worth a triangle.
+    pub(super) rounding: f64,
     /// Whether to look even where nothing points to work.
     pub(super) always: bool,
 }
@@ -78,11 +81,12 @@ pub(super) fn tidy(
     );
     patch.connect();
     runner.control.check()?;
-    zero_area::flip(&mut patch);
     if settings.remove_vertices {
+        zero_area::flip(&mut patch, &planes, 0.0);
         remove::remove(&mut patch, &planes, candidates, runner.control)?;
-        zero_area::flip(&mut patch);
     }
+    short_edges::collapse(&mut patch, &planes, settings.rounding);
+    zero_area::flip(&mut patch, &planes, settings.rounding);
     Ok(Some(patch.collect()))
 }
 

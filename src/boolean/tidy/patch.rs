@@ -100,6 +100,11 @@ impl<'a> Patch<'a> {
         point >= self.first_copy || self.complete.get(point)
     }
 
+    /// Whether the operation made a point.
+    pub(super) fn is_new(&self, point: u32) -> bool {
+        point >= self.cutter.operands.vertex_count()
+    }
+
     /// Where a point is.
     pub(super) fn position(&self, point: u32) -> &[f64; 3] {
         if point >= self.first_copy {

@@ -1,9 +1,10 @@
 //! Which faces of the result lie in one plane, by the exact planes of their source triangles.
 
-use super::super::cut::Cutter;
+use super::super::cut::{Cutter, dominant_axis};
 use super::super::operands::Operands;
 use super::super::outcome::Origin;
-use crate::exact::{Sign, collinear, orient3d, orient3d_filter};
+use super::patch::Patch;
+use crate::exact::{Sign, collinear, orient2d, orient3d, orient3d_filter};
 
 /// Compares source planes of triangles of the result.
 #[derive(Clone, Copy, Debug)]
@@ -19,13 +20,25 @@ impl Planes<'_> {
         if origin.reversed { [a, c, b] } else { [a, b, c] }
     }
 
+    /// Whether a triangle looks the way of the face it was cut from.
+    pub(super) fn is_sound(&self, patch: &Patch<'_>, corners: &[u32; 3], origin: Origin) -> bool {
+        let (x, y) = self.axes(origin);
+        let [a, b, c] = corners.map(|point| {
+            let position = patch.position(point);
+            [position[x], position[y]]
+        });
+        orient2d(a, b, c) == Sign::Positive
+    }
+
     fn group(&self, origin: Origin) -> u32 {
         self.groups[origin.operand as usize].get(origin.triangle as usize).copied().unwrap_or(0)
     }
 
-    /// The source triangle of a face, as it is oriented in the result.
-    pub(super) fn source(&self, origin: Origin) -> [[f64; 3]; 3] {
-        self.corners(origin)
+    /// The two axes onto which a face is best projected, in the order in which it is seen counter-clockwise.
+    pub(super) fn axes(&self, origin: Origin) -> (usize, usize) {
+        let (axis, positive) = dominant_axis(&self.corners(origin));
+        let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
+        if positive { (x, y) } else { (y, x) }
     }
 
     /// Whether two faces look the same way from the same plane and belong to the same group, so that the border between
@@ -90,8 +103,8 @@ impl Planes<'_> {
 
 /// Whether the normals of two triangles of one plane point the same way.
 fn same_way(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
-    let (axis, positive) = super::super::cut::dominant_axis(x);
+    let (axis, positive) = dominant_axis(x);
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
     let [a, b, c] = y.map(|p| [p[i], p[j]]);
-    (crate::exact::orient2d(a, b, c) == Sign::Positive) == positive
+    (orient2d(a, b, c) == Sign::Positive) == positive
 }

@@ -4,7 +4,6 @@
 //! operation made, or met, are asked about. The hole is triangulated anew, in the projection of its plane, and only where
 //! all new triangles are sound and no edge would occur twice.
 
-use super::super::cut::dominant_axis;
 use super::super::outcome::Origin;
 use super::patch::Patch;
 use super::planes::Planes;
@@ -113,9 +112,7 @@ impl Remover<'_> {
         if outline.len() < 3 {
             return true;
         }
-        let (axis, positive) = dominant_axis(&self.planes.source(origin));
-        let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
-        let (x, y) = if positive { (x, y) } else { (y, x) };
+        let (x, y) = self.planes.axes(origin);
         let points: Vec<[f64; 2]> = outline
             .iter()
             .map(|&point| {

@@ -4,6 +4,7 @@ use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use super::patch::{Face, Patch};
+use super::planes::Planes;
 use crate::exact::collinear;
 
 /// A flip: the two triangles that share the longest side from `c` to `a` of the flat triangle `a, b, c`.
@@ -20,6 +21,21 @@ fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
     let face = &patch.faces[index as usize];
     let [a, b, c] = face.corners.map(|point| patch.position(point));
     face.alive && !face.untouched && collinear(a, b, c)
+}
+
+/// Whether a triangle is higher over its longest side than nothing, but not than `height`.
+fn is_lower(patch: &Patch<'_>, index: u32, height: f64) -> bool {
+    let face = &patch.faces[index as usize];
+    if !face.alive || face.untouched {
+        return false;
+    }
+    let [a, b, c] = face.corners.map(|point| patch.position(point));
+    let difference = |p: &[f64; 3], q: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|k| q[k] - p[k]) };
+    let (u, v, w) = (difference(a, b), difference(b, c), difference(c, a));
+    let cross: [f64; 3] =
+        std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
+    let square = |v: &[f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    square(&cross) <= height * height * square(&u).max(square(&v)).max(square(&w))
 }
 
 /// Flips as a sum of triangles, before the patch is a 2-manifold: at a side with several triangles beyond it any of them
@@ -80,9 +96,11 @@ pub(super) fn flip_chain(patch: &mut Patch<'_>) {
     }
 }
 
-/// Flips in the 2-manifold, as long as that makes no double edge.
-pub(super) fn flip(patch: &mut Patch<'_>) {
-    let mut queue: Vec<u32> = (0..patch.faces.len() as u32).filter(|&index| is_flat(patch, index)).collect();
+/// Flips triangles in the 2-manifold that are no higher than `height`, as long as that makes no double edge, and (for those
+/// with some height) both triangles afterwards look the way of the one beyond the side.
+pub(super) fn flip(patch: &mut Patch<'_>, planes: &Planes<'_>, height: f64) {
+    let is_low = |patch: &Patch<'_>, index: u32| is_flat(patch, index) || is_lower(patch, index, height);
+    let mut queue: Vec<u32> = (0..patch.faces.len() as u32).filter(|&index| is_low(patch, index)).collect();
     // Each flip moves a vertex off a longest side; the bound stops cycles among triangles that are all flat.
     let mut budget = 8 * queue.len();
     while let Some(index) = queue.pop() {
@@ -90,7 +108,7 @@ pub(super) fn flip(patch: &mut Patch<'_>) {
             break;
         }
         budget -= 1;
-        if !is_flat(patch, index) {
+        if !is_low(patch, index) {
             continue;
         }
         let Some(flip) = longest_side(patch, index, |patch, a, c| patch.left_of(a, c)) else { continue };
@@ -98,10 +116,15 @@ pub(super) fn flip(patch: &mut Patch<'_>) {
         if d == b {
             // The same triangle turned over: both enclose nothing.
             patch.replace(&[flat, other], &[]);
-        } else if !patch.has_edge(b, d) && !patch.has_edge(d, b) {
-            let origin = patch.faces[other as usize].origin;
-            patch.replace(&[flat, other], &[([a, b, d], origin), ([b, c, d], origin)]);
-            queue.extend([flat, other].into_iter().filter(|&index| is_flat(patch, index)));
+            continue;
+        }
+        let origin = patch.faces[other as usize].origin;
+        let new = [([a, b, d], origin), ([b, c, d], origin)];
+        let harmless = is_flat(patch, flat)
+            || new.iter().all(|(corners, origin)| planes.is_sound(patch, corners, *origin));
+        if harmless && !patch.has_edge(b, d) && !patch.has_edge(d, b) {
+            patch.replace(&[flat, other], &new);
+            queue.extend([flat, other].into_iter().filter(|&index| is_low(patch, index)));
         }
     }
 }
@@ -122,12 +145,12 @@ fn longest_side(
     Some(Flip { flat, other, a, b, c, d })
 }
 
-/// Which of three collinear points lies strictly between the others.
+/// Which of three points that are (nearly) on one line lies strictly between the others.
 fn middle(points: [[f64; 3]; 3]) -> Option<usize> {
-    (0..3).find(|&k| {
-        let (p, q, r) = (points[(k + 2) % 3], points[k], points[(k + 1) % 3]);
-        q != p
-            && q != r
-            && (0..3).all(|axis| p[axis].min(r[axis]) <= q[axis] && q[axis] <= p[axis].max(r[axis]))
-    })
+    let length = |i: usize, j: usize| (0..3).map(|k| (points[j][k] - points[i][k]).powi(2)).sum::<f64>();
+    let opposite = |k: usize| length((k + 1) % 3, (k + 2) % 3);
+    let k = (1..3).fold(0, |best, k| if opposite(k) > opposite(best) { k } else { best });
+    let (p, q, r) = (points[(k + 2) % 3], points[k], points[(k + 1) % 3]);
+    let ahead: f64 = (0..3).map(|axis| (p[axis] - q[axis]) * (r[axis] - q[axis])).sum();
+    (q != p && q != r && ahead < 0.0).then_some(k)
 }
