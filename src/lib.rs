@@ -3,8 +3,8 @@
 //! ```
 //! use trisect::{Operation, Solid, boolean, primitives};
 //!
-//! let block = Solid::try_from(primitives::cuboid([0.0; 3], [1.0; 3]))?;
-//! let corner = Solid::try_from(primitives::cuboid([0.5; 3], [1.5; 3]))?;
+//! let block = Solid::try_from(primitives::cuboid([0.0; 3], [1.0; 3])?)?;
+//! let corner = Solid::try_from(primitives::cuboid([0.5; 3], [1.5; 3])?)?;
 //! let cut = boolean(Operation::Difference, &block, &corner)?;
 //! assert_eq!(cut.solid().volume(), 0.875);
 //! # Ok::<(), trisect::Error>(())

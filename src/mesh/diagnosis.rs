@@ -2,13 +2,295 @@
 
 use std::fmt;
 
-/// Faults found in a mesh: how many of each, and where a few of them are.
+use serde_json::{Value, json};
+
+use super::Bounds;
+
+/// At most this many places are kept of each kind of fault.
+pub(super) const PLACES: usize = 5;
+
+/// What [`diagnose`](super::diagnose) found in a mesh: how many faults of each kind, where a few of them are, and
+/// measures where they have a meaning.
+///
+/// All indices are the caller's. Edges, shells and measures are those of the surface as a [`Solid`](super::Solid)
+/// would see it: triangles out of range, not finite or with repeated corners left out, opposite copies left out in
+/// pairs, and vertices of equal coordinates on open edges sewn together.
+///
+/// [`Display`](fmt::Display) writes the faults in one line with up to two places each; `{:#}` one line for each
+/// kind with all the places kept.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
-pub struct Diagnosis {}
+pub struct Diagnosis {
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Number of triangles.
+    pub triangles: usize,
+    /// Triangles that name a vertex that does not exist.
+    pub index_out_of_range: Fault,
+    /// Vertices used by triangles with a coordinate that is not a finite number.
+    pub not_finite: Fault,
+    /// Vertices no triangle uses. No harm: they are left out.
+    pub unreferenced_vertices: Fault,
+    /// Triangles with a repeated corner, as given. No harm: they are left out.
+    pub repeated_corners: Fault,
+    /// Further triangles whose corners lie exactly on one line.
+    pub zero_area: Fault,
+    /// Further copies of a triangle with the same orientation (both triangles are named): the surface is double.
+    pub duplicates: Fault,
+    /// Pairs of triangles on the same corners with opposite orientation. No harm: they are left out.
+    pub opposite_duplicates: Fault,
+    /// Edges with one triangle only: the rims of holes.
+    pub open_edges: Fault,
+    /// Edges whose two triangles run along them in the same direction: one of the two faces the wrong way.
+    pub misoriented_edges: Fault,
+    /// Edges with more than two triangles. No harm where the directions cancel.
+    pub non_manifold_edges: Fault,
+    /// Those of the edges with more than two triangles whose directions do not cancel.
+    pub unbalanced_edges: Fault,
+    /// Vertices whose triangles form several fans. No harm.
+    pub pinched_vertices: Fault,
+    /// Used vertices with exactly the coordinates of an earlier one (both are named). No harm.
+    pub split_vertices: Fault,
+    /// Number of shells: pieces of the surface connected by edges.
+    pub shells: usize,
+    /// Closed shells that face inwards without lying inside another, or outwards inside another. (Told of the
+    /// pieces between edges with more than two triangles: bodies that touch in an edge are judged each for itself.)
+    pub inside_out_shells: Fault,
+    /// Pairs of triangles that cross or overlap each other; `None` if that has not been looked for.
+    pub self_crossings: Option<Fault>,
+    /// Whether every directed edge is met by its opposite equally often.
+    pub closed: bool,
+    /// Where the surface is not closed: the least power of ten between 1e-9 and 1e-3 of the size within which
+    /// welding the vertices on open edges would close it. [`Mesh::welded`](super::Mesh::welded) does it.
+    pub closing_distance: Option<f64>,
+    /// The box round the triangles.
+    pub bounds: Option<Bounds>,
+    /// The area of the triangles.
+    pub area: f64,
+    /// The signed volume, if closed.
+    pub volume: Option<f64>,
+    /// Vertices minus edges plus triangles.
+    pub euler_characteristic: i64,
+    /// The genus, if closed and every edge has two triangles; pinched vertices taken apart, summed over the shells.
+    pub genus: Option<usize>,
+}
+
+/// Faults of one kind.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fault {
+    /// How many there are.
+    pub count: usize,
+    /// Where the first of them are.
+    pub places: Vec<Place>,
+}
+
+/// Where a fault is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Place {
+    /// The triangles concerned (of an edge with many, the first few).
+    pub triangles: Vec<u32>,
+    /// The vertices concerned: the ends of an edge, the corners of a triangle.
+    pub vertices: Vec<u32>,
+    /// A point at the fault: the vertex, the middle of the edge or of the triangle. Not a number where a
+    /// coordinate is not finite or missing.
+    pub position: [f64; 3],
+}
+
+impl Fault {
+    /// Counts one more, and keeps its place if there is room.
+    pub(super) fn add(&mut self, place: impl FnOnce() -> Place) {
+        if self.places.len() < PLACES {
+            self.places.push(place());
+        }
+        self.count += 1;
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        self.count == 0
+    }
+}
+
+impl Diagnosis {
+    /// The kinds of fault with the key of each, and its name for one and for several.
+    fn faults(&self) -> [(&'static str, &'static str, &'static str, &Fault); 13] {
+        [
+            (
+                "index_out_of_range",
+                "triangle with an index out of range",
+                "triangles with an index out of range",
+                &self.index_out_of_range,
+            ),
+            ("not_finite", "vertex that is not finite", "vertices that are not finite", &self.not_finite),
+            ("open_edges", "open edge", "open edges", &self.open_edges),
+            ("misoriented_edges", "misoriented edge", "misoriented edges", &self.misoriented_edges),
+            (
+                "unbalanced_edges",
+                "edge with more than two triangles in unequal directions",
+                "edges with more than two triangles in unequal directions",
+                &self.unbalanced_edges,
+            ),
+            ("inside_out_shells", "inside-out shell", "inside-out shells", &self.inside_out_shells),
+            ("duplicates", "duplicate triangle", "duplicate triangles", &self.duplicates),
+            ("non_manifold_edges", "non-manifold edge", "non-manifold edges", &self.non_manifold_edges),
+            (
+                "pinched_vertices",
+                "vertex with several fans",
+                "vertices with several fans",
+                &self.pinched_vertices,
+            ),
+            ("zero_area", "zero-area triangle", "zero-area triangles", &self.zero_area),
+            (
+                "repeated_corners",
+                "triangle with a repeated corner",
+                "triangles with a repeated corner",
+                &self.repeated_corners,
+            ),
+            (
+                "opposite_duplicates",
+                "pair of opposite triangles",
+                "pairs of opposite triangles",
+                &self.opposite_duplicates,
+            ),
+            (
+                "unreferenced_vertices",
+                "unreferenced vertex",
+                "unreferenced vertices",
+                &self.unreferenced_vertices,
+            ),
+        ]
+    }
+
+    /// The diagnosis as a JSON object: a key for each field, faults as `{"count", "places"}`, places as
+    /// `{"triangles", "vertices", "position"}`, numbers that are not finite as null. Keys are only ever added.
+    #[must_use]
+    pub fn to_json(&self) -> Value {
+        let place = |place: &Place| json!({"triangles": place.triangles, "vertices": place.vertices, "position": place.position});
+        let fault = |fault: &Fault| json!({"count": fault.count, "places": fault.places.iter().map(place).collect::<Vec<_>>()});
+        let mut object = json!({
+            "vertices": self.vertices,
+            "triangles": self.triangles,
+            "closed": self.closed,
+            "closing_distance": self.closing_distance,
+            "split_vertices": fault(&self.split_vertices),
+            "self_crossings": self.self_crossings.as_ref().map(fault),
+            "shells": self.shells,
+            "bounds": self.bounds.map(|bounds| json!({"low": bounds.low, "high": bounds.high})),
+            "area": self.area,
+            "volume": self.volume,
+            "euler_characteristic": self.euler_characteristic,
+            "genus": self.genus,
+        });
+        for (key, _, _, found) in self.faults() {
+            object[key] = fault(found);
+        }
+        object
+    }
+}
 
 impl fmt::Display for Diagnosis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "no faults")
+        let (separator, shown) = if f.alternate() { ("\n", PLACES) } else { ("; ", 2) };
+        let mut first = true;
+        let mut separate = |f: &mut fmt::Formatter<'_>| {
+            if std::mem::take(&mut first) { Ok(()) } else { f.write_str(separator) }
+        };
+        let crossings =
+            self.self_crossings.as_ref().map(|fault| ("", "crossing pair", "crossing pairs", fault));
+        for (_, one, several, fault) in self.faults().into_iter().chain(crossings) {
+            if fault.is_none() {
+                continue;
+            }
+            separate(f)?;
+            write!(f, "{} {}", fault.count, if fault.count == 1 { one } else { several })?;
+            for (index, place) in fault.places.iter().take(shown).enumerate() {
+                write!(f, "{}{place}", if index == 0 { ": " } else { ", " })?;
+            }
+            if fault.count > fault.places.len().min(shown) {
+                f.write_str(", ...")?;
+            }
+        }
+        if let Some(distance) = self.closing_distance {
+            separate(f)?;
+            write!(f, "welding vertices within {distance:e} would close it")?;
+        }
+        if first { f.write_str("no faults") } else { Ok(()) }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list = |indices: &[u32]| indices.iter().map(u32::to_string).collect::<Vec<_>>().join("-");
+        match self.triangles[..] {
+            [] => {}
+            [triangle] => write!(f, "triangle {triangle} ")?,
+            _ => write!(f, "triangles {} ", list(&self.triangles).replace('-', ", "))?,
+        }
+        match self.vertices[..] {
+            [] => {}
+            [vertex] => write!(f, "vertex {vertex} ")?,
+            _ => write!(f, "vertices {} ", list(&self.vertices))?,
+        }
+        let [x, y, z] = self.position.map(short);
+        write!(f, "at ({x}, {y}, {z})")
+    }
+}
+
+/// The number with seven digits at most.
+fn short(x: f64) -> String {
+    let rounded = format!("{x:.6e}").parse().unwrap_or(x);
+    if rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(count: usize) -> Fault {
+        let place = |index: u32| Place {
+            triangles: vec![index],
+            vertices: vec![index, index + 1],
+            position: [f64::from(index) / 3.0, -1e-9, 0.0],
+        };
+        Fault { count, places: (0..count.min(PLACES) as u32).map(place).collect() }
+    }
+
+    #[test]
+    fn text_is_short_and_has_places() {
+        assert_eq!(Diagnosis::default().to_string(), "no faults");
+        let diagnosis = Diagnosis {
+            open_edges: fault(7),
+            zero_area: fault(1),
+            closing_distance: Some(1e-7),
+            ..Diagnosis::default()
+        };
+        let expected = "7 open edges: triangle 0 vertices 0-1 at (0, -1e-9, 0), \
+            triangle 1 vertices 1-2 at (0.3333333, -1e-9, 0), ...; \
+            1 zero-area triangle: triangle 0 vertices 0-1 at (0, -1e-9, 0); \
+            welding vertices within 1e-7 would close it";
+        assert_eq!(diagnosis.to_string(), expected);
+        assert_eq!(format!("{diagnosis:#}").lines().count(), 3);
+        assert_eq!(format!("{diagnosis:#}").matches(" at ").count(), 6);
+    }
+
+    #[test]
+    fn json_has_every_field() {
+        let diagnosis = Diagnosis { not_finite: fault(2), area: f64::NAN, ..Diagnosis::default() };
+        let json = diagnosis.to_json();
+        assert_eq!(json["not_finite"]["count"], 2);
+        assert_eq!(json["not_finite"]["places"][1]["vertices"][1], 2);
+        assert!(json["area"].is_null() && json["self_crossings"].is_null());
+        // As many keys as fields: Debug names each once at the first level.
+        let fields = format!("{:#?}", Diagnosis::default());
+        let fields = fields.lines().filter(|line| line.starts_with("    ") && !line.starts_with("     "));
+        let fields = fields.filter_map(|line| line.trim().split_once(':')).map(|(name, _)| name.to_string());
+        let fields: std::collections::BTreeSet<String> = fields.collect();
+        let keys: std::collections::BTreeSet<String> = json.as_object().unwrap().keys().cloned().collect();
+        assert_eq!(keys, fields);
     }
 }

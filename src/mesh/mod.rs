@@ -1,12 +1,37 @@
 //! Triangle meshes as plain data, and solids: meshes known to be closed surfaces.
+//!
+//! [`Mesh`] holds positions and triangles and promises nothing. [`Solid::try_from`] is the gate: it checks a mesh,
+//! mends what can be mended without guessing, and otherwise tells what is wrong and where ([`Diagnosis`]).
 
+mod bounds;
+mod buckets;
+mod chain;
+mod clean;
+mod diagnose;
 mod diagnosis;
+mod duplicates;
+mod edges;
 mod groups;
+mod measure;
+mod nesting;
+mod orient;
+mod parallel;
+mod patches;
+pub(crate) mod scale;
 mod solid;
+mod summation;
+mod topology;
+mod transform;
+mod union_find;
+mod weld;
 
-pub use diagnosis::Diagnosis;
+pub use bounds::Bounds;
+pub use diagnose::diagnose;
+pub use diagnosis::{Diagnosis, Fault, Place};
 pub use groups::{FaceGroup, FaceGroups, Material};
-pub use solid::Solid;
+pub use solid::{Cleaning, Solid};
+
+use crate::Error;
 
 /// A triangle mesh: positions, triangles, and the groups the triangles belong to. Plain data without invariants;
 /// [`Solid`] is the mesh that is known to be a closed surface.
@@ -32,5 +57,57 @@ impl Mesh {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
+    }
+
+    /// Appends the vertices, triangles and groups of `other`; its vertices stay apart from those here.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] if there are more vertices than 32 bits can name; this mesh is then as before.
+    pub fn append(&mut self, other: &Self) -> Result<(), Error> {
+        let first = self.positions.len();
+        let vertices = first + other.positions.len();
+        if vertices > u32::MAX as usize {
+            return Err(Error::TooLarge { what: format!("{vertices} vertices in one mesh") });
+        }
+        self.groups.append(self.triangles.len(), &other.groups, other.triangles.len());
+        self.positions.extend_from_slice(&other.positions);
+        // An index out of range stays out of range instead of naming something else.
+        let shifted = |corner: u32| corner.saturating_add(first as u32);
+        self.triangles.extend(other.triangles.iter().map(|triangle| triangle.map(shifted)));
+        Ok(())
+    }
+
+    /// All `meshes` in one, in order; their vertices stay apart.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] if there are more vertices than 32 bits can name.
+    pub fn merged<'a>(meshes: impl IntoIterator<Item = &'a Self>) -> Result<Self, Error> {
+        let mut all = Self::default();
+        meshes.into_iter().try_for_each(|mesh| all.append(mesh))?;
+        Ok(all)
+    }
+
+    /// The mesh with the vertices on open edges welded that lie within `distance` of each other, and without the
+    /// triangles that thereby lose a corner: a repair for cracks, never done unasked. Parts that are closed are
+    /// left alone, and so are all positions. Where a [`Diagnosis`] names a closing distance, welding by it closes
+    /// the surface. O(n log n).
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] unless `distance` is finite and positive or zero (equal coordinates only).
+    pub fn welded(mut self, distance: f64) -> Result<Self, Error> {
+        if !(distance.is_finite() && distance >= 0.0) {
+            return Err(Error::InvalidArgument(format!(
+                "the welding distance must be finite and not negative, not {distance}"
+            )));
+        }
+        let how = if distance == 0.0 { clean::Weld::Exact } else { clean::Weld::Within(distance) };
+        let cleaned = clean::clean(&self.positions, &self.triangles, how);
+        if cleaned.welded > 0 {
+            let mut triangles = cleaned.triangles;
+            self.positions = clean::compact(&self.positions, &mut triangles);
+            self.triangles = triangles;
+            self.groups.select(&cleaned.source);
+        }
+        Ok(self)
     }
 }

@@ -1,33 +1,307 @@
 //! A mesh known to be a closed surface.
 
-use super::Mesh;
+use std::cmp::Ordering;
+use std::sync::OnceLock;
+
+use super::clean::{self, Weld};
+use super::measure::signed_volume;
+use super::parallel::join;
+use super::topology::Topology;
+use super::{Bounds, Mesh, chain, diagnose};
 use crate::Error;
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
-/// often as it occurs.
+/// often as it occurs. Every vertex belongs to a triangle, no triangle has a repeated corner, and the enclosed
+/// volume is not negative. Edges with more than two triangles, several shells and nested inward shells are allowed.
+///
+/// Made with [`Solid::try_from`], which takes a few nanoseconds a triangle and copies nothing where the mesh is
+/// closed by its indices:
+///
+/// - Triangles with a repeated corner and vertices of no triangle are left out.
+/// - Where the indices do not close the surface (normal and texture seams, STL), vertices on open edges that have
+///   equal coordinates are made one, the first. Nothing is ever welded by distance; see [`Mesh::welded`].
+/// - Opposite copies of a triangle, which enclose nothing, are left out in pairs.
+///
+/// [`Solid::cleaning`] tells what of this was done and [`Solid::source_triangle`] which of the caller's triangles
+/// each is. Equal copies of a triangle with the same orientation count twice: the surface bounds its volume doubly.
+///
+/// ```
+/// use trisect::{Error, Mesh, Solid};
+///
+/// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let mut triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+/// let solid = Solid::try_from(Mesh::new(corners.clone(), triangles.clone()))?;
+/// assert_eq!(solid.volume(), 1.0 / 6.0);
+///
+/// triangles.pop();
+/// match Solid::try_from(Mesh::new(corners, triangles)) {
+///     Err(Error::NotClosed(diagnosis)) => assert_eq!(diagnosis.open_edges.count, 3),
+///     other => panic!("{other:?}"),
+/// }
+/// # Ok::<(), Error>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Solid {
     mesh: Mesh,
+    bounds: Option<Bounds>,
+    /// Whether every edge has two triangles.
+    edge_manifold: OnceLock<bool>,
+    /// The caller's index of each triangle, where that is not its own.
+    source: Option<Vec<u32>>,
+    cleaning: Cleaning,
+    volume: OnceLock<f64>,
+}
+
+/// What was left out or joined to make a [`Solid`] of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Cleaning {
+    /// Triangles left out because of a repeated corner, as given or once welded.
+    pub repeated_corners: usize,
+    /// Pairs of triangles left out as opposite copies of each other.
+    pub opposite_pairs: usize,
+    /// Vertices replaced by another with equal coordinates.
+    pub welded_vertices: usize,
+    /// Vertices left out because no triangle uses them.
+    pub unreferenced_vertices: usize,
 }
 
 impl Solid {
+    /// The solid without triangles.
+    #[must_use]
+    pub fn empty() -> Self {
+        Self { edge_manifold: OnceLock::from(true), ..Self::default() }
+    }
+
+    /// A solid of a mesh that a construction has already made closed, such as the result of a boolean. Every vertex
+    /// must be finite and used, and every triangle have three corners.
+    #[cfg_attr(not(test), expect(dead_code, reason = "for the results of booleans"))]
+    pub(crate) fn from_closed_unchecked(mesh: Mesh) -> Self {
+        #[cfg(debug_assertions)]
+        {
+            let chain = chain::examine(&mesh.triangles, mesh.positions.len());
+            debug_assert!(
+                chain.is_ok_and(|chain| chain.closed && !chain.unreferenced),
+                "not closed: {chain:?}"
+            );
+            debug_assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()), "not finite");
+        }
+        Self { bounds: Bounds::of(&mesh.positions), mesh, ..Self::default() }
+    }
+
     /// The mesh.
     #[must_use]
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
 
-    /// The enclosed volume, in cubed units of the coordinates.
+    /// The mesh, by value.
+    #[must_use]
+    pub fn into_mesh(self) -> Mesh {
+        self.mesh
+    }
+
+    /// Whether there are no triangles.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.mesh.is_empty()
+    }
+
+    /// The smallest box round the solid; `None` if it is empty.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Bounds> {
+        self.bounds
+    }
+
+    /// The enclosed volume, in cubed units of the coordinates: the integral of the winding number. Accuracy as
+    /// [`Mesh::volume`]; computed once.
     #[must_use]
     pub fn volume(&self) -> f64 {
-        0.0
+        let (mesh, bounds) = (&self.mesh, self.bounds.as_ref());
+        let compute =
+            || bounds.map_or(0.0, |bounds| signed_volume(&mesh.positions, &mesh.triangles, bounds).value);
+        *self.volume.get_or_init(compute)
+    }
+
+    /// The area of the surface, in squared units of the coordinates.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.mesh.area()
+    }
+
+    /// What was left out or joined when this was made of a mesh.
+    #[must_use]
+    pub fn cleaning(&self) -> Cleaning {
+        self.cleaning
+    }
+
+    /// The index that triangle `triangle` had in the mesh this was made of.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    #[must_use]
+    pub fn source_triangle(&self, triangle: u32) -> u32 {
+        assert!((triangle as usize) < self.mesh.triangles.len(), "no triangle {triangle}");
+        self.source.as_ref().map_or(triangle, |source| source[triangle as usize])
+    }
+
+    /// Whether every edge has exactly two triangles. Known without any work for a solid made of a mesh.
+    #[must_use]
+    pub fn is_edge_manifold(&self) -> bool {
+        let examine = || chain::examine(&self.mesh.triangles, self.mesh.positions.len());
+        *self.edge_manifold.get_or_init(|| examine().is_ok_and(|chain| chain.edge_manifold))
+    }
+
+    /// Whether the surface is a 2-manifold: every edge has two triangles, and the triangles round every vertex form
+    /// one fan. O(n).
+    #[must_use]
+    pub fn is_manifold(&self) -> bool {
+        self.is_edge_manifold() && self.topology().pinched.is_empty()
+    }
+
+    /// How many pieces the surface falls into, connected by edges. (A body with a cavity has two.) O(n).
+    #[must_use]
+    pub fn components(&self) -> usize {
+        self.topology().components
+    }
+
+    /// For every triangle the component it is in, counted from 0 in the order of their first triangles. O(n).
+    #[must_use]
+    pub fn component_labels(&self) -> Vec<u32> {
+        self.topology().component_of
+    }
+
+    /// Vertices minus edges plus triangles. O(n).
+    #[must_use]
+    pub fn euler_characteristic(&self) -> i64 {
+        self.topology().euler_characteristic
+    }
+
+    /// The genus, summed over the components; a vertex where several fans meet counts once for each. `None` if
+    /// some edge has more than two triangles. O(n).
+    #[must_use]
+    pub fn genus(&self) -> Option<usize> {
+        self.topology().genus
+    }
+
+    fn topology(&self) -> Topology {
+        Topology::new(&self.mesh.triangles, self.mesh.positions.len())
     }
 }
 
+/// The gate every operand passes.
 impl TryFrom<Mesh> for Solid {
     type Error = Error;
 
+    /// # Errors
+    /// [`Error::IndexOutOfRange`], [`Error::NotFinite`], [`Error::NotClosed`], [`Error::InsideOut`];
+    /// [`Error::TooLarge`] beyond 2^31 vertices or 2^32/3 triangles; [`Error::InvalidArgument`] if the face groups
+    /// do not fit the triangles.
     fn try_from(mesh: Mesh) -> Result<Self, Error> {
-        Ok(Self { mesh })
+        let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
+        if vertices > chain::MAX_VERTICES || triangles > chain::MAX_TRIANGLES {
+            return Err(Error::TooLarge { what: format!("{vertices} vertices, {triangles} triangles") });
+        }
+        if let Some(fault) = mesh.groups.fault(triangles) {
+            return Err(Error::InvalidArgument(format!("face groups: {fault}")));
+        }
+        let (examined, (bounds, volume)) = join(
+            || chain::examine(&mesh.triangles, vertices),
+            || {
+                let bounds = finite_bounds(&mesh.positions);
+                let volume = bounds.map(|bounds| signed_volume(&mesh.positions, &mesh.triangles, &bounds));
+                (bounds, volume)
+            },
+        );
+        let examined = examined.map_err(|triangle| {
+            let index = mesh.triangles[triangle].into_iter().find(|&index| index as usize >= vertices);
+            Error::IndexOutOfRange { triangle, index: index.unwrap_or_default(), vertices }
+        })?;
+        let as_it_is = examined.closed && !examined.unreferenced && !examined.two_triangle_vertex;
+        if !(as_it_is && examined.edge_manifold && bounds.is_some()) {
+            return cleaned(mesh);
+        }
+        let solid = Self { mesh, bounds, edge_manifold: OnceLock::from(true), ..Self::default() };
+        match volume {
+            Some(volume) if volume.sign == Ordering::Less => Err(Error::InsideOut { volume: volume.value }),
+            Some(volume) => Ok(Self { volume: OnceLock::from(volume.value), ..solid }),
+            None => Ok(solid),
+        }
+    }
+}
+
+/// The box round `positions`; `None` if there are none or one is not finite.
+fn finite_bounds(positions: &[[f64; 3]]) -> Option<Bounds> {
+    let mut bounds = Bounds::NOTHING;
+    let mut zero = 0.0;
+    for position in positions {
+        bounds.include(position);
+        // Zero times a number is zero unless the number is not finite.
+        zero += position[0] * 0.0 + position[1] * 0.0 + position[2] * 0.0;
+    }
+    (!positions.is_empty() && zero == 0.0).then_some(bounds)
+}
+
+/// The way round for a mesh that is not a solid as it is.
+fn cleaned(mesh: Mesh) -> Result<Solid, Error> {
+    let triangles = mesh.triangles.len();
+    let corners = mesh.triangles.iter().filter(|[a, b, c]| a != b && b != c && c != a).flatten();
+    for &vertex in corners {
+        let position = mesh.positions[vertex as usize];
+        if !position.iter().all(|x| x.is_finite()) {
+            return Err(Error::NotFinite { vertex: vertex as usize, position });
+        }
+    }
+    let mut cleaned = clean::clean(&mesh.positions, &mesh.triangles, Weld::Exact);
+    if !cleaned.closed {
+        return Err(Error::NotClosed(Box::new(diagnose(&mesh))));
+    }
+    let positions = clean::compact(&mesh.positions, &mut cleaned.triangles);
+    let bounds = Bounds::of(&positions);
+    let volume = bounds.map(|bounds| signed_volume(&positions, &cleaned.triangles, &bounds));
+    if let Some(volume) = volume.filter(|volume| volume.sign == Ordering::Less) {
+        return Err(Error::InsideOut { volume: volume.value });
+    }
+    let cleaning = Cleaning {
+        repeated_corners: cleaned.repeated_corners,
+        opposite_pairs: cleaned.opposite.len(),
+        welded_vertices: cleaned.welded,
+        unreferenced_vertices: mesh.positions.len() - positions.len() - cleaned.welded,
+    };
+    let mut groups = mesh.groups;
+    let dropped = cleaned.triangles.len() < triangles;
+    if dropped {
+        groups.select(&cleaned.source);
+    }
+    Ok(Solid {
+        mesh: Mesh { positions, triangles: cleaned.triangles, groups },
+        bounds,
+        edge_manifold: OnceLock::from(cleaned.edge_manifold),
+        source: dropped.then_some(cleaned.source),
+        cleaning,
+        volume: volume.map_or_else(OnceLock::new, |volume| OnceLock::from(volume.value)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::primitives;
+
+    #[test]
+    fn unchecked_solids_know_the_same() {
+        let mesh = primitives::torus(2.0, 0.5, 12, 7).unwrap();
+        let (checked, unchecked) =
+            (Solid::try_from(mesh.clone()).unwrap(), Solid::from_closed_unchecked(mesh));
+        assert_eq!(checked.bounds(), unchecked.bounds());
+        assert_eq!(checked.volume().to_bits(), unchecked.volume().to_bits());
+        assert_eq!(checked.is_edge_manifold(), unchecked.is_edge_manifold());
+        assert_eq!(unchecked.source_triangle(5), 5);
+    }
+
+    #[test]
+    fn solids_cross_threads() {
+        fn crosses<T: Send + Sync + Clone>() {}
+        crosses::<Solid>();
     }
 }

@@ -1,0 +1,94 @@
+//! Axis-aligned boxes.
+
+/// An axis-aligned box, closed: `low[k] <= x[k] <= high[k]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// The corner with the least coordinates.
+    pub low: [f64; 3],
+    /// The corner with the greatest coordinates.
+    pub high: [f64; 3],
+}
+
+impl Bounds {
+    /// The smallest box round `points`; `None` for no points. Not-a-number coordinates are ignored.
+    pub fn of<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>) -> Option<Self> {
+        let mut bounds = Self::NOTHING;
+        for point in points {
+            bounds.include(point);
+        }
+        (bounds.low[0] <= bounds.high[0]).then_some(bounds)
+    }
+
+    /// Contains nothing: the neutral element of [`include`](Self::include) and [`union`](Self::union).
+    pub(crate) const NOTHING: Self = Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
+
+    /// Grows the box to contain `point`.
+    #[inline]
+    pub(crate) fn include(&mut self, point: &[f64; 3]) {
+        for axis in 0..3 {
+            // Comparisons, not f64::min: they compile to one instruction and skip not-a-numbers alike.
+            self.low[axis] = if point[axis] < self.low[axis] { point[axis] } else { self.low[axis] };
+            self.high[axis] = if point[axis] > self.high[axis] { point[axis] } else { self.high[axis] };
+        }
+    }
+
+    /// The smallest box that contains both.
+    #[must_use]
+    pub fn union(mut self, other: &Self) -> Self {
+        self.include(&other.low);
+        self.include(&other.high);
+        self
+    }
+
+    /// Whether `other` lies in this box; their borders may touch.
+    #[must_use]
+    pub fn contains(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
+    }
+
+    /// The edge lengths; infinite where they exceed the largest number.
+    #[must_use]
+    pub fn size(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.high[axis] - self.low[axis])
+    }
+
+    /// The largest absolute value of a coordinate.
+    pub(crate) fn largest(&self) -> f64 {
+        self.low.iter().chain(&self.high).fold(0.0, |largest, x| x.abs().max(largest))
+    }
+
+    /// The middle, computed without overflow.
+    #[must_use]
+    pub fn center(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.low[axis].midpoint(self.high[axis]))
+    }
+
+    /// The length of the diagonal; infinite where it exceeds the largest number.
+    #[must_use]
+    pub fn diagonal(&self) -> f64 {
+        let [x, y, z] = self.size();
+        x.hypot(y).hypot(z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn box_round_points() {
+        assert_eq!(Bounds::of([]), None);
+        let bounds = Bounds::of(&[[1.0, -2.0, 0.5], [0.0, 4.0, 0.5]]).unwrap();
+        assert_eq!(bounds, Bounds { low: [0.0, -2.0, 0.5], high: [1.0, 4.0, 0.5] });
+        assert_eq!(bounds.size(), [1.0, 6.0, 0.0]);
+        assert_eq!(bounds.center(), [0.5, 1.0, 0.5]);
+        assert!(bounds.contains(&bounds));
+    }
+
+    #[test]
+    fn huge_boxes_do_not_overflow() {
+        let bounds = Bounds { low: [-f64::MAX; 3], high: [f64::MAX; 3] };
+        assert_eq!(bounds.center(), [0.0; 3]);
+        assert_eq!(bounds.diagonal(), f64::INFINITY);
+    }
+}

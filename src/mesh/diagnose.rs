@@ -1,0 +1,198 @@
+//! Finding what is wrong with a mesh.
+
+use robust::{Coord, orient2d};
+
+use super::clean::{self, Cleaned, Weld};
+use super::diagnosis::{Diagnosis, Place};
+use super::edges::{Edge, EdgeTable};
+use super::orient::Facing;
+use super::patches::Patches;
+use super::topology::Topology;
+use super::{Bounds, Mesh, chain, duplicates, measure, scale, weld};
+
+/// Examines any mesh, however broken, and says what is wrong with it. O(n log n).
+///
+/// Self-crossings are not looked for here. Of a mesh with more than 2^31 vertices or 2^32/3 triangles only these
+/// numbers are told.
+///
+/// ```
+/// use trisect::mesh::{Mesh, diagnose};
+///
+/// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let diagnosis = diagnose(&Mesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3]]));
+/// assert!(!diagnosis.closed);
+/// assert_eq!(diagnosis.open_edges.count, 3);
+/// assert_eq!(diagnosis.open_edges.places[0].vertices, [0, 2]);
+/// ```
+#[must_use]
+pub fn diagnose(mesh: &Mesh) -> Diagnosis {
+    let Mesh { positions, triangles, .. } = mesh;
+    let mut diagnosis =
+        Diagnosis { vertices: positions.len(), triangles: triangles.len(), ..Diagnosis::default() };
+    if positions.len() > chain::MAX_VERTICES || triangles.len() > chain::MAX_TRIANGLES {
+        return diagnosis;
+    }
+    let spots = Spots { mesh };
+    vertices_one_by_one(&spots, &mut diagnosis);
+    triangles_one_by_one(&spots, &mut diagnosis);
+    let cleaned = clean::clean(positions, triangles, Weld::Exact);
+    diagnosis.closed = cleaned.closed;
+    diagnosis.closing_distance = closing_distance(positions, &cleaned);
+    for &pair in &cleaned.opposite {
+        diagnosis.opposite_duplicates.add(|| spots.triangles(&pair));
+    }
+    for pair in duplicates::find(&cleaned.triangles, positions.len()).same {
+        diagnosis.duplicates.add(|| spots.triangles(&pair.map(|copy| cleaned.source[copy as usize])));
+    }
+    surface(&spots, &cleaned, &mut diagnosis);
+    let corners = cleaned.triangles.iter().flatten().map(|&corner| &positions[corner as usize]);
+    diagnosis.bounds = Bounds::of(corners);
+    if let Some(bounds) = &diagnosis.bounds {
+        diagnosis.area = measure::area(positions, &cleaned.triangles, bounds);
+        let volume = || measure::signed_volume(positions, &cleaned.triangles, bounds).value;
+        diagnosis.volume = cleaned.closed.then(volume);
+    } else {
+        diagnosis.volume = cleaned.closed.then_some(0.0);
+    }
+    diagnosis
+}
+
+/// Faults of vertices by themselves.
+fn vertices_one_by_one(spots: &Spots<'_>, diagnosis: &mut Diagnosis) {
+    let Mesh { positions, triangles, .. } = spots.mesh;
+    let mut used = vec![false; positions.len()];
+    for &corner in triangles.iter().flatten() {
+        if let Some(used) = used.get_mut(corner as usize) {
+            *used = true;
+        }
+    }
+    let mut finite = Vec::new();
+    for (position, vertex) in positions.iter().zip(0u32..) {
+        if !used[vertex as usize] {
+            diagnosis.unreferenced_vertices.add(|| spots.vertices(&[vertex]));
+        } else if position.iter().all(|x| x.is_finite()) {
+            finite.push(vertex);
+        } else {
+            diagnosis.not_finite.add(|| spots.vertices(&[vertex]));
+        }
+    }
+    for (&vertex, first) in finite.iter().zip(weld::exact_targets(positions, &finite)) {
+        if first != vertex {
+            diagnosis.split_vertices.add(|| spots.vertices(&[first, vertex]));
+        }
+    }
+}
+
+/// Faults of triangles by themselves.
+fn triangles_one_by_one(spots: &Spots<'_>, diagnosis: &mut Diagnosis) {
+    let Mesh { positions, triangles, .. } = spots.mesh;
+    for (&[a, b, c], index) in triangles.iter().zip(0u32..) {
+        let place = || spots.triangles(&[index]);
+        let corner = |vertex: u32| positions.get(vertex as usize);
+        let (Some(&p), Some(&q), Some(&r)) = (corner(a), corner(b), corner(c)) else {
+            diagnosis.index_out_of_range.add(place);
+            continue;
+        };
+        if a == b || b == c || c == a {
+            diagnosis.repeated_corners.add(place);
+        } else if [p, q, r].iter().flatten().all(|x| x.is_finite()) && are_collinear([p, q, r]) {
+            diagnosis.zero_area.add(place);
+        }
+    }
+}
+
+/// Whether the points lie exactly on one line: their projections along the three axes do.
+fn are_collinear(points: [[f64; 3]; 3]) -> bool {
+    let largest = points.iter().flatten().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let factor = scale::factor(largest);
+    let points = points.map(|point| point.map(|x| x * factor));
+    let [a, b, c] = points;
+    (0..3).all(|axis| {
+        let drop = |p: [f64; 3]| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] };
+        orient2d(drop(a), drop(b), drop(c)) == 0.0
+    })
+}
+
+/// Faults of the surface as a whole.
+fn surface(spots: &Spots<'_>, cleaned: &Cleaned, diagnosis: &mut Diagnosis) {
+    let Mesh { positions, .. } = spots.mesh;
+    let table = EdgeTable::new(&cleaned.triangles, positions.len());
+    for edge in table.iter() {
+        let place = || spots.edge(edge, &cleaned.source);
+        match edge.valence() {
+            1 => diagnosis.open_edges.add(place),
+            2 if edge.net() != 0 => diagnosis.misoriented_edges.add(place),
+            2 => {}
+            _ => {
+                diagnosis.non_manifold_edges.add(place);
+                if edge.net() != 0 {
+                    diagnosis.unbalanced_edges.add(place);
+                }
+            }
+        }
+    }
+    let topology = Topology::of_edges(&table, &cleaned.triangles, positions.len());
+    diagnosis.shells = topology.components;
+    diagnosis.euler_characteristic = topology.euler_characteristic;
+    diagnosis.genus = topology.genus;
+    for (vertex, _) in topology.pinched {
+        diagnosis.pinched_vertices.add(|| spots.vertices(&[vertex]));
+    }
+    let patches = Patches::new(&table, cleaned.triangles.len());
+    let facing = Facing::new(positions, &cleaned.triangles, &patches);
+    for patch in (0..patches.closed.len()).filter(|&patch| facing.wrong[patch] && !patches.is_mixed(patch)) {
+        let first = patches.triangles.get(patch)[0];
+        diagnosis.inside_out_shells.add(|| spots.triangles(&[cleaned.source[first as usize]]));
+    }
+}
+
+/// The least of a few distances within which welding would close the surface: powers of ten, so that they read well.
+fn closing_distance(positions: &[[f64; 3]], cleaned: &Cleaned) -> Option<f64> {
+    if cleaned.closed {
+        return None;
+    }
+    let corners = cleaned.triangles.iter().flatten().map(|&corner| &positions[corner as usize]);
+    let size = Bounds::of(corners)?.diagonal().log10().ceil();
+    let ends = weld::ends(&cleaned.seams);
+    let mut distances = (4..10).rev().filter_map(|digits| {
+        let distance = format!("1e{}", size - f64::from(digits)).parse().ok();
+        distance.filter(|distance: &f64| distance.is_finite() && *distance > 0.0)
+    });
+    distances.find(|&distance| {
+        let map = weld::vertex_map(positions.len(), &ends, &weld::near_targets(positions, &ends, distance));
+        weld::cancels(&cleaned.seams, |vertex| map[vertex as usize])
+    })
+}
+
+/// Makes places out of indices of the mesh.
+struct Spots<'a> {
+    mesh: &'a Mesh,
+}
+
+impl Spots<'_> {
+    fn middle(&self, vertices: &[u32]) -> [f64; 3] {
+        let mut middle = [0.0; 3];
+        for &vertex in vertices {
+            let position = self.mesh.positions.get(vertex as usize).unwrap_or(&[f64::NAN; 3]);
+            for axis in 0..3 {
+                middle[axis] += position[axis] / vertices.len() as f64;
+            }
+        }
+        middle
+    }
+
+    fn vertices(&self, vertices: &[u32]) -> Place {
+        Place { triangles: vec![], vertices: vertices.to_vec(), position: self.middle(&vertices[..1]) }
+    }
+
+    fn triangles(&self, triangles: &[u32]) -> Place {
+        let vertices = self.mesh.triangles[triangles[0] as usize];
+        Place { triangles: triangles.to_vec(), vertices: vertices.to_vec(), position: self.middle(&vertices) }
+    }
+
+    fn edge(&self, edge: Edge<'_>, source: &[u32]) -> Place {
+        let triangles = edge.triangles().take(4).map(|triangle| source[triangle as usize]).collect();
+        let vertices = vec![edge.low, edge.high];
+        Place { triangles, position: self.middle(&vertices), vertices }
+    }
+}

@@ -1,0 +1,251 @@
+//! Which closed patches lie inside others.
+//!
+//! From a few vertices of each patch a ray goes up (+z), and the crossings with every other patch are counted, by
+//! exact predicates: the start is moved by infinitesimals (e, e^2) in x and y, so that no ray meets an edge. The
+//! triangles look up the vertices above which they may lie in a grid over x and y, hence near-linear time.
+
+use std::cmp::Ordering;
+
+use robust::{Coord, Coord3D};
+use rustc_hash::FxHashMap;
+
+use super::Bounds;
+use super::patches::Patches;
+
+/// At most this many rays a patch: from the vertices extreme along the axes, which are the first to stick out where
+/// a patch is not wholly inside.
+const RAYS: usize = 6;
+
+/// The start of a ray.
+struct Start {
+    patch: u32,
+    /// Which of its patch's rays this is.
+    slot: usize,
+    place: [f64; 3],
+}
+
+/// Whether the ray has crossed a patch an odd number of times; whether it starts on it.
+#[derive(Clone, Copy, Default)]
+struct Crossings {
+    odd: bool,
+    touching: bool,
+}
+
+/// For each closed patch whether it lies inside an odd number of other closed patches, so that its triangles
+/// should face inwards. A patch that crosses another, or touches it at all its extreme vertices, does not count as
+/// inside it. False for patches that are not closed. `positions` should be near one in size.
+pub(super) fn inside_oddly_many(
+    positions: &[[f64; 3]],
+    triangles: &[[u32; 3]],
+    patches: &Patches,
+) -> Vec<bool> {
+    let count = patches.closed.len();
+    if patches.closed.iter().filter(|&&closed| closed).count() < 2 {
+        return vec![false; count];
+    }
+    let corners = |patch: usize| {
+        let members = patches.triangles.get(patch).iter();
+        members.flat_map(|&triangle| triangles[triangle as usize]).map(|corner| positions[corner as usize])
+    };
+    let mut boxes = vec![Bounds::NOTHING; count];
+    let mut starts = Vec::new();
+    let mut rays = vec![0; count];
+    for patch in (0..count).filter(|&patch| patches.closed[patch]) {
+        corners(patch).for_each(|corner| boxes[patch].include(&corner));
+        let places = extremes(corners(patch));
+        rays[patch] = places.len();
+        let start = |(slot, &place): (usize, &[f64; 3])| Start { patch: patch as u32, slot, place };
+        starts.extend(places.iter().enumerate().map(start));
+    }
+    let grid = Grid::new(&starts);
+    let mut met: FxHashMap<(u32, u32), [Crossings; RAYS]> = FxHashMap::default();
+    for (triangle, &patch) in triangles.iter().zip(&patches.of_triangle) {
+        if !patches.closed[patch as usize] {
+            continue;
+        }
+        let corners = triangle.map(|corner| positions[corner as usize]);
+        let mut extent = Bounds::NOTHING;
+        corners.iter().for_each(|corner| extent.include(corner));
+        grid.visit(&extent, |start| {
+            let start = &starts[start as usize];
+            let [x, y, z] = start.place;
+            let below = extent.low[0] <= x
+                && x <= extent.high[0]
+                && extent.low[1] <= y
+                && y <= extent.high[1]
+                && z <= extent.high[2];
+            if start.patch == patch || !below || !boxes[patch as usize].contains(&boxes[start.patch as usize])
+            {
+                return;
+            }
+            let crossings = &mut met.entry((start.patch, patch)).or_default()[start.slot];
+            crossings.odd ^= crosses(&corners, start.place);
+            crossings.touching |= extent.low[2] <= z && above(&corners, start.place) == Ordering::Equal;
+        });
+    }
+    let mut odd = vec![false; count];
+    for (&(inner, _), crossings) in &met {
+        let crossings = &crossings[..rays[inner as usize]];
+        let mut telling = crossings.iter().filter(|crossings| !crossings.touching).peekable();
+        odd[inner as usize] ^= telling.peek().is_some() && telling.all(|crossings| crossings.odd);
+    }
+    odd
+}
+
+/// The first of the places that are lowest or highest along each axis, without repetition.
+fn extremes(places: impl Iterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
+    let mut found: Vec<[f64; 3]> = Vec::new();
+    for place in places {
+        if found.is_empty() {
+            found = vec![place; RAYS];
+        }
+        for axis in 0..3 {
+            if place[axis] < found[axis][axis] {
+                found[axis] = place;
+            }
+            if place[axis] > found[axis + 3][axis] {
+                found[axis + 3] = place;
+            }
+        }
+    }
+    let mut distinct: Vec<[f64; 3]> = Vec::new();
+    for place in found {
+        if !distinct.contains(&place) {
+            distinct.push(place);
+        }
+    }
+    distinct
+}
+
+fn plane(p: [f64; 3]) -> Coord<f64> {
+    Coord { x: p[0], y: p[1] }
+}
+
+/// The order of numbers, in which zero and minus zero are equal.
+fn compare(a: f64, b: f64) -> Ordering {
+    a.partial_cmp(&b).unwrap_or(Ordering::Equal)
+}
+
+/// Where the plane of the triangle lies from `place`, seen along the triangle's own orientation: `Greater` if
+/// `place` is on the side from which the corners run clockwise.
+fn above([a, b, c]: &[[f64; 3]; 3], place: [f64; 3]) -> Ordering {
+    let space = |p: [f64; 3]| Coord3D { x: p[0], y: p[1], z: p[2] };
+    compare(robust::orient3d(space(*a), space(*b), space(*c), space(place)), 0.0)
+}
+
+/// Whether the ray up from `place`, moved by infinitesimals in x and y, crosses the triangle.
+fn crosses(corners: &[[f64; 3]; 3], place: [f64; 3]) -> bool {
+    let side = |from: [f64; 3], to: [f64; 3]| {
+        compare(robust::orient2d(plane(from), plane(to), plane(place)), 0.0)
+            .then_with(|| compare(from[1], to[1]))
+            .then_with(|| compare(to[0], from[0]))
+    };
+    let [a, b, c] = *corners;
+    let turn = side(a, b);
+    let over = turn != Ordering::Equal && turn == side(b, c) && turn == side(c, a);
+    over && above(corners, place) == turn
+}
+
+/// Starts of rays by their place in x and y.
+struct Grid {
+    low: [f64; 2],
+    /// Cells per unit of length.
+    density: [f64; 2],
+    /// Cells along each axis.
+    cells: usize,
+    starts: super::buckets::Buckets<u32>,
+}
+
+impl Grid {
+    fn new(starts: &[Start]) -> Self {
+        let extent = Bounds::of(starts.iter().map(|start| &start.place)).unwrap_or(Bounds::NOTHING);
+        let cells = (starts.len() as f64).sqrt().ceil() as usize;
+        let density = [0, 1].map(|axis| {
+            let density = cells as f64 / (extent.high[axis] - extent.low[axis]);
+            if density.is_finite() { density } else { 0.0 }
+        });
+        let mut grid = Self {
+            low: [extent.low[0], extent.low[1]],
+            density,
+            cells,
+            starts: super::buckets::Buckets::new(0, std::iter::empty()),
+        };
+        let filed = starts.iter().zip(0..).map(|(start, index)| {
+            let [column, row] = [0, 1].map(|axis| grid.cell(start.place[axis], axis));
+            ((row * cells + column) as u32, index)
+        });
+        let filed: Vec<_> = filed.collect();
+        grid.starts = super::buckets::Buckets::new(cells * cells, filed.into_iter());
+        grid
+    }
+
+    /// Never falls as `x` rises, so a place between two others is in a cell between theirs.
+    fn cell(&self, x: f64, axis: usize) -> usize {
+        let cell = ((x - self.low[axis]) * self.density[axis]) as usize;
+        cell.min(self.cells - 1)
+    }
+
+    fn visit(&self, extent: &Bounds, mut visit: impl FnMut(u32)) {
+        let range = |axis: usize| self.cell(extent.low[axis], axis)..=self.cell(extent.high[axis], axis);
+        for row in range(1) {
+            for column in range(0) {
+                self.starts.get(row * self.cells + column).iter().for_each(|&start| visit(start));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::edges::EdgeTable;
+    use super::*;
+
+    /// Boxes about the origin or elsewhere, one patch each.
+    fn nested(boxes: &[([f64; 3], f64)]) -> Vec<bool> {
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        for (center, half) in boxes {
+            let first = positions.len() as u32;
+            let corner = |i: u32| {
+                [0, 1, 2].map(|axis: usize| center[axis] + if i >> axis & 1 == 0 { -half } else { *half })
+            };
+            positions.extend((0..8).map(corner));
+            let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+            for [a, b, c, d] in faces {
+                triangles
+                    .extend([[a, b, c], [a, c, d]].map(|triangle| triangle.map(|corner| first + corner)));
+            }
+        }
+        let patches = Patches::new(&EdgeTable::new(&triangles, positions.len()), triangles.len());
+        inside_oddly_many(&positions, &triangles, &patches)
+    }
+
+    #[test]
+    fn shells_in_shells_alternate() {
+        let origin = [0.0; 3];
+        assert_eq!(nested(&[(origin, 1.0)]), [false]);
+        assert_eq!(
+            nested(&[(origin, 1.0), (origin, 2.0), (origin, 4.0), (origin, 3.0)]),
+            [true, false, false, true]
+        );
+        // The inner one sits on the floor of the outer one.
+        assert_eq!(nested(&[(origin, 2.0), ([0.0, 0.0, -1.0], 1.0)]), [false, true]);
+    }
+
+    #[test]
+    fn side_by_side_or_crossing_is_not_inside() {
+        let origin = [0.0; 3];
+        assert_eq!(nested(&[(origin, 1.0), ([2.0, 0.0, 0.0], 1.0)]), [false, false]);
+        assert_eq!(nested(&[(origin, 2.0), ([1.5, 1.5, 1.5], 1.0)]), [false, false]);
+        assert_eq!(nested(&[(origin, 1.0), (origin, 1.0)]), [false, false]);
+    }
+
+    #[test]
+    fn many_shells_in_a_box() {
+        let mut boxes = vec![([0.0; 3], 20.0)];
+        boxes.extend(
+            (0..1000).map(|i| ([i % 10, i / 10 % 10, i / 100].map(|x| f64::from(x) * 2.0 - 9.0), 0.5)),
+        );
+        let nested = nested(&boxes);
+        assert!(!nested[0] && nested[1..].iter().all(|&inside| inside));
+    }
+}

@@ -1,0 +1,52 @@
+//! Coordinates near one in size, for predicates that are exact only while products neither over- nor underflow.
+
+use std::borrow::Cow;
+
+/// The coordinates multiplied by one power of two that brings the largest near one; as they are where they are
+/// near enough. Exact, but for coordinates more than 2^1000 times smaller than the largest.
+pub(super) fn near_one(positions: &[[f64; 3]]) -> Cow<'_, [[f64; 3]]> {
+    let largest =
+        positions.iter().flatten().filter(|x| x.is_finite()).fold(0.0, |largest, x| x.abs().max(largest));
+    multiplied(positions, factor(largest))
+}
+
+/// The coordinates multiplied by `factor`.
+pub(super) fn multiplied(positions: &[[f64; 3]], factor: f64) -> Cow<'_, [[f64; 3]]> {
+    if factor == 1.0 {
+        return Cow::Borrowed(positions);
+    }
+    positions.iter().map(|position| position.map(|x| x * factor)).collect()
+}
+
+/// The power of two that brings `largest` near one; one where it is near enough for products of three and their
+/// rounding errors.
+pub(super) fn factor(largest: f64) -> f64 {
+    let exponent = exponent(largest);
+    if largest == 0.0 || exponent.abs() <= 200 { 1.0 } else { power_of_two(-exponent.clamp(-1000, 1000)) }
+}
+
+/// The exponent e of x = m 2^e with 1 <= m < 2; that of the smallest normal number for zero and subnormals.
+pub(crate) fn exponent(x: f64) -> i32 {
+    (((x.to_bits() >> 52) & 0x7ff) as i32 - 1023).max(-1022)
+}
+
+/// 2^e for -1022 <= e <= 1023.
+pub(crate) fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((exponent + 1023) as u64) << 52)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_far_sizes_are_scaled() {
+        let near = [[1e-40, 3.0, 1e40]];
+        assert!(matches!(near_one(&near), Cow::Borrowed(_)));
+        let tiny = [[f64::MIN_POSITIVE, 3.0 * f64::MIN_POSITIVE, 0.0]];
+        let scaled = near_one(&tiny);
+        assert_eq!(scaled[0][1], 3.0 * scaled[0][0]);
+        let largest = near_one(&[[f64::MAX, 1.0, 0.0]])[0][0];
+        assert!((1.0..1e9).contains(&largest));
+    }
+}

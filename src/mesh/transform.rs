@@ -1,0 +1,209 @@
+//! Moving, turning and scaling meshes.
+
+use super::{Mesh, scale};
+use crate::Error;
+
+impl Mesh {
+    /// The mesh moved by `offset`.
+    #[must_use]
+    pub fn translated(mut self, offset: [f64; 3]) -> Self {
+        for position in &mut self.positions {
+            for axis in 0..3 {
+                position[axis] += offset[axis];
+            }
+        }
+        self
+    }
+
+    /// The mesh scaled about the origin by a factor per axis. An odd number of negative factors mirrors it, and
+    /// the triangles are then reversed to face outwards still.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] if a factor is zero or not finite.
+    pub fn scaled(mut self, factors: [f64; 3]) -> Result<Self, Error> {
+        if factors.iter().any(|&factor| factor == 0.0 || !factor.is_finite()) {
+            return Err(Error::InvalidArgument(format!(
+                "scale factors must be finite and not zero, not {factors:?}"
+            )));
+        }
+        for position in &mut self.positions {
+            for axis in 0..3 {
+                position[axis] *= factors[axis];
+            }
+        }
+        let mirrored = factors.iter().filter(|&&factor| factor < 0.0).count() % 2 == 1;
+        Ok(if mirrored { self.reversed() } else { self })
+    }
+
+    /// The mesh turned by `degrees` about the line through the origin along `axis`, counter-clockwise seen from
+    /// where the axis points. Quarter turns about the coordinate axes are exact.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] if `axis` has no direction or something is not finite.
+    pub fn rotated(self, axis: [f64; 3], degrees: f64) -> Result<Self, Error> {
+        let largest = axis.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        if !(axis.iter().all(|x| x.is_finite()) && largest > 0.0 && degrees.is_finite()) {
+            return Err(Error::InvalidArgument(format!(
+                "a rotation needs a finite axis other than zero and a finite angle, not {axis:?} and {degrees}"
+            )));
+        }
+        let axis = axis.map(|x| x / largest);
+        let length = (axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]).sqrt();
+        let [x, y, z] = axis.map(|component| component / length);
+        let (sin, cos) = sin_cos_degrees(degrees);
+        // Rodrigues' formula. The diagonal as x^2 + (1 - x^2) cos is one along the axis, whatever the angle.
+        let off = |a: f64, b: f64, c: f64| a * b * (1.0 - cos) + c * sin;
+        let diagonal = |a: f64| a * a + (1.0 - a * a) * cos;
+        let matrix = [
+            [diagonal(x), off(x, y, -z), off(x, z, y), 0.0],
+            [off(x, y, z), diagonal(y), off(y, z, -x), 0.0],
+            [off(x, z, -y), off(y, z, x), diagonal(z), 0.0],
+        ];
+        Ok(self.mapped(&matrix))
+    }
+
+    /// The mesh with every position p replaced by M p + t, where `matrix` holds the rows of [M | t], row by row:
+    /// 12 numbers, or 16 with the last row 0, 0, 0, 1. If the determinant of M is negative the triangles are
+    /// reversed to face outwards still.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] if the numbers are not 12 or 16 or not finite, the last row is another, or M is
+    /// exactly singular.
+    ///
+    /// ```
+    /// use trisect::primitives;
+    ///
+    /// let cube = primitives::cuboid([0.0; 3], [1.0; 3])?;
+    /// let moved = cube.transformed(&[2.0, 0.0, 0.0, 5.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0])?;
+    /// assert_eq!(moved.bounds().unwrap().low, [5.0, 0.0, 0.0]);
+    /// assert_eq!(moved.volume(), 2.0);
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
+    pub fn transformed(self, matrix: &[f64]) -> Result<Self, Error> {
+        let fault = |what: String| Err(Error::InvalidArgument(format!("transformation matrix: {what}")));
+        let (rows, last) = match matrix.len() {
+            12 | 16 => matrix.split_at(12),
+            count => return fault(format!("12 or 16 numbers, row by row, are needed, not {count}")),
+        };
+        if let Some(number) = matrix.iter().find(|x| !x.is_finite()) {
+            return fault(format!("its numbers must be finite, not {number}"));
+        }
+        if !last.is_empty() && last != [0.0, 0.0, 0.0, 1.0] {
+            let hint = "if the translation is there, the matrix is given column by column: transpose it";
+            return fault(format!("the last row must be 0, 0, 0, 1, not {last:?}; {hint}"));
+        }
+        let row = |index: usize| [0, 1, 2, 3].map(|column| rows[4 * index + column]);
+        let rows = [row(0), row(1), row(2)];
+        let determinant = determinant_sign(&rows);
+        if determinant == 0.0 {
+            return fault("it is singular: it would flatten the mesh".into());
+        }
+        let mapped = self.mapped(&rows);
+        Ok(if determinant < 0.0 { mapped.reversed() } else { mapped })
+    }
+
+    fn mapped(mut self, matrix: &[[f64; 4]; 3]) -> Self {
+        for position in &mut self.positions {
+            let [x, y, z] = *position;
+            *position = matrix.map(|[a, b, c, d]| a * x + b * y + c * z + d);
+        }
+        self
+    }
+}
+
+/// A number with the sign of the determinant of the first three columns, exactly.
+fn determinant_sign(rows: &[[f64; 4]; 3]) -> f64 {
+    // Scaling a row by a power of two changes no sign and keeps the products in range.
+    let point = |row: &[f64; 4]| {
+        let largest = row[..3].iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let factor = scale::factor(largest);
+        robust::Coord3D { x: row[0] * factor, y: row[1] * factor, z: row[2] * factor }
+    };
+    let origin = robust::Coord3D { x: 0.0, y: 0.0, z: 0.0 };
+    // The predicate is the determinant of the three points relative to the fourth.
+    robust::orient3d(point(&rows[0]), point(&rows[1]), point(&rows[2]), origin)
+}
+
+/// Sine and cosine of an angle in degrees; exact for multiples of 30 where the result is 0, 1/2 or 1.
+pub(crate) fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
+    // Both the remainder and the differences are exact.
+    let degrees = degrees % 360.0;
+    let quarters = (degrees / 90.0).round();
+    let rest = degrees - 90.0 * quarters;
+    let (sin, cos) = if rest.abs() == 30.0 {
+        (0.5_f64.copysign(rest), 0.75_f64.sqrt())
+    } else {
+        rest.to_radians().sin_cos()
+    };
+    match (quarters as i32).rem_euclid(4) {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Solid, primitives};
+
+    fn block() -> Mesh {
+        primitives::cuboid([0.0; 3], [1.0, 2.0, 3.0]).unwrap()
+    }
+
+    #[test]
+    fn quarter_turns_are_exact() {
+        assert_eq!(sin_cos_degrees(90.0), (1.0, -0.0));
+        assert_eq!(sin_cos_degrees(-450.0), (-1.0, 0.0));
+        assert_eq!(sin_cos_degrees(150.0).0, 0.5);
+        let turned = block().rotated([0.0, 0.0, 7.0], 90.0).unwrap();
+        let bounds = turned.bounds().unwrap();
+        assert_eq!((bounds.low, bounds.high), ([-2.0, 0.0, 0.0], [0.0, 1.0, 3.0]));
+        assert_eq!(turned.clone().rotated([0.0, 0.0, 1.0], 270.0).unwrap().bounds(), block().bounds());
+        assert_eq!(block().rotated([1.0, 1.0, 1.0], 0.0).unwrap(), block());
+    }
+
+    #[test]
+    fn turning_keeps_the_volume() {
+        let turned = block().rotated([1.0, -2.0, 0.5], 33.0).unwrap();
+        assert!((Solid::try_from(turned).unwrap().volume() - 6.0).abs() < 1e-14);
+        // A third of a turn about the diagonal goes from axis to axis.
+        let third = block().rotated([1.0; 3], 120.0).unwrap();
+        let size = third.bounds().unwrap().size();
+        assert!((0..3).all(|axis| (size[axis] - [3.0, 1.0, 2.0][axis]).abs() < 1e-14), "{size:?}");
+    }
+
+    #[test]
+    fn mirroring_reverses() {
+        let mirrored = block().scaled([-1.0, 2.0, 1.0]).unwrap();
+        assert_eq!(Solid::try_from(mirrored).unwrap().volume(), 12.0);
+        let swap_x_and_y = [0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        assert_eq!(Solid::try_from(block().transformed(&swap_x_and_y).unwrap()).unwrap().volume(), 6.0);
+    }
+
+    #[test]
+    fn senseless_arguments_are_refused() {
+        let refused = |result: Result<Mesh, Error>| matches!(result, Err(Error::InvalidArgument(_)));
+        assert!(refused(block().scaled([1.0, 0.0, 1.0])));
+        assert!(refused(block().scaled([1.0, f64::NAN, 1.0])));
+        assert!(refused(block().rotated([0.0; 3], 10.0)));
+        assert!(refused(block().rotated([0.0, 0.0, 1.0], f64::INFINITY)));
+        assert!(refused(block().transformed(&[1.0; 9])));
+        // Rank two, in numbers that cancel only when nothing is rounded.
+        let third = 1.0 / 3.0;
+        let singular = [third, 0.1, 0.7, 0.0, 2.0 * third, 0.2, 1.4, 0.0, 0.0, 0.0, 1.0, 0.0];
+        assert!(refused(block().transformed(&singular)));
+        let columns = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 5.0, 0.0, 0.0, 1.0];
+        assert!(block().transformed(&columns).unwrap_err().to_string().contains("transpose"));
+    }
+
+    #[test]
+    fn tiny_and_huge_matrices_are_no_more_singular_than_others() {
+        for factor in [1e-120, 1e120] {
+            let matrix = [factor, 0.0, 0.0, 0.0, 0.0, 0.0, -factor, 0.0, 0.0, factor, 0.0, 0.0];
+            let size = block().transformed(&matrix).unwrap().bounds().unwrap().size();
+            assert_eq!(size, [1.0, 3.0, 2.0].map(|x| x * factor));
+        }
+    }
+}
