@@ -61,7 +61,8 @@ pub struct Diagnosis {
     /// Whether every directed edge is met by its opposite equally often.
     pub closed: bool,
     /// Where the surface is not closed: the least power of ten between 1e-9 and 1e-3 of the size within which
-    /// welding the vertices on open edges would close it. [`Mesh::welded`](super::Mesh::welded) does it.
+    /// welding the vertices on open edges would close it (not looked for where more than 500 000 vertices are on
+    /// open edges). [`Mesh::welded`](super::Mesh::welded) does it.
     pub closing_distance: Option<f64>,
     /// The box round the triangles.
     pub bounds: Option<Bounds>,
