@@ -196,6 +196,18 @@ mod tests {
     }
 
     #[test]
+    fn a_wall_between_bodies_is_dropped() {
+        // Two tetrahedra on one face, which both have: every vertex of it has other triangles too.
+        let mut triangles = TETRAHEDRON.to_vec();
+        triangles.extend([[0, 1, 2], [4, 1, 0], [4, 2, 1], [4, 0, 2]]);
+        let positions = [&CORNERS[..], &[[0.2, 0.2, -1.0]]].concat();
+        let cleaned = clean(&positions, &triangles, Weld::Exact);
+        assert!(cleaned.closed && cleaned.edge_manifold);
+        assert_eq!(cleaned.opposite, [[0, 4]]);
+        assert_eq!(cleaned.triangles.len(), 6);
+    }
+
+    #[test]
     fn garbage_is_left_out() {
         let mut triangles = TETRAHEDRON.to_vec();
         triangles.extend([[0, 1, 9], [4, 0, 1]]);
