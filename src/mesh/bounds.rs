@@ -52,6 +52,11 @@ impl Bounds {
         [0, 1, 2].map(|axis| self.high[axis] - self.low[axis])
     }
 
+    /// The largest absolute value of a coordinate.
+    pub(crate) fn largest(&self) -> f64 {
+        self.low.iter().chain(&self.high).fold(0.0, |largest, x| x.abs().max(largest))
+    }
+
     /// The middle, computed without overflow.
     #[must_use]
     pub fn center(&self) -> [f64; 3] {

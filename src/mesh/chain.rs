@@ -27,26 +27,14 @@ pub(super) struct Chain {
     pub(super) edge_manifold: bool,
 }
 
-/// The triangle's corners turned so that the lowest comes first.
+/// The triangle's corners in ascending order, and whether that order is an odd permutation of them: whether the
+/// triangle runs from the lowest to the highest to the middle one.
+///
+/// Without a branch: the order of the corners is as good as random.
 #[inline]
-pub(super) fn lowest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
-    // Selections instead of branches: the order of the corners is as good as random.
-    let low = a.min(b).min(c);
-    let next = if low == a {
-        b
-    } else if low == b {
-        c
-    } else {
-        a
-    };
-    let last = if low == a {
-        c
-    } else if low == b {
-        a
-    } else {
-        b
-    };
-    [low, next, last]
+pub(super) fn sorted([a, b, c]: [u32; 3]) -> ([u32; 3], bool) {
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    ([low, a ^ b ^ c ^ low ^ high, high], (a < b) ^ (b < c) ^ (c < a))
 }
 
 /// Examines the edges of `triangles` over `vertices` vertices.
@@ -54,76 +42,108 @@ pub(super) fn lowest_first([a, b, c]: [u32; 3]) -> [u32; 3] {
 /// # Errors
 /// The first triangle that names a vertex out of range. The limits above are the caller's to check.
 pub(super) fn examine(triangles: &[[u32; 3]], vertices: usize) -> Result<Chain, usize> {
-    // How often a vertex is the lowest, the middle and (up to 255 times) the highest of a triangle.
-    let mut lowest = vec![0u32; vertices];
-    let mut middle = vec![0u32; vertices];
-    let mut highest = vec![0u8; vertices];
-    let mut repeated_corners = false;
-    for (index, &triangle) in triangles.iter().enumerate() {
-        let [low, next, last] = lowest_first(triangle);
-        let (mid, high) = (next.min(last), next.max(last));
-        let counts =
-            (lowest.get_mut(low as usize), middle.get_mut(mid as usize), highest.get_mut(high as usize));
-        let (Some(low_count), Some(mid_count), Some(high_count)) = counts else {
-            return Err(index);
-        };
-        *low_count += 1;
-        *mid_count += 1;
-        *high_count = high_count.saturating_add(1);
-        repeated_corners |= (low == mid) | (mid == high);
-    }
+    let counts = Counts::new(triangles, vertices)?;
     let mut chain = Chain {
-        repeated_corners,
+        repeated_corners: counts.repeated_corners,
         unreferenced: false,
         two_triangle_vertex: false,
         closed: false,
         edge_manifold: false,
     };
-    if repeated_corners {
+    if chain.repeated_corners {
         return Ok(chain);
     }
-    // The lowest corner files two edges, the middle one files one.
-    let mut total = 0;
-    for ((low, &mid), &high) in lowest.iter_mut().zip(&middle).zip(&highest) {
-        let valence = u64::from(*low) + u64::from(mid) + u64::from(high);
+    for ((&low, &mid), &high) in counts.lowest.iter().zip(&counts.middle).zip(&counts.highest) {
+        let valence = u64::from(low) + u64::from(mid) + u64::from(high);
         chain.unreferenced |= valence == 0;
         chain.two_triangle_vertex |= valence == 2;
-        let filed = 2 * *low + mid;
-        *low = total;
-        total += filed;
     }
-    drop((middle, highest));
-    let mut ends = lowest;
-    let mut entries = vec![0u32; total as usize];
-    let mut file = |under: u32, entry: u32| {
-        let end = &mut ends[under as usize];
-        entries[*end as usize] = entry;
-        *end += 1;
-    };
-    for &triangle in triangles {
-        let [low, next, last] = lowest_first(triangle);
-        file(low, upward(next));
-        file(low, downward(last));
-        if next < last {
-            file(next, upward(last));
-        } else {
-            file(last, downward(next));
-        }
-    }
+    let (ends, mut entries) = counts.file(triangles);
     let balance = weigh(&ends, 0, &mut entries);
     Ok(Chain { closed: balance.closed, edge_manifold: balance.closed && balance.edge_manifold, ..chain })
 }
 
-/// An edge filed under its lower vertex, running up to `high`.
-#[inline]
-fn upward(high: u32) -> u32 {
-    high << 1
+/// The vertices on edges whose directions do not cancel, ascending. The corners of `triangles` are in range and
+/// differ.
+pub(super) fn open_vertices(triangles: &[[u32; 3]], vertices: usize) -> Vec<u32> {
+    let Ok(counts) = Counts::new(triangles, vertices) else { return Vec::new() };
+    let (ends, mut entries) = counts.file(triangles);
+    let mut open = vec![false; vertices];
+    let mut begin = 0;
+    for (low, &end) in ends.iter().enumerate() {
+        let list = &mut entries[begin..end as usize];
+        begin = end as usize;
+        if is_two_by_two(list) {
+            continue;
+        }
+        list.sort_unstable();
+        for edge in list.chunk_by(|a, b| a >> 1 == b >> 1).filter(|edge| !cancels(edge)) {
+            open[low] = true;
+            open[(edge[0] >> 1) as usize] = true;
+        }
+    }
+    (0..).zip(open).filter(|&(_, open)| open).map(|(vertex, _)| vertex).collect()
 }
 
-/// An edge filed under its lower vertex, coming down from `high`.
+/// How often each vertex is the lowest, the middle and (up to 255 times) the highest of a triangle.
+struct Counts {
+    lowest: Vec<u32>,
+    middle: Vec<u32>,
+    highest: Vec<u8>,
+    repeated_corners: bool,
+}
+
+impl Counts {
+    fn new(triangles: &[[u32; 3]], vertices: usize) -> Result<Self, usize> {
+        let mut lowest = vec![0u32; vertices];
+        let mut middle = vec![0u32; vertices];
+        let mut highest = vec![0u8; vertices];
+        let mut repeated_corners = false;
+        for (index, &triangle) in triangles.iter().enumerate() {
+            let ([low, mid, high], _) = sorted(triangle);
+            let counts =
+                (lowest.get_mut(low as usize), middle.get_mut(mid as usize), highest.get_mut(high as usize));
+            let (Some(low_count), Some(mid_count), Some(high_count)) = counts else {
+                return Err(index);
+            };
+            *low_count += 1;
+            *mid_count += 1;
+            *high_count = high_count.saturating_add(1);
+            repeated_corners |= (low == mid) | (mid == high);
+        }
+        Ok(Self { lowest, middle, highest, repeated_corners })
+    }
+
+    /// The edges filed under their lower vertices: where the list of each vertex ends, and all lists.
+    fn file(self, triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<u32>) {
+        // The lowest corner files two edges, the middle one files one.
+        let mut total = 0;
+        let mut ends = self.lowest;
+        for (low, mid) in ends.iter_mut().zip(self.middle) {
+            let filed = 2 * *low + mid;
+            *low = total;
+            total += filed;
+        }
+        let mut entries = vec![0u32; total as usize];
+        let mut file = |under: u32, entry: u32| {
+            let end = &mut ends[under as usize];
+            entries[*end as usize] = entry;
+            *end += 1;
+        };
+        for &triangle in triangles {
+            let ([low, mid, high], odd) = sorted(triangle);
+            file(low, entry(mid, odd));
+            file(low, entry(high, !odd));
+            file(mid, entry(high, odd));
+        }
+        (ends, entries)
+    }
+}
+
+/// An edge filed under its lower vertex: up to `high`, or down from there.
 #[inline]
-fn downward(high: u32) -> u32 {
-    high << 1 | 1
+fn entry(high: u32, down: bool) -> u32 {
+    high << 1 | u32::from(down)
 }
 
 #[derive(Clone, Copy)]
@@ -149,7 +169,6 @@ fn weigh(ends: &[u32], start: u32, entries: &mut [u32]) -> Balance {
         let end = (end - start) as usize;
         let list = &mut entries[begin..end];
         begin = end;
-        list.sort_unstable();
         if !is_two_by_two(list) {
             balance.edge_manifold = false;
             if !is_balanced(list) {
@@ -161,22 +180,43 @@ fn weigh(ends: &[u32], start: u32, entries: &mut [u32]) -> Balance {
     balance
 }
 
-/// Whether the sorted list has every edge exactly once in each direction.
+/// Whether the list has every edge exactly once in each direction.
 #[inline]
-fn is_two_by_two(list: &[u32]) -> bool {
-    let mut good = list.len().is_multiple_of(2);
-    let mut previous = u32::MAX;
-    for pair in list.chunks_exact(2) {
-        good &= (pair[0] & 1 == 0) & (pair[0] ^ pair[1] == 1) & (pair[0] != previous);
-        previous = pair[0];
+fn is_two_by_two(list: &mut [u32]) -> bool {
+    /// Up to this length looking for each entry's partner is faster than sorting.
+    const SHORT: usize = 32;
+    if list.len() % 2 == 1 {
+        return false;
     }
-    good
+    if list.len() > SHORT {
+        list.sort_unstable();
+        let pairs = || list.chunks_exact(2);
+        return pairs().all(|pair| pair[0] ^ pair[1] == 1)
+            && pairs().zip(pairs().skip(1)).all(|(a, b)| a[0] != b[0]);
+    }
+    let mut different = true;
+    for first in (0..list.len()).step_by(2) {
+        let partner = list[first] ^ 1;
+        let Some(found) = (first + 1..list.len()).find(|&index| list[index] == partner) else {
+            return false;
+        };
+        list.swap(first + 1, found);
+        for before in (0..first).step_by(2) {
+            different &= list[before] >> 1 != partner >> 1;
+        }
+    }
+    different
 }
 
-/// Whether the sorted list has every edge equally often in each direction.
-fn is_balanced(list: &[u32]) -> bool {
-    list.chunk_by(|a, b| a >> 1 == b >> 1)
-        .all(|edge| 2 * edge.iter().filter(|&entry| entry & 1 == 0).count() == edge.len())
+/// Whether the list has every edge equally often in each direction.
+fn is_balanced(list: &mut [u32]) -> bool {
+    list.sort_unstable();
+    list.chunk_by(|a, b| a >> 1 == b >> 1).all(cancels)
+}
+
+/// Whether the entries of one edge are equally many in each direction.
+fn cancels(edge: &[u32]) -> bool {
+    2 * edge.iter().filter(|&entry| entry & 1 == 0).count() == edge.len()
 }
 
 #[cfg(test)]
@@ -199,6 +239,8 @@ mod tests {
         assert!(examine(&TETRAHEDRON, 5).unwrap().unreferenced);
         assert!(!examine(&TETRAHEDRON[1..], 4).unwrap().closed);
         assert_eq!(examine(&TETRAHEDRON, 3), Err(1));
+        assert_eq!(open_vertices(&TETRAHEDRON, 4), [0; 0]);
+        assert_eq!(open_vertices(&TETRAHEDRON[1..], 4), [0, 1, 2]);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! From the triangles as given to the chain they stand for: without the triangles that count for nothing, with
 //! seams welded.
 
-use super::{chain, duplicates, weld};
+use super::{Mesh, chain, duplicates, weld};
+use crate::Error;
 
 /// The triangles of a mesh that count, and what was done to get them.
 #[derive(Debug, Default)]
@@ -16,21 +17,36 @@ pub(super) struct Cleaned {
     pub(super) opposite: Vec<[u32; 2]>,
     /// How many vertices were replaced by another at the same place.
     pub(super) welded: usize,
-    /// The directed edges whose opposite is missing, before welding.
-    pub(super) seams: Vec<weld::OpenEdge>,
     /// Whether the chain is closed.
     pub(super) closed: bool,
     /// Whether it is closed and every edge has exactly two triangles.
     pub(super) edge_manifold: bool,
 }
 
-/// Which vertices on open edges are made one.
+/// Which vertices on open edges are made one where the triangles are not closed.
 #[derive(Clone, Copy)]
 pub(super) enum Weld {
-    /// Those with equal coordinates, if the triangles are not closed without.
+    /// Those with equal coordinates.
     Exact,
-    /// Those within this distance.
+    /// Those too that lie within this distance on edges still open then.
     Within(f64),
+}
+
+/// Refuses triangles out of range, and vertices that are not finite unless only triangles that count for nothing
+/// use them.
+pub(super) fn check_corners(mesh: &Mesh) -> Result<(), Error> {
+    for (triangle, &[a, b, c]) in mesh.triangles.iter().enumerate() {
+        for index in [a, b, c] {
+            let Some(&position) = mesh.positions.get(index as usize) else {
+                return Err(Error::IndexOutOfRange { triangle, index, vertices: mesh.positions.len() });
+            };
+            let counts = a != b && b != c && c != a;
+            if counts && !position.iter().all(|x| x.is_finite()) {
+                return Err(Error::NotFinite { vertex: index as usize, position });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Cleans `triangles`. Triangles out of range or with a corner that is not finite are left out, so that this works
@@ -51,21 +67,12 @@ pub(super) fn clean(positions: &[[f64; 3]], triangles: &[[u32; 3]], how: Weld) -
     let vertices = positions.len();
     let mut examined = cleaned.examine(vertices);
     if !examined.closed {
-        cleaned.seams = weld::boundary(&cleaned.triangles, vertices);
-        let ends = weld::ends(&cleaned.seams);
-        let targets = match how {
-            Weld::Exact => weld::exact_targets(positions, &ends),
-            Weld::Within(distance) => weld::near_targets(positions, &ends, distance),
-        };
-        cleaned.welded = ends.iter().zip(&targets).filter(|(end, target)| end != target).count();
-        if cleaned.welded > 0 {
-            let map = weld::vertex_map(vertices, &ends, &targets);
-            for corner in cleaned.triangles.iter_mut().flatten() {
-                *corner = map[*corner as usize];
-            }
-            cleaned.drop_repeated_corners();
-            examined = cleaned.examine(vertices);
-        }
+        examined = cleaned.weld(vertices, |open| weld::exact_targets(positions, open));
+    }
+    if let Weld::Within(distance) = how
+        && !examined.closed
+    {
+        examined = cleaned.weld(vertices, |open| weld::near_targets(positions, open, distance));
     }
     // Opposite copies show in edges with more than two triangles or in a vertex that only they have. (A pair alone
     // on three vertices that all belong to other triangles too, by no edge, shows in neither; it does no harm.)
@@ -83,6 +90,19 @@ pub(super) fn clean(positions: &[[f64; 3]], triangles: &[[u32; 3]], how: Weld) -
 impl Cleaned {
     fn examine(&self, vertices: usize) -> chain::Chain {
         chain::examine(&self.triangles, vertices).expect("triangles out of range were left out")
+    }
+
+    /// Replaces the vertices on open edges by their targets.
+    fn weld(&mut self, vertices: usize, targets: impl FnOnce(&[u32]) -> Vec<u32>) -> chain::Chain {
+        let open = chain::open_vertices(&self.triangles, vertices);
+        let targets = targets(&open);
+        self.welded += open.iter().zip(&targets).filter(|(vertex, target)| vertex != target).count();
+        let map = weld::vertex_map(vertices, &open, &targets);
+        for corner in self.triangles.iter_mut().flatten() {
+            *corner = map[*corner as usize];
+        }
+        self.drop_repeated_corners();
+        self.examine(vertices)
     }
 
     fn drop_repeated_corners(&mut self) {
@@ -151,7 +171,7 @@ mod tests {
             (0..4).map(|triangle| [0, 1, 2].map(|corner| 3 * triangle + corner)).collect();
         let mut cleaned = clean(&positions, &triangles, Weld::Exact);
         assert!(cleaned.closed && cleaned.edge_manifold);
-        assert_eq!((cleaned.welded, cleaned.seams.len()), (8, 12));
+        assert_eq!(cleaned.welded, 8);
         let kept = compact(&positions, &mut cleaned.triangles);
         assert_eq!(kept.len(), 4);
         let places = |triangle: [u32; 3]| triangle.map(|corner| kept[corner as usize]);
@@ -173,6 +193,18 @@ mod tests {
         assert_eq!(cleaned.source, [2, 3, 4, 5]);
         assert_eq!(cleaned.opposite, [[1, 6]]);
         assert_eq!((cleaned.repeated_corners, cleaned.welded), (1, 0));
+    }
+
+    #[test]
+    fn a_wall_between_bodies_is_dropped() {
+        // Two tetrahedra on one face, which both have: every vertex of it has other triangles too.
+        let mut triangles = TETRAHEDRON.to_vec();
+        triangles.extend([[0, 1, 2], [4, 1, 0], [4, 2, 1], [4, 0, 2]]);
+        let positions = [&CORNERS[..], &[[0.2, 0.2, -1.0]]].concat();
+        let cleaned = clean(&positions, &triangles, Weld::Exact);
+        assert!(cleaned.closed && cleaned.edge_manifold);
+        assert_eq!(cleaned.opposite, [[0, 4]]);
+        assert_eq!(cleaned.triangles.len(), 6);
     }
 
     #[test]

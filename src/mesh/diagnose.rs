@@ -146,18 +146,24 @@ fn surface(spots: &Spots<'_>, cleaned: &Cleaned, diagnosis: &mut Diagnosis) {
     }
 }
 
-/// The least of a few distances within which welding would close the surface.
+/// The least of a few distances within which welding would close the surface: powers of ten, so that they read well.
+/// Not looked for where nearly everything is open.
 fn closing_distance(positions: &[[f64; 3]], cleaned: &Cleaned) -> Option<f64> {
-    if cleaned.closed {
+    const MOST: usize = 500_000;
+    let open = chain::open_vertices(&cleaned.triangles, positions.len());
+    if cleaned.closed || open.len() > MOST {
         return None;
     }
     let corners = cleaned.triangles.iter().flatten().map(|&corner| &positions[corner as usize]);
-    let size = Bounds::of(corners)?.diagonal();
-    let ends = weld::ends(&cleaned.seams);
-    let mut distances = (4..10).rev().map(|digits| size * 10f64.powi(-digits));
+    let size = Bounds::of(corners)?.diagonal().log10().ceil();
+    let boundary = weld::boundary(&cleaned.triangles, positions.len());
+    let mut distances = (4..10).rev().filter_map(|digits| {
+        let distance = format!("1e{}", size - f64::from(digits)).parse().ok();
+        distance.filter(|distance: &f64| distance.is_finite() && *distance > 0.0)
+    });
     distances.find(|&distance| {
-        let map = weld::vertex_map(positions.len(), &ends, &weld::near_targets(positions, &ends, distance));
-        weld::cancels(&cleaned.seams, |vertex| map[vertex as usize])
+        let map = weld::vertex_map(positions.len(), &open, &weld::near_targets(positions, &open, distance));
+        weld::cancels(&boundary, |vertex| map[vertex as usize])
     })
 }
 

@@ -60,8 +60,9 @@ pub struct Diagnosis {
     pub self_crossings: Option<Fault>,
     /// Whether every directed edge is met by its opposite equally often.
     pub closed: bool,
-    /// Where the surface is not closed: the least distance tried (1e-9 to 1e-4 of the size) within which welding
-    /// the vertices on open edges would close it. [`Mesh::welded`](super::Mesh::welded) does it.
+    /// Where the surface is not closed: the least power of ten between 1e-9 and 1e-3 of the size within which
+    /// welding the vertices on open edges would close it (not looked for where more than 500 000 vertices are on
+    /// open edges). [`Mesh::welded`](super::Mesh::welded) does it.
     pub closing_distance: Option<f64>,
     /// The box round the triangles.
     pub bounds: Option<Bounds>,
@@ -232,7 +233,65 @@ impl fmt::Display for Place {
             [vertex] => write!(f, "vertex {vertex} ")?,
             _ => write!(f, "vertices {} ", list(&self.vertices))?,
         }
-        let [x, y, z] = self.position;
+        let [x, y, z] = self.position.map(short);
         write!(f, "at ({x}, {y}, {z})")
+    }
+}
+
+/// The number with seven digits at most.
+fn short(x: f64) -> String {
+    let rounded = format!("{x:.6e}").parse().unwrap_or(x);
+    if rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) {
+        format!("{rounded}")
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(count: usize) -> Fault {
+        let place = |index: u32| Place {
+            triangles: vec![index],
+            vertices: vec![index, index + 1],
+            position: [f64::from(index) / 3.0, -1e-9, 0.0],
+        };
+        Fault { count, places: (0..count.min(PLACES) as u32).map(place).collect() }
+    }
+
+    #[test]
+    fn text_is_short_and_has_places() {
+        assert_eq!(Diagnosis::default().to_string(), "no faults");
+        let diagnosis = Diagnosis {
+            open_edges: fault(7),
+            zero_area: fault(1),
+            closing_distance: Some(1e-7),
+            ..Diagnosis::default()
+        };
+        let expected = "7 open edges: triangle 0 vertices 0-1 at (0, -1e-9, 0), \
+            triangle 1 vertices 1-2 at (0.3333333, -1e-9, 0), ...; \
+            1 zero-area triangle: triangle 0 vertices 0-1 at (0, -1e-9, 0); \
+            welding vertices within 1e-7 would close it";
+        assert_eq!(diagnosis.to_string(), expected);
+        assert_eq!(format!("{diagnosis:#}").lines().count(), 3);
+        assert_eq!(format!("{diagnosis:#}").matches(" at ").count(), 6);
+    }
+
+    #[test]
+    fn json_has_every_field() {
+        let diagnosis = Diagnosis { not_finite: fault(2), area: f64::NAN, ..Diagnosis::default() };
+        let json = diagnosis.to_json();
+        assert_eq!(json["not_finite"]["count"], 2);
+        assert_eq!(json["not_finite"]["places"][1]["vertices"][1], 2);
+        assert!(json["area"].is_null() && json["self_crossings"].is_null());
+        // As many keys as fields: Debug names each once at the first level.
+        let fields = format!("{:#?}", Diagnosis::default());
+        let fields = fields.lines().filter(|line| line.starts_with("    ") && !line.starts_with("     "));
+        let fields = fields.filter_map(|line| line.trim().split_once(':')).map(|(name, _)| name.to_string());
+        let fields: std::collections::BTreeSet<String> = fields.collect();
+        let keys: std::collections::BTreeSet<String> = json.as_object().unwrap().keys().cloned().collect();
+        assert_eq!(keys, fields);
     }
 }

@@ -1,7 +1,7 @@
 //! Triangles on the same three vertices.
 
 use super::buckets::Buckets;
-use super::chain::lowest_first;
+use super::chain::sorted;
 
 /// Which triangles repeat others.
 #[derive(Debug, Default)]
@@ -16,10 +16,8 @@ pub(super) struct Duplicates {
 /// Finds the repeated triangles. O(n), with a short sort per vertex.
 pub(super) fn find(triangles: &[[u32; 3]], vertices: usize) -> Duplicates {
     let by_lowest = triangles.iter().enumerate().map(|(index, &triangle)| {
-        let [low, next, last] = lowest_first(triangle);
-        let reversed = next > last;
-        let key = u64::from(next.min(last)) << 32 | u64::from(next.max(last));
-        (low, (key, reversed, index as u32))
+        let ([low, mid, high], odd) = sorted(triangle);
+        (low, (u64::from(mid) << 32 | u64::from(high), odd, index as u32))
     });
     let mut buckets = Buckets::new(vertices, by_lowest);
     let mut found = Duplicates::default();

@@ -1,7 +1,7 @@
 //! The edges of a mesh and the triangles at each.
 
 use super::buckets::Buckets;
-use super::chain::lowest_first;
+use super::chain::sorted;
 
 /// Every edge with its triangles, in the order of its lower, then its higher vertex. Building it costs O(n), with
 /// a short sort per vertex.
@@ -24,10 +24,9 @@ impl<'a> EdgeTable<'a> {
     /// The edges of `triangles`, whose corners are in range and differ.
     pub(super) fn new(triangles: &'a [[u32; 3]], vertices: usize) -> Self {
         let entries = triangles.iter().enumerate().flat_map(|(index, &triangle)| {
-            let [low, next, last] = lowest_first(triangle);
-            let (mid, high) = (next.min(last), next.max(last));
+            let ([low, mid, high], _) = sorted(triangle);
             let entry = |under: u32, top: u32| (under, u64::from(top) << 32 | index as u64);
-            [entry(low, next), entry(low, last), entry(mid, high)]
+            [entry(low, mid), entry(low, high), entry(mid, high)]
         });
         let mut under = Buckets::new(vertices, entries);
         for vertex in 0..under.len() {

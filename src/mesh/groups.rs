@@ -48,7 +48,8 @@ impl FaceGroups {
     /// Keeps of the assignment what the triangles `kept` have, in that order. The list stays as it is.
     pub(super) fn select(&mut self, kept: &[u32]) {
         if !self.is_empty() {
-            self.of_triangle = kept.iter().map(|&triangle| self.of_triangle[triangle as usize]).collect();
+            let group = |&triangle: &u32| self.of_triangle.get(triangle as usize).copied();
+            self.of_triangle = kept.iter().filter_map(group).collect();
         }
     }
 
@@ -68,7 +69,7 @@ impl FaceGroups {
             self.of_triangle.resize(own_triangles + added_triangles, offset);
         } else {
             self.list.extend_from_slice(&other.list);
-            self.of_triangle.extend(other.of_triangle.iter().map(|&group| offset + group));
+            self.of_triangle.extend(other.of_triangle.iter().map(|&group| offset.saturating_add(group)));
         }
     }
 }

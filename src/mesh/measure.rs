@@ -6,12 +6,12 @@
 //! alongside; where it is not far below the result (slivers, sheets, bodies that cancel) the sum is done again
 //! without any rounding. Sizes far from one are brought near it by a power of two.
 
+use std::borrow::Cow;
 use std::cmp::Ordering;
 
 use super::parallel::map_chunks;
-use super::scale::{exponent, power_of_two};
 use super::summation::{ExactSum, Sum};
-use super::{Bounds, Mesh};
+use super::{Bounds, Mesh, scale};
 
 /// A volume with its sign, which holds also where the number itself under- or overflows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,55 +57,98 @@ impl Mesh {
     }
 }
 
-/// The place and unit that lengths are measured in.
-#[derive(Clone, Copy, Debug)]
-struct Frame {
-    /// What coordinates are multiplied with: a power of two, one for ordinary sizes.
+/// Triangles with their coordinates in a frame: multiplied by a power of two where that brings them nearer one, and
+/// with an origin in their middle.
+struct Framed<'a> {
+    positions: Cow<'a, [[f64; 3]]>,
+    triangles: &'a [[u32; 3]],
+    /// The power of two, one for ordinary sizes.
     scale: f64,
-    /// The exponent of `scale`.
-    exponent: i32,
-    /// The origin, scaled.
     origin: [f64; 3],
+    /// No coordinate relative to the origin is larger.
+    reach: f64,
 }
 
-impl Frame {
-    fn new(bounds: &Bounds) -> Self {
-        let size = (0..3).map(|axis| 0.5 * bounds.high[axis] - 0.5 * bounds.low[axis]).fold(0.0, f64::max);
-        let size_exponent = exponent(size);
-        // 2^300 cubed, thousands of times, is far from overflow.
-        let exponent = if size_exponent.abs() <= 300 { 0 } else { -size_exponent.clamp(-1000, 1000) };
-        let scale = power_of_two(exponent);
-        Self { scale, exponent, origin: bounds.center().map(|x| x * scale) }
+impl<'a> Framed<'a> {
+    fn new(positions: &'a [[f64; 3]], triangles: &'a [[u32; 3]], bounds: &Bounds) -> Self {
+        let scale = scale::factor(bounds.largest());
+        let origin = bounds.center().map(|x| x * scale);
+        // The middle is rounded, by less than the size.
+        let reach =
+            (0..3).map(|axis| bounds.high[axis] * scale - bounds.low[axis] * scale).fold(0.0, f64::max);
+        Self { positions: scale::multiplied(positions, scale), triangles, scale, origin, reach }
     }
 
     /// A volume, area or length (dimension 3, 2, 1) in the frame's unit, in the unit of the coordinates.
     fn unscaled(&self, value: f64, dimension: i32) -> f64 {
-        (0..dimension).fold(value, |value, _| value * power_of_two(-self.exponent))
+        (0..dimension).fold(value, |value, _| value / self.scale)
+    }
+
+    /// Those of `triangles` that are in range, spanned.
+    #[inline]
+    fn spanned(&self, triangles: &[[u32; 3]]) -> impl Iterator<Item = Spanned> {
+        triangles.iter().filter_map(|&[a, b, c]| {
+            let position = |corner: u32| self.positions.get(corner as usize);
+            let (&a, &b, &c) = (position(a)?, position(b)?, position(c)?);
+            Some(Spanned { corner: difference(a, self.origin), edges: [difference(b, a), difference(c, a)] })
+        })
+    }
+
+    /// Six times the volume, and a bound on its rounding error.
+    fn determinant_sum(&self) -> (Sum, f64) {
+        let chunks = map_chunks(self.triangles, CHUNK, |chunk| {
+            let (mut sum, mut products) = (Sum::default(), 0.0);
+            for run in chunk.chunks(RUN) {
+                let mut part = 0.0;
+                for triangle in self.spanned(run) {
+                    part += triangle.determinant();
+                    products += triangle.edge_product();
+                }
+                sum.add(part);
+            }
+            (sum, products)
+        });
+        let (mut sum, mut products) = (Sum::default(), 0.0);
+        for (part, part_products) in chunks {
+            sum.merge(part);
+            products += part_products;
+        }
+        // Eight roundings in a determinant (the differences, which enter three times, included), RUN in a plain sum.
+        (sum, (10 + RUN) as f64 * f64::EPSILON * self.reach * products)
+    }
+
+    /// Six times the volume without any rounding, relative to the coordinates' own origin.
+    fn exact_determinant_sum(&self) -> Sum {
+        let mut exact = ExactSum::default();
+        for triangle in self.triangles {
+            let [Some(a), Some(b), Some(c)] = triangle.map(|corner| self.positions.get(corner as usize))
+            else {
+                continue;
+            };
+            for axis in 0..3 {
+                let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+                exact.add_product(a[axis], b[next], c[last]);
+                exact.add_product(-a[axis], b[last], c[next]);
+            }
+        }
+        exact.sum()
     }
 }
+
+/// Triangles a piece of work.
+const CHUNK: usize = 1 << 13;
+/// Triangles summed plainly before the sum is compensated.
+const RUN: usize = 16;
 
 fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-/// A triangle as its first corner and the edges from there, in a frame.
+/// A triangle as its first corner, relative to the origin, and the edges from there.
 #[derive(Clone, Copy)]
 struct Spanned {
     corner: [f64; 3],
     edges: [[f64; 3]; 2],
-}
-
-/// The triangles that are in range, spanned.
-fn spanned<'a>(
-    positions: &'a [[f64; 3]],
-    triangles: &'a [[u32; 3]],
-    frame: &'a Frame,
-) -> impl Iterator<Item = Spanned> + 'a {
-    triangles.iter().filter_map(|&[a, b, c]| {
-        let scaled = |corner: u32| Some(positions.get(corner as usize)?.map(|x| x * frame.scale));
-        let (a, b, c) = (scaled(a)?, scaled(b)?, scaled(c)?);
-        Some(Spanned { corner: difference(a, frame.origin), edges: [difference(b, a), difference(c, a)] })
-    })
 }
 
 impl Spanned {
@@ -122,77 +165,32 @@ impl Spanned {
         a[0] * n[0] + a[1] * n[1] + a[2] * n[2]
     }
 
-    /// The same with all terms positive: the rounding error of the determinant is below a few ulps of this.
+    /// Times the reach of the frame this is more than the determinant with all its terms positive; the rounding
+    /// error of the determinant is a few ulps of that.
     #[inline]
-    fn permanent(&self) -> f64 {
-        let [u, v] = self.edges.map(|edge| edge.map(f64::abs));
-        let a = self.corner.map(f64::abs);
-        a[0] * (u[1] * v[2] + u[2] * v[1])
-            + a[1] * (u[2] * v[0] + u[0] * v[2])
-            + a[2] * (u[0] * v[1] + u[1] * v[0])
+    fn edge_product(&self) -> f64 {
+        let [u, v] = self.edges.map(|edge| edge[0].abs() + edge[1].abs() + edge[2].abs());
+        u * v
     }
-}
-
-/// Triangles a piece of work.
-const CHUNK: usize = 1 << 13;
-/// Triangles summed plainly before the sum is compensated.
-const RUN: usize = 16;
-
-/// Six times the volume, and a bound on its rounding error.
-fn determinant_sum(positions: &[[f64; 3]], triangles: &[[u32; 3]], frame: &Frame) -> (Sum, f64) {
-    let chunks = map_chunks(triangles, CHUNK, |chunk| {
-        let (mut sum, mut permanent) = (Sum::default(), 0.0);
-        for run in chunk.chunks(RUN) {
-            let mut part = 0.0;
-            for triangle in spanned(positions, run, frame) {
-                part += triangle.determinant();
-                permanent += triangle.permanent();
-            }
-            sum.add(part);
-        }
-        (sum, permanent)
-    });
-    let (mut sum, mut permanent) = (Sum::default(), 0.0);
-    for (part, part_permanent) in chunks {
-        sum.merge(part);
-        permanent += part_permanent;
-    }
-    // Eight roundings in a determinant (the differences, which enter three times, included), RUN in a plain sum.
-    (sum, (10 + RUN) as f64 * f64::EPSILON * permanent)
-}
-
-/// Six times the volume without any rounding, relative to the coordinates' own origin.
-fn exact_determinant_sum(positions: &[[f64; 3]], triangles: &[[u32; 3]], frame: &Frame) -> Sum {
-    let mut exact = ExactSum::default();
-    for triangle in triangles {
-        let corner = |index: u32| Some(positions.get(index as usize)?.map(|x| x * frame.scale));
-        let [Some(a), Some(b), Some(c)] = triangle.map(corner) else { continue };
-        for axis in 0..3 {
-            let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
-            exact.add_product(a[axis], b[next], c[last]);
-            exact.add_product(-a[axis], b[last], c[next]);
-        }
-    }
-    exact.sum()
 }
 
 /// The volume of `triangles`, which lie in `bounds`.
 pub(super) fn signed_volume(positions: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Bounds) -> SignedVolume {
-    let frame = Frame::new(bounds);
-    let (mut sum, bound) = determinant_sum(positions, triangles, &frame);
+    let framed = Framed::new(positions, triangles, bounds);
+    let (mut sum, bound) = framed.determinant_sum();
     if bound > 1e-9 * sum.value().abs() {
-        sum = exact_determinant_sum(positions, triangles, &frame);
+        sum = framed.exact_determinant_sum();
     }
     let sign = sum.value().partial_cmp(&0.0).unwrap_or(Ordering::Equal);
-    SignedVolume { value: frame.unscaled(sum.divided_by(6.0), 3), sign }
+    SignedVolume { value: framed.unscaled(sum.divided_by(6.0), 3), sign }
 }
 
 /// The area of `triangles`, which lie in `bounds`.
 pub(super) fn area(positions: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Bounds) -> f64 {
-    let frame = Frame::new(bounds);
+    let framed = Framed::new(positions, triangles, bounds);
     let chunks = map_chunks(triangles, CHUNK, |chunk| {
         let mut sum = Sum::default();
-        for triangle in spanned(positions, chunk, &frame) {
+        for triangle in framed.spanned(chunk) {
             let [x, y, z] = triangle.normal();
             sum.add((x * x + y * y + z * z).sqrt());
         }
@@ -200,23 +198,23 @@ pub(super) fn area(positions: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Boun
     });
     let mut sum = Sum::default();
     chunks.into_iter().for_each(|part| sum.merge(part));
-    frame.unscaled(0.5 * sum.value(), 2)
+    framed.unscaled(0.5 * sum.value(), 2)
 }
 
 fn centroid(positions: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Bounds) -> Option<[f64; 3]> {
-    let frame = Frame::new(bounds);
+    let framed = Framed::new(positions, triangles, bounds);
     let mut moments = [Sum::default(); 3];
-    for triangle in spanned(positions, triangles, &frame) {
+    for triangle in framed.spanned(triangles) {
         let determinant = triangle.determinant();
         let (corner, [u, v]) = (triangle.corner, triangle.edges);
         for axis in 0..3 {
             moments[axis].add(determinant * (3.0 * corner[axis] + u[axis] + v[axis]));
         }
     }
-    let (sum, bound) = determinant_sum(positions, triangles, &frame);
+    let (sum, bound) = framed.determinant_sum();
     if sum.value().abs() <= bound {
         return None;
     }
     let middle = bounds.center();
-    Some([0, 1, 2].map(|axis| middle[axis] + frame.unscaled(moments[axis].value() / (4.0 * sum.value()), 1)))
+    Some([0, 1, 2].map(|axis| middle[axis] + framed.unscaled(moments[axis].value() / (4.0 * sum.value()), 1)))
 }

@@ -100,13 +100,15 @@ impl Mesh {
     /// the surface. O(n log n).
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] unless `distance` is finite and positive or zero (equal coordinates only).
+    /// [`Error::InvalidArgument`] unless `distance` is finite and positive or zero (equal coordinates only);
+    /// [`Error::IndexOutOfRange`], [`Error::NotFinite`].
     pub fn welded(mut self, distance: f64) -> Result<Self, Error> {
         if !(distance.is_finite() && distance >= 0.0) {
             return Err(Error::InvalidArgument(format!(
                 "the welding distance must be finite and not negative, not {distance}"
             )));
         }
+        clean::check_corners(&self)?;
         let how = if distance == 0.0 { clean::Weld::Exact } else { clean::Weld::Within(distance) };
         let cleaned = clean::clean(&self.positions, &self.triangles, how);
         if cleaned.welded > 0 {

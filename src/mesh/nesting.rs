@@ -12,9 +12,9 @@ use rustc_hash::FxHashMap;
 use super::Bounds;
 use super::patches::Patches;
 
-/// At most this many rays a patch: from the vertices extreme along the axes, which are the first to stick out where
-/// a patch is not wholly inside.
-const RAYS: usize = 6;
+/// At most this many rays a patch: from the vertices farthest along the axes and the diagonals of space, which are
+/// the first to stick out where a patch is not wholly inside, and hardly all on the surface of another.
+const RAYS: usize = 14;
 
 /// The start of a ray.
 struct Start {
@@ -92,24 +92,23 @@ pub(super) fn inside_oddly_many(
     odd
 }
 
-/// The first of the places that are lowest or highest along each axis, without repetition.
+/// The first of the places that are farthest in each direction, without repetition.
 fn extremes(places: impl Iterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
-    let mut found: Vec<[f64; 3]> = Vec::new();
+    let directions = (0..27).map(|index| [index % 3 - 1, index / 3 % 3 - 1, index / 9 - 1]);
+    let to_faces_and_corners =
+        directions.filter(|direction| matches!(direction.map(i32::abs).iter().sum(), 1 | 3));
+    let directions: Vec<[f64; 3]> = to_faces_and_corners.map(|direction| direction.map(f64::from)).collect();
+    let mut farthest = vec![(f64::NEG_INFINITY, [0.0; 3]); RAYS];
     for place in places {
-        if found.is_empty() {
-            found = vec![place; RAYS];
-        }
-        for axis in 0..3 {
-            if place[axis] < found[axis][axis] {
-                found[axis] = place;
-            }
-            if place[axis] > found[axis + 3][axis] {
-                found[axis + 3] = place;
+        for (direction, farthest) in directions.iter().zip(&mut farthest) {
+            let reach = direction[0] * place[0] + direction[1] * place[1] + direction[2] * place[2];
+            if reach > farthest.0 {
+                *farthest = (reach, place);
             }
         }
     }
     let mut distinct: Vec<[f64; 3]> = Vec::new();
-    for place in found {
+    for (_, place) in farthest {
         if !distinct.contains(&place) {
             distinct.push(place);
         }
@@ -198,54 +197,67 @@ impl Grid {
 #[cfg(test)]
 mod tests {
     use super::super::edges::EdgeTable;
+    use super::super::{Mesh, patches::Patches};
     use super::*;
+    use crate::primitives;
 
-    /// Boxes about the origin or elsewhere, one patch each.
-    fn nested(boxes: &[([f64; 3], f64)]) -> Vec<bool> {
-        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
-        for (center, half) in boxes {
-            let first = positions.len() as u32;
-            let corner = |i: u32| {
-                [0, 1, 2].map(|axis: usize| center[axis] + if i >> axis & 1 == 0 { -half } else { *half })
-            };
-            positions.extend((0..8).map(corner));
-            let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-            for [a, b, c, d] in faces {
-                triangles
-                    .extend([[a, b, c], [a, c, d]].map(|triangle| triangle.map(|corner| first + corner)));
-            }
-        }
-        let patches = Patches::new(&EdgeTable::new(&triangles, positions.len()), triangles.len());
-        inside_oddly_many(&positions, &triangles, &patches)
+    fn nested(shells: &[Mesh]) -> Vec<bool> {
+        let mesh = Mesh::merged(shells).unwrap();
+        let table = EdgeTable::new(&mesh.triangles, mesh.positions.len());
+        inside_oddly_many(&mesh.positions, &mesh.triangles, &Patches::new(&table, mesh.triangles.len()))
+    }
+
+    fn cube(center: [f64; 3], half: f64) -> Mesh {
+        primitives::cuboid(center.map(|x| x - half), center.map(|x| x + half)).unwrap()
     }
 
     #[test]
     fn shells_in_shells_alternate() {
-        let origin = [0.0; 3];
-        assert_eq!(nested(&[(origin, 1.0)]), [false]);
-        assert_eq!(
-            nested(&[(origin, 1.0), (origin, 2.0), (origin, 4.0), (origin, 3.0)]),
-            [true, false, false, true]
-        );
-        // The inner one sits on the floor of the outer one.
-        assert_eq!(nested(&[(origin, 2.0), ([0.0, 0.0, -1.0], 1.0)]), [false, true]);
+        let shells = [1.0, 2.0, 4.0, 3.0].map(|half| cube([0.0; 3], half));
+        assert_eq!(nested(&shells[..1]), [false]);
+        assert_eq!(nested(&shells), [true, false, false, true]);
+    }
+
+    #[test]
+    fn touching_from_inside_is_inside() {
+        // The inner cube touches the outer one from inside with a face, in an edge's two faces, or in a corner.
+        for place in 1..27 {
+            let offset = [place % 3, place / 3 % 3, place / 9].map(|x| f64::from(x) - 1.0);
+            assert_eq!(nested(&[cube([0.0; 3], 2.0), cube(offset, 1.0)]), [false, true], "{offset:?}");
+        }
+    }
+
+    #[test]
+    fn rays_may_meet_edges_and_corners() {
+        // The corners of the inner body lie below corners, edges and diagonals of the outer one.
+        let inner = primitives::octahedron(1.0).unwrap();
+        let (cube, octahedron) = (cube([0.0; 3], 3.0), primitives::octahedron(3.0).unwrap());
+        for outer in [cube.clone(), octahedron.clone(), primitives::cylinder(3.0, 6.0, 4).unwrap()] {
+            for turn in 0..4 {
+                let turned = outer.clone().rotated([0.0, 0.0, 1.0], 90.0 * f64::from(turn)).unwrap();
+                let lowered = turned.translated([0.0, 0.0, -outer.bounds().unwrap().center()[2]]);
+                assert_eq!(nested(&[lowered, inner.clone()]), [false, true]);
+            }
+        }
     }
 
     #[test]
     fn side_by_side_or_crossing_is_not_inside() {
-        let origin = [0.0; 3];
-        assert_eq!(nested(&[(origin, 1.0), ([2.0, 0.0, 0.0], 1.0)]), [false, false]);
-        assert_eq!(nested(&[(origin, 2.0), ([1.5, 1.5, 1.5], 1.0)]), [false, false]);
-        assert_eq!(nested(&[(origin, 1.0), (origin, 1.0)]), [false, false]);
+        let unit = cube([0.0; 3], 1.0);
+        assert_eq!(nested(&[unit.clone(), cube([2.0, 0.0, 0.0], 1.0)]), [false, false]);
+        assert_eq!(nested(&[cube([0.0; 3], 2.0), cube([1.5; 3], 1.0)]), [false, false]);
+        assert_eq!(nested(&[unit.clone(), unit]), [false, false]);
+        // A body in the hole of a ring is within its box, but not inside.
+        let ring = primitives::torus(3.0, 1.0, 16, 16).unwrap();
+        assert_eq!(nested(&[ring, cube([0.0; 3], 0.5)]), [false, false]);
     }
 
     #[test]
     fn many_shells_in_a_box() {
-        let mut boxes = vec![([0.0; 3], 20.0)];
-        boxes.extend(
-            (0..1000).map(|i| ([i % 10, i / 10 % 10, i / 100].map(|x| f64::from(x) * 2.0 - 9.0), 0.5)),
-        );
-        let nested = nested(&boxes);
+        let mut shells = vec![cube([0.0; 3], 20.0)];
+        let places = (0..1000).map(|i| [i % 10, i / 10 % 10, i / 100].map(|x| f64::from(x) * 2.0 - 9.0));
+        shells.extend(places.map(|place| cube(place, 0.5)));
+        let nested = nested(&shells);
         assert!(!nested[0] && nested[1..].iter().all(|&inside| inside));
     }
 }

@@ -64,8 +64,9 @@ impl Mesh {
     /// sewn). In each patch the triangles are made to agree, the fewer giving way. A patch that is closed by itself
     /// then faces outwards, or inwards if it lies inside an odd number of others (the wall of a cavity). A patch
     /// that is not closed keeps the orientation most of its triangles have, and one that cannot be oriented (a
-    /// Moebius strip) is left in disagreement; [`Solid::try_from`](super::Solid) refuses those. Patches that cross
-    /// each other count as side by side. O(n log n).
+    /// Moebius strip) is left in disagreement; [`Solid::try_from`](super::Solid) refuses those. Whether a patch
+    /// lies inside another is judged by its farthest vertices along 14 directions, all of which must; so patches
+    /// that cross each other mostly count as side by side. O(n log n).
     #[must_use]
     pub fn oriented(mut self) -> Self {
         let Cleaned { triangles, source, .. } = clean::clean(&self.positions, &self.triangles, Weld::Exact);

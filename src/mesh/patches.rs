@@ -147,6 +147,15 @@ mod tests {
     }
 
     #[test]
+    fn a_hole_opens_its_patch_only() {
+        let second = TETRAHEDRON.map(|triangle| triangle.map(|corner| corner + 4));
+        let triangles: Vec<_> = TETRAHEDRON[1..].iter().copied().chain(second).collect();
+        let patches = patches(&triangles, 8);
+        assert_eq!(patches.closed, [false, true]);
+        assert!(!patches.is_mixed(0) && !patches.is_mixed(1));
+    }
+
+    #[test]
     fn a_moebius_strip_is_never_closed() {
         let triangles: Vec<_> = (0..5).map(|i| [i, (i + 1) % 5, (i + 2) % 5]).collect();
         let patches = patches(&triangles, 5);

@@ -7,7 +7,11 @@ use std::borrow::Cow;
 pub(super) fn near_one(positions: &[[f64; 3]]) -> Cow<'_, [[f64; 3]]> {
     let largest =
         positions.iter().flatten().filter(|x| x.is_finite()).fold(0.0, |largest, x| x.abs().max(largest));
-    let factor = factor(largest);
+    multiplied(positions, factor(largest))
+}
+
+/// The coordinates multiplied by `factor`.
+pub(super) fn multiplied(positions: &[[f64; 3]], factor: f64) -> Cow<'_, [[f64; 3]]> {
     if factor == 1.0 {
         return Cow::Borrowed(positions);
     }

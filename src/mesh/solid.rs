@@ -228,10 +228,9 @@ impl TryFrom<Mesh> for Solid {
                 (bounds, volume)
             },
         );
-        let examined = examined.map_err(|triangle| {
-            let index = mesh.triangles[triangle].into_iter().find(|&index| index as usize >= vertices);
-            Error::IndexOutOfRange { triangle, index: index.unwrap_or_default(), vertices }
-        })?;
+        let Ok(examined) = examined else {
+            return cleaned(mesh);
+        };
         let as_it_is = examined.closed && !examined.unreferenced && !examined.two_triangle_vertex;
         if !(as_it_is && examined.edge_manifold && bounds.is_some()) {
             return cleaned(mesh);
@@ -260,13 +259,7 @@ fn finite_bounds(positions: &[[f64; 3]]) -> Option<Bounds> {
 /// The way round for a mesh that is not a solid as it is.
 fn cleaned(mesh: Mesh) -> Result<Solid, Error> {
     let triangles = mesh.triangles.len();
-    let corners = mesh.triangles.iter().filter(|[a, b, c]| a != b && b != c && c != a).flatten();
-    for &vertex in corners {
-        let position = mesh.positions[vertex as usize];
-        if !position.iter().all(|x| x.is_finite()) {
-            return Err(Error::NotFinite { vertex: vertex as usize, position });
-        }
-    }
+    clean::check_corners(&mesh)?;
     let mut cleaned = clean::clean(&mesh.positions, &mesh.triangles, Weld::Exact);
     if !cleaned.closed {
         return Err(Error::NotClosed(Box::new(diagnose(&mesh))));

@@ -124,13 +124,20 @@ mod tests {
 
     #[test]
     fn quotients_are_right_to_the_last_bit() {
-        // 6 (2^53 - 1) is no float, but it is a sum of two.
-        let volume = 2f64.powi(53) - 1.0;
-        let mut sum = Sum::default();
-        for _ in 0..6 {
-            sum.add(volume);
+        for less in 0..100 {
+            // Six times this is no float for most, but it is a sum of two.
+            let volume = 2f64.powi(53) - f64::from(less);
+            let mut sum = Sum::default();
+            for _ in 0..6 {
+                sum.add(volume);
+            }
+            assert_eq!(sum.divided_by(6.0), volume);
         }
-        assert_eq!(sum.divided_by(6.0), volume);
+        let mut third = Sum::default();
+        third.add(2f64.powi(53));
+        third.add(1.0);
+        // (2^53 + 1) / 3 is whole; 2^53 / 3 is not.
+        assert_eq!(third.divided_by(3.0), 3_002_399_751_580_331.0);
     }
 
     #[test]

@@ -27,14 +27,6 @@ pub(super) fn boundary(triangles: &[[u32; 3]], vertices: usize) -> Vec<OpenEdge>
     open.collect()
 }
 
-/// The vertices at the ends of `edges`, ascending.
-pub(super) fn ends(edges: &[OpenEdge]) -> Vec<u32> {
-    let mut ends: Vec<u32> = edges.iter().flat_map(|edge| [edge.from, edge.to]).collect();
-    ends.sort_unstable();
-    ends.dedup();
-    ends
-}
-
 /// Whether the edges cancel once every vertex is replaced by what `target` says.
 pub(super) fn cancels(edges: &[OpenEdge], target: impl Fn(u32) -> u32) -> bool {
     let mut directed: Vec<(u32, u32, i64)> = edges
@@ -96,16 +88,17 @@ fn mix(bits: [u64; 3]) -> u64 {
 /// a vertex joins the nearest (of equally near ones the first) of those that stand for a place, or else stands
 /// for its own. Takes time in proportion to the number of vertices.
 pub(super) fn near_targets(positions: &[[f64; 3]], vertices: &[u32], distance: f64) -> Vec<u32> {
-    // The places that stand are more than `distance` apart, so a cell that wide holds only a few.
+    // Cells a little wider than twice the distance: what is near a place is in its cell or in those beyond the
+    // nearer side of the cell along each axis. The places that stand are far enough apart to be few in a cell.
+    let width = 2.5 * distance;
     let mut cells: FxHashMap<[i64; 3], Vec<u32>> = FxHashMap::default();
     let mut targets = Vec::with_capacity(vertices.len());
     for &vertex in vertices {
         let place = positions[vertex as usize];
-        let cell = place.map(|x| cell_of(x, distance));
+        let spans = place.map(|x| cells_near(x, width));
         let mut nearest: Option<(f64, u32)> = None;
-        for offset in 0..27 {
-            let offset = [offset % 3 - 1, offset / 3 % 3 - 1, offset / 9 - 1];
-            let near = cells.get(&[0, 1, 2].map(|axis: usize| cell[axis].wrapping_add(offset[axis])));
+        for choice in 0..8 {
+            let near = cells.get(&[0, 1, 2].map(|axis: usize| spans[axis][choice >> axis & 1]));
             for &standing in near.into_iter().flatten() {
                 let other = positions[standing as usize];
                 let apart = (place[0] - other[0]).hypot(place[1] - other[1]).hypot(place[2] - other[2]);
@@ -116,17 +109,21 @@ pub(super) fn near_targets(positions: &[[f64; 3]], vertices: &[u32], distance: f
         }
         targets.push(nearest.map_or(vertex, |(_, standing)| standing));
         if nearest.is_none() {
-            cells.entry(cell).or_default().push(vertex);
+            cells.entry(spans.map(|span| span[0])).or_default().push(vertex);
         }
     }
     targets
 }
 
-/// The number of the cell of width `width` that `x` is in. Where cells are too many to count, neighbouring floats
-/// are farther apart than a cell is wide, and each float gets a cell of its own.
-fn cell_of(x: f64, width: f64) -> i64 {
-    let cell = (x / width).floor();
-    if cell.abs() < 4.0e18 { cell as i64 } else { position_bits(&[x; 3])[0] as i64 }
+/// The number of the cell of width `width` that `x` is in, and that of the neighbour nearer to `x`. Where cells are
+/// too many to count, neighbouring floats are farther apart than a cell is wide, and each has a cell of its own.
+fn cells_near(x: f64, width: f64) -> [i64; 2] {
+    let (cell, within) = ((x / width).floor(), x / width);
+    if cell.abs() > 4.0e18 {
+        return [position_bits(&[x; 3])[0] as i64; 2];
+    }
+    let number = cell as i64;
+    [number, if within - cell < 0.5 { number - 1 } else { number + 1 }]
 }
 
 /// A map of all vertices to themselves but for `vertices`, which go to `targets`.
@@ -165,7 +162,6 @@ mod tests {
         let boundary = boundary(&[[2, 0, 1]], 3);
         let edge = |from, to| OpenEdge { from, to, count: 1 };
         assert_eq!(boundary, [edge(0, 1), edge(2, 0), edge(1, 2)]);
-        assert_eq!(ends(&boundary), [0, 1, 2]);
         assert!(!cancels(&boundary, |vertex| vertex));
         assert!(cancels(&boundary, |vertex| vertex.min(1)));
     }

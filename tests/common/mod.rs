@@ -1,6 +1,8 @@
 //! Helpers shared by the capability tests.
 #![allow(dead_code, reason = "each test program uses some of these")]
 
+pub(crate) mod meshes;
+
 use trisect::{Mesh, Operation, Options, Outcome, Solid};
 
 /// The solid of a mesh that must be one.
