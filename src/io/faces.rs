@@ -11,6 +11,8 @@ pub(super) struct FaceList {
     triangles: Vec<[u32; 3]>,
     polygons: Vec<Polygon>,
     corners: Vec<u32>,
+    /// The largest index in faces that were left out.
+    left_out: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -37,11 +39,13 @@ impl FaceList {
     /// These triangles, but for those with a repeated corner; and how many those were.
     pub(super) fn from_triangles(mut triangles: Vec<[u32; 3]>) -> (Self, usize) {
         let count = triangles.len();
+        let mut left_out = None;
         if !triangles.iter().all(whole) {
+            left_out = triangles.iter().filter(|triangle| !whole(triangle)).flatten().copied().max();
             triangles.retain(whole);
         }
         let dropped = count - triangles.len();
-        (Self { triangles, ..Self::default() }, dropped)
+        (Self { triangles, left_out, ..Self::default() }, dropped)
     }
 
     /// Adds a face, if it has three corners or more. Corners repeated one after the other count once, since the
@@ -53,9 +57,15 @@ impl FaceList {
                 self.triangles.push([a, b, c]);
                 true
             }
-            [_, _, _] => false,
+            [_, _, _] => self.leave_out(corners),
             _ => self.push_polygon(corners),
         }
+    }
+
+    #[cold]
+    fn leave_out(&mut self, corners: &[u32]) -> bool {
+        self.left_out = self.left_out.max(corners.iter().copied().max());
+        false
     }
 
     fn push_polygon(&mut self, corners: &[u32]) -> bool {
@@ -70,7 +80,7 @@ impl FaceList {
         }
         if self.corners.len() < first + 3 {
             self.corners.truncate(first);
-            return false;
+            return self.leave_out(corners);
         }
         self.polygons.push(Polygon { after: self.triangles.len() as u32, first: first as u32 });
         true
@@ -91,7 +101,7 @@ impl FaceList {
         self.triangles.len() < u32::MAX as usize - 1 && self.corners.len() < u32::MAX as usize / 2
     }
 
-    /// The largest index.
+    /// The largest index, in faces that were left out too.
     pub(super) fn largest(&self) -> Option<u32> {
         // Three running maxima, so that the loop runs on vector registers.
         let in_triangles = self.triangles.iter().fold([0; 3], |largest, triangle| {
@@ -99,7 +109,7 @@ impl FaceList {
         });
         let in_polygons = self.corners.iter().copied().max();
         let in_triangles = (!self.triangles.is_empty()).then(|| in_triangles.into_iter().max()).flatten();
-        in_triangles.max(in_polygons)
+        in_triangles.max(in_polygons).max(self.left_out)
     }
 
     /// The triangles, in the order of the faces, with every index in range; and for each of `places` (in order) how

@@ -165,12 +165,13 @@ impl Triangulator {
         let mut left = n;
         let mut cursor = 0;
         // Bounds the time a made-up polygon can take.
-        let mut budget = 200_000 + 256 * n;
+        let mut budget = 200_000 + 512 * n;
         let mut head = 0;
         while left > 3 {
             // An ear may appear only where a neighbour was clipped: the corner nearest to an ear's tip among those
             // inside it is not convex, so it stays as long as the ear does.
-            let candidate = if head < self.queue.len() {
+            let ear = head < self.queue.len();
+            let candidate = if ear {
                 head += 1;
                 let corner = self.queue[head - 1] as usize;
                 if self.clipped[corner] || !self.is_ear(corner, &mut budget) {
@@ -178,11 +179,15 @@ impl Triangulator {
                 }
                 corner
             } else {
-                tiling = Tiling::Improper;
                 self.any_corner(&mut cursor, &mut budget)
             };
             let (before, after) = (self.previous[candidate], self.next[candidate]);
-            triangles.push([corners[before as usize], corners[candidate], corners[after as usize]]);
+            let triangle = [corners[before as usize], corners[candidate], corners[after as usize]];
+            // A triangle that names a vertex twice covers nothing: its edges cancel.
+            if is_whole(triangle) && !(ear && self.shapes[candidate] == Shape::Convex) {
+                tiling = Tiling::Improper;
+            }
+            triangles.push(triangle);
             self.clipped[candidate] = true;
             self.next[before as usize] = after;
             self.previous[after as usize] = before;
@@ -201,22 +206,27 @@ impl Triangulator {
             cursor = (cursor + 1) % n;
         }
         let (before, after) = (self.previous[cursor] as usize, self.next[cursor] as usize);
-        triangles.push([corners[before], corners[cursor], corners[after]]);
-        if self.turn(before, cursor, after) <= 0.0 {
+        let triangle = [corners[before], corners[cursor], corners[after]];
+        triangles.push(triangle);
+        if is_whole(triangle) && self.turn(before, cursor, after) <= 0.0 {
             tiling = Tiling::Improper;
         }
         tiling
     }
 
     /// Whether the triangle at this corner has area and holds no other corner, on its boundary neither. Corners that
-    /// coincide with one of its own do not count: the boundary may touch itself there.
+    /// coincide with one of its own do not count: the boundary may touch itself there. A spike, whose boundary goes
+    /// back where it came from, can always be clipped: it encloses nothing.
     fn is_ear(&self, corner: usize, budget: &mut usize) -> bool {
+        let ends = [self.previous[corner] as usize, corner, self.next[corner] as usize];
+        if self.points[ends[0]] == self.points[ends[2]] {
+            return true;
+        }
         if self.shapes[corner] != Shape::Convex {
             return false;
         }
-        let ends = [self.previous[corner] as usize, corner, self.next[corner] as usize];
         let [a, b, c] = ends.map(|end| self.points[end]);
-        self.grid.none_inside(a.min(b).min(c), a.max(b).max(c), budget, |other| {
+        self.grid.none_inside([a, b, c], budget, |other| {
             if self.clipped[other] || self.shapes[other] == Shape::Convex || ends.contains(&other) {
                 return false;
             }
@@ -250,6 +260,10 @@ impl Triangulator {
     }
 }
 
+fn is_whole([a, b, c]: [u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
 /// The power of two at or below a positive number, kept to the normal numbers.
 fn power_of_two_near(value: f64) -> f64 {
     f64::from_bits(value.clamp(f64::MIN_POSITIVE, f64::MAX).to_bits() & (0x7ff << 52))
@@ -260,7 +274,8 @@ fn power_of_two_near(value: f64) -> f64 {
 struct Grid {
     low: DVec2,
     scale: DVec2,
-    side: usize,
+    columns: usize,
+    rows: usize,
     starts: Vec<u32>,
     corners: Vec<u32>,
 }
@@ -274,19 +289,24 @@ impl Grid {
             high = high.max(points[corner]);
             count += 1;
         }
-        self.side = (count as f64).sqrt().ceil() as usize;
-        self.low = low;
+        // As many cells as corners, about as wide as high.
         let extent = high - low;
-        let cells = |length: f64| if length > 0.0 { self.side as f64 / length } else { 0.0 };
-        self.scale = DVec2::new(cells(extent.x), cells(extent.y));
+        let ratio = if extent.x > 0.0 { extent.x / extent.y } else { 0.0 };
+        self.columns = ((count as f64 * ratio).sqrt() as usize).clamp(1, count.max(1));
+        self.rows = (count / self.columns).max(1);
+        self.low = low;
+        // Scales that could overflow are as good as none.
+        let cells = |count: usize, length: f64| Some(count as f64 / length).filter(|&scale| scale < 1e200);
+        let (across, along) = (cells(self.columns, extent.x), cells(self.rows, extent.y));
+        self.scale = DVec2::new(across.or(along).unwrap_or(1.0), along.or(across).unwrap_or(1.0));
         self.starts.clear();
-        self.starts.resize(self.side * self.side + 1, 0);
+        self.starts.resize(self.columns * self.rows + 1, 0);
         self.corners.clear();
         self.corners.resize(count, 0);
         // Counting sort by cell: count, sum up, place backwards.
         for corner in chosen.clone() {
             let cell = self.cell(points[corner]);
-            self.starts[cell.1 * self.side + cell.0] += 1;
+            self.starts[cell.1 * self.columns + cell.0] += 1;
         }
         let mut sum = 0;
         for start in &mut self.starts {
@@ -295,7 +315,7 @@ impl Grid {
         }
         for corner in chosen {
             let cell = self.cell(points[corner]);
-            let start = &mut self.starts[cell.1 * self.side + cell.0];
+            let start = &mut self.starts[cell.1 * self.columns + cell.0];
             *start -= 1;
             self.corners[*start as usize] = corner as u32;
         }
@@ -305,24 +325,20 @@ impl Grid {
     fn cell(&self, point: DVec2) -> (usize, usize) {
         let place = (point - self.low) * self.scale;
         // Conversion saturates: negative to 0; NaN (0 times infinity) to 0.
-        ((place.x as usize).min(self.side - 1), (place.y as usize).min(self.side - 1))
+        ((place.x as usize).min(self.columns - 1), (place.y as usize).min(self.rows - 1))
     }
 
-    /// Whether `inside` holds for no corner in the cells of a box. Says no when the budget is used up.
-    fn none_inside(
-        &self,
-        low: DVec2,
-        high: DVec2,
-        budget: &mut usize,
-        inside: impl Fn(usize) -> bool,
-    ) -> bool {
-        if self.side == 0 {
+    /// Whether `inside` holds for no corner in the cells that a triangle touches. Says no when the budget is used up.
+    fn none_inside(&self, triangle: [DVec2; 3], budget: &mut usize, inside: impl Fn(usize) -> bool) -> bool {
+        if self.corners.is_empty() {
             return true;
         }
-        let (first, last) = (self.cell(low), self.cell(high));
-        for row in first.1..=last.1 {
-            let row = row * self.side;
-            let run = self.starts[row + first.0] as usize..self.starts[row + last.0 + 1] as usize;
+        let [a, b, c] = triangle;
+        let (first, last) = (self.cell(a.min(b).min(c)).1, self.cell(a.max(b).max(c)).1);
+        for row in first..=last {
+            let Some((left, right)) = self.touched(triangle, row) else { continue };
+            let row = row * self.columns;
+            let run = self.starts[row + left] as usize..self.starts[row + right + 1] as usize;
             if *budget <= run.len() {
                 *budget = 0;
                 return false;
@@ -334,7 +350,36 @@ impl Grid {
         }
         true
     }
+
+    /// The first and last column that a triangle touches in a row, or more.
+    fn touched(&self, triangle: [DVec2; 3], row: usize) -> Option<(usize, usize)> {
+        let (bottom, top) = (row as f64 - SLACK, row as f64 + 1.0 + SLACK);
+        let mut range: Option<(f64, f64)> = None;
+        let places = triangle.map(|point| (point - self.low) * self.scale);
+        for side in 0..3 {
+            let (p, q) = (places[side], places[(side + 1) % 3]);
+            let (p, q) = if p.y <= q.y { (p, q) } else { (q, p) };
+            if q.y < bottom || p.y > top {
+                continue;
+            }
+            // Where the side enters and leaves the row, as fractions of it, widened by what rounding may do.
+            let height = q.y - p.y;
+            let slack = SLACK / height;
+            let enter = if slack < 1.0 { ((bottom - p.y) / height - slack).clamp(0.0, 1.0) } else { 0.0 };
+            let leave = if slack < 1.0 { ((top - p.y) / height + slack).clamp(0.0, 1.0) } else { 1.0 };
+            for fraction in [enter, leave] {
+                let x = p.x + (q.x - p.x) * fraction;
+                let (low, high) = range.unwrap_or((x, x));
+                range = Some((low.min(x), high.max(x)));
+            }
+        }
+        let column = |x: f64| (x as usize).min(self.columns - 1);
+        range.map(|(low, high)| (column(low - SLACK), column(high + SLACK)))
+    }
 }
+
+/// Much more than rounding can move a point in units of cells, much less than a cell.
+const SLACK: f64 = 1e-6;
 
 #[cfg(test)]
 #[path = "polygon_tests.rs"]

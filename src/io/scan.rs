@@ -123,7 +123,16 @@ impl<'a> Scanner<'a> {
     }
 
     /// Skips the rest of the line with its end.
+    #[inline(always)]
     pub(super) fn skip_line(&mut self) {
+        if self.peek() == Some(b'\n') {
+            self.at += 1;
+        } else {
+            self.skip_to_line_end();
+        }
+    }
+
+    fn skip_to_line_end(&mut self) {
         match memchr::memchr2(b'\n', b'\r', self.rest()) {
             None => self.at = self.bytes.len(),
             Some(length) => {

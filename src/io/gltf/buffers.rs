@@ -127,17 +127,16 @@ impl<'a> Buffers<'a> {
     }
 
     fn decode(&self, data: &str, pointer: &str) -> Result<Vec<u8>, Error> {
-        let Some((kind, text)) = data.split_once(',').filter(|(kind, _)| kind.ends_with(";base64")) else {
+        let Some((_, text)) = data.split_once(',').filter(|(kind, _)| kind.ends_with(";base64")) else {
             return Err(self.reader.error(pointer, "the data URI is not in base64"));
         };
-        debug_assert!(kind.len() + text.len() < data.len());
-        let text: Cow<'_, str> = if text.contains('%') {
+        let text: Cow<'_, str> = if memchr::memchr(b'%', text.as_bytes()).is_some() {
             percent_decode(text).map_or(Cow::Borrowed(text), Cow::Owned)
         } else {
             Cow::Borrowed(text)
         };
         let config = GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent);
-        let url_safe = text.contains(['-', '_']);
+        let url_safe = memchr::memchr2(b'-', b'_', text.as_bytes()).is_some();
         let engine = GeneralPurpose::new(if url_safe { &URL_SAFE } else { &STANDARD }, config);
         engine
             .decode(text.as_bytes())
@@ -151,8 +150,8 @@ fn percent_decode(text: &str) -> Option<String> {
     let mut rest = text.as_bytes();
     while let Some((&first, tail)) = rest.split_first() {
         if first == b'%' {
-            let digits = std::str::from_utf8(tail.get(..2)?).ok()?;
-            bytes.push(u8::from_str_radix(digits, 16).ok()?);
+            let digit = |i: usize| char::from(*tail.get(i)?).to_digit(16);
+            bytes.push((digit(0)? * 16 + digit(1)?) as u8);
             rest = &tail[2..];
         } else {
             bytes.push(first);

@@ -61,7 +61,7 @@ pub(in crate::io) fn write(
             write_all(output, &rest.as_bytes()[1..])?;
         }
     }
-    let lost = collapsed(mesh, |point| frame.local(point));
+    let lost = if frame.exact { 0 } else { collapsed(mesh, |point| frame.local(point)) };
     Ok(match lost {
         0 => Vec::new(),
         _ => vec![format!("rounding to single precision makes two corners of {lost} triangles equal")],
@@ -94,6 +94,10 @@ fn write_glb_header(output: &mut dyn Write, document: &str, binary: Option<u64>)
 struct Frame {
     offset: DVec3,
     scale: f64,
+    /// One over the scale, exactly: both are powers of two.
+    unit: f64,
+    /// Whether single precision holds all coordinates exactly.
+    exact: bool,
 }
 
 impl Frame {
@@ -101,11 +105,12 @@ impl Frame {
     /// middle of the model, where that is farther from the origin than the model is wide, and a power of two as the
     /// unit where coordinates are beyond the range of single precision.
     fn of(mesh: &Mesh) -> Self {
-        let mut frame = Self { offset: DVec3::ZERO, scale: 1.0 };
+        let mut frame = Self { offset: DVec3::ZERO, scale: 1.0, unit: 1.0, exact: true };
         if mesh.positions.as_flattened().iter().all(|&coordinate| f64::from(coordinate as f32) == coordinate)
         {
             return frame;
         }
+        frame.exact = false;
         let points = || mesh.positions.iter().copied().map(DVec3::from_array);
         let low = points().fold(DVec3::INFINITY, DVec3::min);
         let high = points().fold(DVec3::NEG_INFINITY, DVec3::max);
@@ -120,13 +125,15 @@ impl Frame {
         if size > 0.0 && !(1e-30..1e30).contains(&size) {
             // The power of two at or below the size, in the range whose reciprocal is exact.
             frame.scale = f64::from_bits(size.clamp(1e-300, 1e300).to_bits() & (0x7ff << 52));
+            frame.unit = frame.scale.recip();
         }
         frame
     }
 
     /// A point as the file holds it.
     fn local(&self, point: [f64; 3]) -> [f32; 3] {
-        ((DVec3::from_array(point) - self.offset) / self.scale).to_array().map(|coordinate| coordinate as f32)
+        let local = (DVec3::from_array(point) - self.offset) * self.unit;
+        [local.x as f32, local.y as f32, local.z as f32]
     }
 }
 
@@ -266,21 +273,23 @@ fn write_buffer(
     encode: impl Fn(&[u8], &mut Vec<u8>) + Sync + Send,
 ) -> Result<(), Error> {
     write_blocks(output, mesh.positions.len(), &options.control, |range, out| {
-        let mut block = Vec::with_capacity(12 * range.len());
-        for &position in &mesh.positions[range] {
-            for coordinate in frame.local(position) {
-                block.extend(coordinate.to_le_bytes());
-            }
+        let mut block = vec![0; 12 * range.len()];
+        for (bytes, &position) in block.as_chunks_mut::<12>().0.iter_mut().zip(&mesh.positions[range]) {
+            let [x, y, z] = frame.local(position).map(f32::to_le_bytes);
+            bytes[..4].copy_from_slice(&x);
+            bytes[4..8].copy_from_slice(&y);
+            bytes[8..].copy_from_slice(&z);
         }
         encode(&block, out);
     })?;
     for triangles in members {
         write_blocks(output, triangles.len(), &options.control, |range: Range<usize>, out| {
-            let mut block = Vec::with_capacity(12 * range.len());
-            for &triangle in &triangles[range] {
-                for corner in mesh.triangles[triangle as usize] {
-                    block.extend(corner.to_le_bytes());
-                }
+            let mut block = vec![0; 12 * range.len()];
+            for (bytes, &triangle) in block.as_chunks_mut::<12>().0.iter_mut().zip(&triangles[range]) {
+                let [a, b, c] = mesh.triangles[triangle as usize].map(u32::to_le_bytes);
+                bytes[..4].copy_from_slice(&a);
+                bytes[4..8].copy_from_slice(&b);
+                bytes[8..].copy_from_slice(&c);
             }
             encode(&block, out);
         })?;

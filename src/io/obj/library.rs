@@ -70,7 +70,9 @@ fn parse(bytes: &[u8], materials: &mut HashMap<String, [f32; 4]>, notes: &mut No
             // A single value stands for all three.
             (b"Kd", [gray]) => color[..3].fill(*gray),
             (b"d", [opacity, ..]) => color[3] = *opacity,
-            (b"Tr", [transparency, ..]) => color[3] = 1.0 - transparency,
+            // Many programs write "Tr 1" for opaque materials; no solid is meant to be invisible.
+            (b"Tr", [transparency, ..]) if *transparency < 1.0 => color[3] = 1.0 - transparency,
+            (b"Tr", [_, ..]) => {}
             (b"Kd" | b"d" | b"Tr", _) => strange += 1,
             _ => {}
         }
@@ -101,11 +103,12 @@ mod tests {
     #[test]
     fn colours_and_opacity() {
         let text = b"# library\r\nnewmtl red paint\r\n\tKd 1 0.5 0\r\nd 0.25\r\n\r\nnewmtl glass\nTr 0.75\nKd 2 nan 0\n\
-            Kd 0.5\nnewmtl red paint\nKd 0 0 0\nmap_Kd a.png\nnewmtl caf\xe9\nKd spectral file.rfl";
+            Kd 0.5\nnewmtl red paint\nKd 0 0 0\nmap_Kd a.png\nnewmtl caf\xe9\nKd spectral file.rfl\nnewmtl max\nTr 1";
         let (mut materials, mut notes) = (HashMap::new(), Notes::default());
         parse(text, &mut materials, &mut notes);
         assert_eq!(materials["red paint"], [1.0, 0.5, 0.0, 0.25]);
         assert_eq!(materials["glass"], [0.5, 0.5, 0.5, 0.25]);
+        assert_eq!(materials["max"], [1.0; 4]);
         assert_eq!(materials["caf\u{e9}"], [1.0; 4]);
         assert_eq!(
             notes.into_warnings(|_| String::new()),

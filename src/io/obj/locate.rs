@@ -29,13 +29,15 @@ pub(super) fn face_out_of_range(bytes: &[u8], vertices: usize) -> (String, u64) 
             face.advance(2);
             face.skip_blanks();
             while !face.at_line_end() {
+                let start = face.offset();
                 match face.digits() {
                     Some(index) if index > vertices as u64 => {
                         return (line_place(bytes, scanner.offset()), index - 1);
                     }
                     _ => {}
                 }
-                if face.word().is_empty() {
+                face.word();
+                if face.offset() == start {
                     break;
                 }
                 face.skip_blanks();

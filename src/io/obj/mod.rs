@@ -26,7 +26,12 @@ const SMALLEST_PIECE: usize = 1 << 20;
 
 /// Reads the mesh and the warnings.
 pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<String>), Error> {
-    let mut pieces = parse_pieces(bytes, options)?;
+    read_in_pieces(bytes, parallel::pieces(bytes.len(), SMALLEST_PIECE), options)
+}
+
+/// Reads the file cut into at most `count` pieces; the result is the same for any number.
+fn read_in_pieces(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(Mesh, Vec<String>), Error> {
+    let mut pieces = parse_pieces(bytes, count, options)?;
     let mut notes = Notes::default();
     for piece in &mut pieces {
         notes.append(std::mem::take(&mut piece.notes));
@@ -85,8 +90,7 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<Str
 }
 
 /// The file in pieces, parsed.
-fn parse_pieces<'a>(bytes: &'a [u8], options: &ReadOptions) -> Result<Vec<Piece<'a>>, Error> {
-    let count = parallel::pieces(bytes.len(), SMALLEST_PIECE);
+fn parse_pieces<'a>(bytes: &'a [u8], count: usize, options: &ReadOptions) -> Result<Vec<Piece<'a>>, Error> {
     let mut ends: Vec<usize> =
         parallel::ranges(bytes.len(), count).iter().map(|range| end_of_line(bytes, range.end)).collect();
     ends.dedup();

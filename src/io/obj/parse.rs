@@ -115,10 +115,10 @@ impl<'a> Piece<'a> {
         }
         self.positions.push(position);
         scanner.skip_blanks();
-        match scanner.peek() {
-            Some(b'\n') => scanner.advance(1),
-            _ if scanner.at_line_end() => scanner.skip_line(),
-            _ => self.vertex_tail(scanner),
+        if scanner.at_line_end() {
+            scanner.skip_line();
+        } else {
+            self.vertex_tail(scanner);
         }
         Ok(())
     }

@@ -15,7 +15,9 @@ const CHECK_INTERVAL: usize = 1 << 12;
 /// Whether a text, without blanks before it, is that of an ASCII STL file.
 pub(in crate::io) fn looks_like_text(text: &[u8]) -> bool {
     let mut head = Scanner::new(&text[..text.len().min(8192)], 0);
-    if !head.word().eq_ignore_ascii_case(b"solid") {
+    // Binary files may begin with the word as well; the rest of their header is no text.
+    let zero = memchr::memchr(0, &text[..text.len().min(1024)]).is_some();
+    if zero || !head.word().eq_ignore_ascii_case(b"solid") {
         return false;
     }
     head.skip_line();

@@ -1,7 +1,9 @@
 //! Binary STL: 80 bytes of header, the number of facets, 50 bytes for each.
 
+use std::ops::Range;
+
 use super::super::notes::Notes;
-use super::super::{Format, malformed};
+use super::super::{Format, malformed, parallel};
 use super::weld::Weld;
 use crate::{Control, Error, Mesh};
 
@@ -10,6 +12,9 @@ const FACET: usize = 50;
 
 /// Facets between two looks at the limits.
 const CHECK_INTERVAL: usize = 1 << 14;
+
+/// Fewer facets are not worth a thread.
+const SMALLEST_PIECE: usize = 1 << 16;
 
 /// The length that a binary STL file with this beginning should have.
 pub(in crate::io) fn exact_length(bytes: &[u8]) -> Option<u64> {
@@ -56,32 +61,62 @@ pub(super) fn read(bytes: &[u8], notes: &mut Notes, control: &Control) -> Result
     };
 
     let _reservation = control.reserve(count as u64 * 28)?;
-    let mut weld = Weld::new(count);
-    let mut triangles = Vec::with_capacity(count);
-    let mut degenerate = 0;
-    for (block, chunk) in facets[..count].chunks(CHECK_INTERVAL).enumerate() {
-        control.check()?;
-        for (i, facet) in chunk.iter().enumerate() {
-            let corners = corners(facet);
+    let ranges = parallel::ranges(count, parallel::pieces(count, SMALLEST_PIECE));
+    let mut pieces = parallel::map(ranges, |range| Piece::read(facets, range, control)).into_iter();
+    let mut whole = pieces.next().unwrap_or_else(|| Ok(Piece::new(0)))?;
+    for piece in pieces {
+        whole.append(piece?)?;
+    }
+    notes.add("facet with two equal corners dropped", whole.degenerate);
+    Ok(Mesh::new(whole.weld.into_positions(), whole.triangles))
+}
+
+/// A run of facets, with vertices of its own.
+struct Piece {
+    weld: Weld<[f32; 3]>,
+    triangles: Vec<[u32; 3]>,
+    degenerate: usize,
+}
+
+impl Piece {
+    fn new(facets: usize) -> Self {
+        Self { weld: Weld::new(facets), triangles: Vec::with_capacity(facets), degenerate: 0 }
+    }
+
+    fn read(facets: &[[u8; FACET]], range: Range<usize>, control: &Control) -> Result<Self, Error> {
+        let mut piece = Self::new(range.len());
+        for i in range.clone() {
+            if (i - range.start).is_multiple_of(CHECK_INTERVAL) {
+                control.check()?;
+            }
+            let corners = corners(&facets[i]);
             if !corners.as_flattened().iter().all(|coordinate| coordinate.is_finite()) {
-                let facet = block * CHECK_INTERVAL + i;
                 return Err(malformed(
                     Format::Stl,
-                    format!("byte {}", HEADER + facet * FACET),
-                    format!("facet {facet} has a coordinate that is not a finite number"),
+                    format!("byte {}", HEADER + i * FACET),
+                    format!("facet {i} has a coordinate that is not a finite number"),
                 ));
             }
             let [a, b, c] = corners;
-            let triangle = [weld.vertex(a)?, weld.vertex(b)?, weld.vertex(c)?];
+            let triangle = [piece.weld.vertex(a)?, piece.weld.vertex(b)?, piece.weld.vertex(c)?];
             if triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0] {
-                degenerate += 1;
+                piece.degenerate += 1;
             } else {
-                triangles.push(triangle);
+                piece.triangles.push(triangle);
             }
         }
+        Ok(piece)
     }
-    notes.add("facet with two equal corners dropped", degenerate);
-    Ok(Mesh::new(weld.into_positions(), triangles))
+
+    /// Adds the facets that follow: their vertices are looked up once each, and numbered as if read in one run.
+    fn append(&mut self, later: Self) -> Result<(), Error> {
+        let numbers: Vec<u32> =
+            later.weld.corners().iter().map(|&corner| self.weld.vertex(corner)).collect::<Result<_, _>>()?;
+        self.triangles
+            .extend(later.triangles.iter().map(|triangle| triangle.map(|corner| numbers[corner as usize])));
+        self.degenerate += later.degenerate;
+        Ok(())
+    }
 }
 
 /// The corners of a facet, after its normal; zeros made positive.

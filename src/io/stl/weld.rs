@@ -9,7 +9,7 @@ use crate::Error;
 const EMPTY: u32 = u32::MAX;
 
 /// Coordinates that can be vertices: equal bits, equal vertex.
-pub(super) trait Corner: Copy + PartialEq {
+pub(super) trait Corner: Copy + Default + PartialEq {
     /// The bits, as two words to hash.
     fn words(self) -> [u64; 2];
     /// As written to the mesh.
@@ -48,8 +48,13 @@ pub(super) struct Weld<C> {
     corners: Vec<C>,
     /// Indices into `corners` by hash, a power of two of them.
     slots: Vec<u32>,
+    /// The vertices asked for last, by hash: most corners are found here, in the nearest memory.
+    recent: Vec<(C, u32)>,
     seed: u64,
 }
+
+/// At most this many vertices are kept near, a power of two.
+const RECENT: usize = 1 << 14;
 
 impl<C: Corner> Weld<C> {
     /// With room for the vertices of about this many triangles.
@@ -58,14 +63,31 @@ impl<C: Corner> Weld<C> {
         let slots = triangles.max(8).next_power_of_two();
         // The seed differs from run to run, so that no file can be made whose corners all collide.
         let seed = RandomState::new().hash_one(0_u8);
-        Self { corners: Vec::with_capacity(triangles / 2 + 4), slots: vec![EMPTY; slots], seed }
+        Self {
+            corners: Vec::with_capacity(triangles / 2 + 4),
+            slots: vec![EMPTY; slots],
+            recent: vec![(C::default(), EMPTY); slots.min(RECENT)],
+            seed,
+        }
     }
 
     /// The vertex with these coordinates. Zeros must be positive, and no coordinate NaN.
     #[inline(always)]
     pub(super) fn vertex(&mut self, corner: C) -> Result<u32, Error> {
+        let hash = self.hash(corner);
+        let recent = (hash >> 40) as usize & (self.recent.len() - 1);
+        let (known, index) = self.recent[recent];
+        if known == corner && index != EMPTY {
+            return Ok(index);
+        }
+        let index = self.find_or_add(corner, hash)?;
+        self.recent[recent] = (corner, index);
+        Ok(index)
+    }
+
+    fn find_or_add(&mut self, corner: C, hash: u64) -> Result<u32, Error> {
         let mask = self.slots.len() - 1;
-        let mut slot = self.hash(corner) as usize & mask;
+        let mut slot = hash as usize & mask;
         loop {
             let index = self.slots[slot];
             if index == EMPTY {
@@ -110,7 +132,12 @@ impl<C: Corner> Weld<C> {
         }
     }
 
-    /// The vertices.
+    /// The vertices so far.
+    pub(super) fn corners(&self) -> &[C] {
+        &self.corners
+    }
+
+    /// The vertices, in double precision.
     pub(super) fn into_positions(self) -> Vec<[f64; 3]> {
         drop(self.slots);
         self.corners.into_iter().map(Corner::position).collect()
