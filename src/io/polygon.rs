@@ -12,7 +12,7 @@ use robust::{Coord, orient2d};
 /// How far the triangles can be trusted to tile the polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tiling {
-    /// They tile it without overlap.
+    /// Every triangle has area, and nothing was met that a simple polygon does not have.
     Proper,
     /// The polygon crosses itself, is a line, or is too intricate: some triangles overlap or have no area.
     Improper,
@@ -57,13 +57,19 @@ impl Triangulator {
             _ => {}
         }
         self.project(positions, corners);
+        // Where it tiles the polygon, the fan from the first corner is what most programs make of it.
+        let n = corners.len();
+        let is_convex = |i: usize, j: usize, k: usize| self.turn(i, j, k) > 0.0;
+        if (2..n).all(|i| is_convex(0, 1, i)) && (2..n - 1).all(|i| is_convex(0, i, i + 1)) {
+            triangles.extend((1..n - 1).map(|i| [corners[0], corners[i], corners[i + 1]]));
+            return Tiling::Proper;
+        }
         if let [a, b, c, d] = *corners {
-            let convex = |i: usize, j: usize, k: usize| self.turn(i, j, k) > 0.0;
-            if convex(0, 1, 2) && convex(0, 2, 3) {
+            if is_convex(0, 1, 2) && is_convex(0, 2, 3) {
                 triangles.extend([[a, b, c], [a, c, d]]);
                 return Tiling::Proper;
             }
-            if convex(1, 2, 3) && convex(1, 3, 0) {
+            if is_convex(1, 2, 3) && is_convex(1, 3, 0) {
                 triangles.extend([[b, c, d], [b, d, a]]);
                 return Tiling::Proper;
             }
@@ -143,6 +149,30 @@ impl Triangulator {
         }
     }
 
+    /// Whether the boundary turns around once on the whole, as that of every simple polygon does (Hopf 1935). Says yes
+    /// where it goes back on itself or stands still, since the way it turns there is not known.
+    fn turns_once(&self) -> bool {
+        let n = self.points.len();
+        let direction = |i: usize| self.points[(i + 1) % n] - self.points[i];
+        let is_upper = |d: DVec2| d.y > 0.0 || d.y == 0.0 && d.x > 0.0;
+        let mut turns = 0;
+        for i in 0..n {
+            let (before, after) = (direction((i + n - 1) % n), direction(i));
+            if before == DVec2::ZERO || after == DVec2::ZERO {
+                return true;
+            }
+            // Differences keep their sign when rounded, so the halves are right; the turn itself is exact. Count how
+            // often it passes the direction of the first axis, forwards and backwards.
+            match (is_upper(before), is_upper(after), self.shapes[i]) {
+                (false, true, Shape::Convex) => turns += 1,
+                (true, false, Shape::Reflex) => turns -= 1,
+                (true, false, Shape::Flat) | (false, true, Shape::Flat) => return true,
+                _ => {}
+            }
+        }
+        turns == 1
+    }
+
     fn clip(&mut self, corners: &[u32], triangles: &mut Vec<[u32; 3]>) -> Tiling {
         let n = corners.len();
         self.next.clear();
@@ -161,7 +191,7 @@ impl Triangulator {
         self.queue.clear();
         self.queue.extend(0..n as u32);
 
-        let mut tiling = Tiling::Proper;
+        let mut tiling = if self.turns_once() { Tiling::Proper } else { Tiling::Improper };
         let mut left = n;
         let mut cursor = 0;
         // Bounds the time a made-up polygon can take.

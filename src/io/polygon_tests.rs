@@ -45,9 +45,18 @@ fn flat(point: [f64; 2]) -> [f64; 3] {
 }
 
 #[test]
-fn convex_polygons_keep_the_first_diagonal() {
+fn convex_polygons_are_fanned_from_the_first_corner() {
     let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     assert_eq!(triangulate(&square).1, [[0, 1, 2], [0, 2, 3]]);
+    // Not quite flat, as decimals make it: the fan from the first corner, whichever that is.
+    let pentagon = |i: usize| {
+        let (sin, cos) = (i as f64 * 0.4 * std::f64::consts::PI).sin_cos();
+        [(cos * 1e6).round() / 1e6, (sin * 1e6).round() / 1e6, ((cos + sin) * 1e6).round() / 1e6]
+    };
+    for start in 0..5 {
+        let turned: Vec<[f64; 3]> = (0..5).map(|i| pentagon((start + i) % 5)).collect();
+        assert_eq!(triangulate(&turned), (Tiling::Proper, vec![[0, 1, 2], [0, 2, 3], [0, 3, 4]]));
+    }
 }
 
 #[test]
@@ -152,6 +161,18 @@ fn random_staircases_on_a_small_grid_are_tiled() {
         let polygon: Vec<[f64; 2]> = lower.into_iter().chain(upper).collect();
         assert_tiled(&polygon, flat);
     }
+}
+
+#[test]
+fn a_polygon_that_winds_twice_is_reported() {
+    // Twice around the first corner: every triangle of its fan has positive area, yet they overlap.
+    let spiral: Vec<[f64; 3]> = std::iter::once([0.0; 3])
+        .chain((0..14).map(|i| {
+            let (sin, cos) = (f64::from(i) * 0.8).sin_cos();
+            [cos, sin, 0.0]
+        }))
+        .collect();
+    assert_eq!(triangulate(&spiral).0, Tiling::Improper);
 }
 
 #[test]

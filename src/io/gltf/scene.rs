@@ -11,14 +11,22 @@ use crate::Error;
 pub(super) fn flatten(reader: &Reader<'_>, builder: &mut Builder<'_>) -> Result<(), Error> {
     let document = reader.document;
     let mut visited = vec![false; document.nodes.len()];
-    let mut stack: Vec<(u32, DAffine3)> =
-        roots(reader, builder)?.into_iter().rev().map(|root| (root, DAffine3::IDENTITY)).collect();
     if document.scenes.is_empty() && document.nodes.is_empty() {
         for mesh in 0..document.meshes.len() as u32 {
             builder.add(mesh, None, &DAffine3::IDENTITY)?;
         }
     }
-    while let Some((index, parent)) = stack.pop() {
+    // One level of the tree each: the nodes of the level, how many are done, and the transform they are under. A list
+    // of single nodes with their transforms could grow to fifty times the size of the file.
+    let roots = roots(reader, builder)?;
+    let mut levels: Vec<(&[u32], usize, DAffine3)> = vec![(&roots, 0, DAffine3::IDENTITY)];
+    while let Some((nodes, done, parent)) = levels.last_mut() {
+        let Some(&index) = nodes.get(*done) else {
+            levels.pop();
+            continue;
+        };
+        *done += 1;
+        let parent = *parent;
         let pointer = format!("/nodes/{index}");
         let node = reader.get(&document.nodes, "nodes", index, &pointer)?;
         if std::mem::replace(&mut visited[index as usize], true) {
@@ -49,7 +57,7 @@ pub(super) fn flatten(reader: &Reader<'_>, builder: &mut Builder<'_>) -> Result<
                 }
             }
         }
-        stack.extend(node.children.iter().rev().map(|&child| (child, world)));
+        levels.push((&node.children, 0, world));
     }
     Ok(())
 }

@@ -25,8 +25,9 @@ pub(in crate::io) fn write(
     options: &WriteOptions,
 ) -> Result<Vec<String>, Error> {
     if mesh.triangles.is_empty() {
-        // A buffer without bytes is not allowed: an empty scene.
-        let document = json!({"asset": asset(), "scene": 0, "scenes": [{}]}).to_string();
+        // Neither a buffer without bytes nor a mesh without triangles is allowed, and some readers want a node.
+        let document =
+            json!({"asset": asset(), "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{}]}).to_string();
         match format {
             Format::Glb => write_glb_header(output, &document, None)?,
             _ => write_all(output, document.as_bytes())?,

@@ -65,11 +65,11 @@ fn binary(
     .into_bytes();
     for position in [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 2.0]] {
         bytes.push(7);
-        position.map(|x| bytes.extend(order(coordinate(x))));
+        position.iter().for_each(|&x| bytes.extend(order(coordinate(x))));
     }
     for face in [[0, 1, 2], [0, 2, 3]] {
         bytes.extend(order(length.to_vec()));
-        face.map(|i| bytes.extend(order(index(i))));
+        face.iter().for_each(|&i| bytes.extend(order(index(i))));
     }
     bytes
 }
