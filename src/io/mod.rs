@@ -71,6 +71,8 @@ pub fn read(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Loade
     if bytes.is_empty() {
         return Err(malformed(format, "byte 0", "the file is empty"));
     }
+    // What usual files take while they are read; what hostile ones may take is bounded reader by reader.
+    let _reservation = options.control.reserve(2 * bytes.len() as u64)?;
     let (mesh, mut warnings) = match format {
         Format::Obj => obj::read(bytes, options)?,
         Format::Gltf | Format::Glb => gltf::read(bytes, format, options)?,

@@ -11,6 +11,7 @@ use super::buffers::Buffers;
 use super::document::{MaterialObject, Primitive, Shape};
 use super::extensions::DRACO_ADVICE;
 use super::{Reader, SMALLEST_LIMIT};
+use crate::control::Reservation;
 use crate::{Error, FaceGroup, FaceGroups, Material, Mesh};
 
 /// Gathers the triangles of a scene.
@@ -22,6 +23,8 @@ pub(super) struct Builder<'a> {
     pub(super) notes: &'a mut Notes,
     file_bytes: u64,
     charged: u64,
+    reserved: u64,
+    reservations: Vec<Reservation>,
     mesh: Mesh,
     groups: FaceGroups,
     /// The first vertex of an accessor under a transform: primitives share their vertices.
@@ -46,6 +49,8 @@ impl<'a> Builder<'a> {
             notes,
             file_bytes,
             charged: 0,
+            reserved: 0,
+            reservations: Vec::new(),
             mesh: Mesh::default(),
             groups: FaceGroups::default(),
             placed: HashMap::new(),
@@ -67,6 +72,12 @@ impl<'a> Builder<'a> {
                     limit / whole.max(1)
                 ),
             });
+        }
+        // Instances can make the mesh larger than the file, so this memory is accounted for as it is needed.
+        if self.charged > 2 * whole + self.reserved {
+            let more = self.charged - 2 * whole - self.reserved;
+            self.reservations.push(self.options.control.reserve(more.max(1 << 20))?);
+            self.reserved += more.max(1 << 20);
         }
         self.options.control.check()
     }

@@ -103,8 +103,8 @@ struct Frame {
 
 impl Frame {
     /// The origin and the model's own unit, if single precision holds all coordinates exactly; else axis by axis the
-    /// middle of the model, where that is farther from the origin than the model is wide, and a power of two as the
-    /// unit where coordinates are beyond the range of single precision.
+    /// middle of the model, where that is farther from the origin than twice the model's width, and a power of two as
+    /// the unit where coordinates are beyond the range of single precision.
     fn of(mesh: &Mesh) -> Self {
         let mut frame = Self { offset: DVec3::ZERO, scale: 1.0, unit: 1.0, exact: true };
         if mesh.positions.as_flattened().iter().all(|&coordinate| f64::from(coordinate as f32) == coordinate)
@@ -118,7 +118,7 @@ impl Frame {
         for axis in 0..3 {
             let middle = low[axis] * 0.5 + high[axis] * 0.5;
             let rounded = f64::from(middle as f32);
-            if rounded.is_finite() && middle.abs() > high[axis] * 0.5 - low[axis] * 0.5 {
+            if rounded.is_finite() && middle.abs() * 0.5 > high[axis] - low[axis] {
                 frame.offset[axis] = rounded;
             }
         }

@@ -132,7 +132,6 @@ impl Reader<'_> {
     }
 
     fn vertices(&mut self, count: usize, control: &Control) -> Result<Vec<[f64; 3]>, Error> {
-        let _reservation = control.reserve(count as u64 * 24)?;
         let mut positions = Vec::with_capacity(count);
         for i in 0..count {
             if i % CHECK_INTERVAL == 0 {
@@ -153,7 +152,6 @@ impl Reader<'_> {
     }
 
     fn faces(&mut self, count: usize, vertices: usize, control: &Control) -> Result<FaceList, Error> {
-        let _reservation = control.reserve(count as u64 * 12)?;
         let mut faces = FaceList::with_capacity(count);
         let mut corners = Vec::new();
         for i in 0..count {

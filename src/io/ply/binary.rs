@@ -16,8 +16,8 @@ pub(super) fn read<const BIG: bool>(bytes: &[u8], header: &Header, control: &Con
     for element in &header.elements {
         control.check()?;
         let done = match element.role {
-            Role::Vertices(axes) => source.vertices(element, axes, &mut body, control)?,
-            Role::Faces(_) => source.triangles(element, &mut body, control)?,
+            Role::Vertices(axes) => source.vertices(element, axes, &mut body),
+            Role::Faces(_) => source.triangles(element, &mut body),
             Role::Strips(_) => false,
             Role::Other => source.skip_fixed(element),
         };
@@ -56,15 +56,9 @@ impl<'a, const BIG: bool> BinarySource<'a, BIG> {
     }
 
     /// Reads vertices whose coordinates are all single or all double and stand next to each other.
-    fn vertices(
-        &mut self,
-        element: &Element,
-        axes: [usize; 3],
-        body: &mut Body,
-        control: &Control,
-    ) -> Result<bool, Error> {
+    fn vertices(&mut self, element: &Element, axes: [usize; 3], body: &mut Body) -> bool {
         let Some(block) = self.block(element).filter(|_| element.count < u64::from(u32::MAX)) else {
-            return Ok(false);
+            return false;
         };
         let kinds = axes.map(|axis| element.properties[axis]);
         let in_order = axes[1] == axes[0] + 1 && axes[2] == axes[0] + 2;
@@ -77,7 +71,6 @@ impl<'a, const BIG: bool> BinarySource<'a, BIG> {
             })
             .sum();
         let count = element.count as usize;
-        let _reservation = control.reserve(element.count * 24)?;
         let positions = match kinds {
             [Property::Scalar(Type::F64), Property::Scalar(Type::F64), Property::Scalar(Type::F64)]
                 if in_order =>
@@ -103,27 +96,26 @@ impl<'a, const BIG: bool> BinarySource<'a, BIG> {
                 };
                 records(block, count, stride, offset, decode)
             }
-            _ => return Ok(false),
+            _ => return false,
         };
         body.positions = Some(positions);
         self.at += block.len();
-        Ok(true)
+        true
     }
 
     /// Reads faces that are all triangles, their counts in bytes and their indices in 32 bits.
-    fn triangles(&mut self, element: &Element, body: &mut Body, control: &Control) -> Result<bool, Error> {
+    fn triangles(&mut self, element: &Element, body: &mut Body) -> bool {
         let usual = matches!(
             element.properties[..],
             [Property::List { count: Type::U8 | Type::I8, item: Type::I32 | Type::U32 }]
         );
         let (records, _) = self.rest().as_chunks::<13>();
         let Some(records) = usize::try_from(element.count).ok().and_then(|count| records.get(..count)) else {
-            return Ok(false);
+            return false;
         };
         if !usual || records.len() >= u32::MAX as usize || !parallel::all(records, |record| record[0] == 3) {
-            return Ok(false);
+            return false;
         }
-        let _reservation = control.reserve(element.count * 12)?;
         let triangles = parallel::build(records.len(), SMALLEST_PIECE, |first, run: &mut [[u32; 3]]| {
             for (triangle, record) in run.iter_mut().zip(&records[first..]) {
                 let (numbers, _) = record[1..].as_chunks::<4>();
@@ -137,7 +129,7 @@ impl<'a, const BIG: bool> BinarySource<'a, BIG> {
         body.faces = faces;
         body.notes.add("face with fewer than three different corners dropped", dropped);
         self.at += records.len() * 13;
-        Ok(true)
+        true
     }
 }
 

@@ -71,7 +71,6 @@ impl Body {
         match element.role {
             Role::Vertices(axes) => self.vertices(element, axes, source, control),
             Role::Faces(indices) => {
-                let _reservation = control.reserve(element.count * 12)?;
                 self.faces = FaceList::with_capacity(element.count as usize);
                 self.lists(element, indices, source, control, Self::face)
             }
@@ -95,7 +94,6 @@ impl Body {
         source: &mut impl Source,
         control: &Control,
     ) -> Result<(), Error> {
-        let _reservation = control.reserve(element.count * 24)?;
         let mut positions = Vec::with_capacity(element.count as usize);
         for i in 0..element.count {
             if i % CHECK_INTERVAL == 0 {

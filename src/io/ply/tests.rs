@@ -42,13 +42,16 @@ fn ascii_in_every_dress() {
     }
 }
 
+/// Turns a number into little-endian bytes.
+type Encode<'a, T> = &'a dyn Fn(T) -> Vec<u8>;
+
 /// The mesh of `ASCII` in a binary file: coordinates of one type, list counts and indices of others.
 fn binary(
     big: bool,
     types: [&str; 3],
-    coordinate: &dyn Fn(f64) -> Vec<u8>,
+    coordinate: Encode<'_, f64>,
     length: &[u8],
-    index: &dyn Fn(u32) -> Vec<u8>,
+    index: Encode<'_, u32>,
 ) -> Vec<u8> {
     let order = |mut bytes: Vec<u8>| {
         if big {
@@ -76,7 +79,7 @@ fn binary(
 
 #[test]
 fn binary_of_every_type_and_order() {
-    let coordinates: [(&str, &dyn Fn(f64) -> Vec<u8>); 8] = [
+    let coordinates: [(&str, Encode<'_, f64>); 8] = [
         ("char", &|x| (x as i8).to_le_bytes().to_vec()),
         ("uint8", &|x| (x as u8).to_le_bytes().to_vec()),
         ("short", &|x| (x as i16).to_le_bytes().to_vec()),
@@ -86,7 +89,7 @@ fn binary_of_every_type_and_order() {
         ("float", &|x| (x as f32).to_le_bytes().to_vec()),
         ("double", &|x| x.to_le_bytes().to_vec()),
     ];
-    let integers: [(&str, &[u8], &dyn Fn(u32) -> Vec<u8>); 6] = [
+    let integers: [(&str, &[u8], Encode<'_, u32>); 6] = [
         ("int8", &[3], &|i| vec![i as u8]),
         ("uchar", &[3], &|i| vec![i as u8]),
         ("int16", &[3, 0], &|i| (i as u16).to_le_bytes().to_vec()),

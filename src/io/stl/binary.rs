@@ -59,13 +59,11 @@ pub(super) fn read(bytes: &[u8], notes: &mut Notes, control: &Control) -> Result
         notes.say(format!("{surplus} bytes after the last facet ignored"));
         announced as usize
     };
-
-    let _reservation = control.reserve(count as u64 * 28)?;
     let ranges = parallel::ranges(count, parallel::pieces(count, SMALLEST_PIECE));
     let mut pieces = parallel::map(ranges, |range| Piece::read(facets, range, control)).into_iter();
     let mut whole = pieces.next().unwrap_or_else(|| Ok(Piece::new(0)))?;
     for piece in pieces {
-        whole.append(piece?)?;
+        whole.append(&piece?)?;
     }
     notes.add("facet with two equal corners dropped", whole.degenerate);
     Ok(Mesh::new(whole.weld.into_positions(), whole.triangles))
@@ -109,7 +107,7 @@ impl Piece {
     }
 
     /// Adds the facets that follow: their vertices are looked up once each, and numbered as if read in one run.
-    fn append(&mut self, later: Self) -> Result<(), Error> {
+    fn append(&mut self, later: &Self) -> Result<(), Error> {
         let numbers: Vec<u32> =
             later.weld.corners().iter().map(|&corner| self.weld.vertex(corner)).collect::<Result<_, _>>()?;
         self.triangles
