@@ -1,34 +1,136 @@
-//! Reading and writing mesh files.
+//! Reading and writing mesh files: OBJ, glTF and GLB, STL, PLY, OFF.
+//!
+//! [`Mesh::load`](crate::Mesh::load) and [`Mesh::save`](crate::Mesh::save) are the short way; [`load`] and [`save`]
+//! take options and return warnings; [`read`] and [`write()`] work on bytes and streams.
+//!
+//! ```
+//! use trisect::Mesh;
+//! use trisect::io::{self, Format, ReadOptions, WriteOptions};
+//!
+//! let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+//! let loaded = io::read(text, Format::Obj, &ReadOptions::new())?;
+//! assert_eq!(loaded.mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+//!
+//! let mut ply = Vec::new();
+//! io::write(&loaded.mesh, Format::Ply, &mut ply, &WriteOptions::new())?;
+//! assert_eq!(io::read(&ply, Format::Ply, &ReadOptions::new())?.mesh, loaded.mesh);
+//! # Ok::<(), trisect::Error>(())
+//! ```
+//!
+//! What each format keeps and loses, the memory a reader may take and the wording of errors are described in
+//! `docs/formats.md`. In short: coordinates stay `f64` from file to file wherever the format has room for them;
+//! vertices stay as they are in the file (STL, which has none, is welded where coordinates are bit-equal); polygons
+//! are triangulated completely, concave ones included; every count in a file is checked against the bytes that are
+//! there before memory is taken for it.
 
-use std::fmt;
+mod detect;
+mod faces;
+mod file;
+mod finish;
+mod format;
+mod gltf;
+mod notes;
+mod obj;
+mod off;
+mod options;
+mod parallel;
+mod ply;
+mod polygon;
+mod precision;
+mod scan;
+mod stl;
+mod text;
 
-/// A file format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+use std::io::Write;
+
+use crate::{Error, Mesh};
+
+pub use detect::Detected;
+pub use file::{load, save};
+pub use format::Format;
+pub use options::{Encoding, Precision, ReadOptions, WriteOptions};
+
+/// A mesh read from a file, with what its reader had to say.
+#[derive(Clone, Debug)]
 #[non_exhaustive]
-pub enum Format {
-    /// Wavefront OBJ.
-    Obj,
-    /// glTF 2.0, JSON with buffers beside or inside it.
-    Gltf,
-    /// glTF 2.0 in one binary file.
-    Glb,
-    /// STL, binary or ASCII.
-    Stl,
-    /// PLY, ASCII or binary.
-    Ply,
-    /// Geomview OFF.
-    Off,
+pub struct Loaded {
+    /// The mesh. Every index is in range, every coordinate finite, no triangle names a vertex twice.
+    pub mesh: Mesh,
+    /// The format the file was read as.
+    pub format: Format,
+    /// What was ignored, repaired or missing, one sentence each; empty for most files.
+    pub warnings: Vec<String>,
 }
 
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Obj => "OBJ",
-            Self::Gltf => "glTF",
-            Self::Glb => "GLB",
-            Self::Stl => "STL",
-            Self::Ply => "PLY",
-            Self::Off => "OFF",
-        })
+/// Reads a mesh from the bytes of a file of the given format.
+///
+/// # Errors
+/// [`Error::Malformed`] with the place, [`Error::Unsupported`] with the way out, [`Error::TooLarge`], and the limits
+/// of the options' [`Control`](crate::Control).
+pub fn read(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Loaded, Error> {
+    if bytes.is_empty() {
+        return Err(malformed(format, "byte 0", "the file is empty"));
     }
+    // What usual files take while they are read; what hostile ones may take is bounded reader by reader.
+    let _reservation = options.control.reserve(2 * bytes.len() as u64)?;
+    let (mesh, mut warnings) = match format {
+        Format::Obj => obj::read(bytes, options)?,
+        Format::Gltf | Format::Glb => gltf::read(bytes, format, options)?,
+        Format::Stl => stl::read(bytes, options)?,
+        Format::Ply => ply::read(bytes, options)?,
+        Format::Off => off::read(bytes, options)?,
+    };
+    if mesh.is_empty() {
+        warnings.push("the file has no triangles".to_string());
+    }
+    Ok(Loaded { mesh, format, warnings })
+}
+
+/// Writes a mesh to a stream, and returns what the format could not keep, one sentence each.
+///
+/// The stream gets few large pieces; it needs no buffering.
+///
+/// # Errors
+/// [`Error::IndexOutOfRange`], [`Error::NotFinite`] or [`Error::InvalidArgument`] when the mesh itself is at fault,
+/// [`Error::Unsupported`] when the format cannot hold it, [`Error::File`] when the stream refuses the bytes, and the
+/// limits of the options' [`Control`](crate::Control).
+pub fn write(
+    mesh: &Mesh,
+    format: Format,
+    output: &mut impl Write,
+    options: &WriteOptions,
+) -> Result<Vec<String>, Error> {
+    write_to(mesh, format, output, options)
+}
+
+/// [`write()`] without the type parameter.
+fn write_to(
+    mesh: &Mesh,
+    format: Format,
+    output: &mut dyn Write,
+    options: &WriteOptions,
+) -> Result<Vec<String>, Error> {
+    finish::check_for_writing(mesh)?;
+    match format {
+        Format::Obj => obj::write(mesh, output, options),
+        Format::Gltf | Format::Glb => gltf::write(mesh, format, output, options),
+        Format::Stl => stl::write(mesh, output, options),
+        Format::Ply => ply::write(mesh, output, options),
+        Format::Off => off::write(mesh, output, options),
+    }
+}
+
+/// The error for a damaged file.
+fn malformed(format: Format, place: impl Into<String>, what: impl Into<String>) -> Error {
+    Error::Malformed { format, place: place.into(), what: what.into() }
+}
+
+/// The error for a sound file that needs something the reader or writer cannot do.
+fn unsupported(format: Format, what: impl Into<String>) -> Error {
+    Error::Unsupported { format, what: what.into() }
+}
+
+/// The error for a stream that refuses bytes.
+fn write_error(source: std::io::Error) -> Error {
+    Error::File { action: "write", path: "the output".into(), source }
 }

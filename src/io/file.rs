@@ -1,0 +1,266 @@
+//! Whole files: loading, saving without harm to what was there, and files named in files.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use super::{Format, Loaded, ReadOptions, WriteOptions, obj, read, write};
+use crate::{Error, Mesh};
+
+impl Mesh {
+    /// Reads a mesh file; its content, or where that does not tell its name, decides the format. Warnings of the
+    /// reader are dropped: [`io::load`](crate::io::load) returns them.
+    ///
+    /// # Errors
+    /// [`Error::File`], [`Error::UnknownFormat`], and those of [`io::read`](crate::io::read).
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
+        load(path, &ReadOptions::new()).map(|loaded| loaded.mesh)
+    }
+
+    /// Writes a mesh file in the format of its name's extension. The file appears whole or not at all: on failure
+    /// nothing is left behind, and a file that was there before stays as it was. Warnings of the writer are dropped:
+    /// [`io::save`](crate::io::save) returns them.
+    ///
+    /// # Errors
+    /// [`Error::File`], [`Error::UnknownFormat`], and those of [`io::write`](crate::io::write()).
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        save(self, path, &WriteOptions::new()).map(|_| ())
+    }
+}
+
+/// Reads a mesh file. Files that it names are looked for in its folder, unless the options name another.
+///
+/// # Errors
+/// [`Error::File`], [`Error::UnknownFormat`], and those of [`read`].
+pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Error> {
+    let path = path.as_ref();
+    let fail = |source| Error::File { action: "read", path: path.to_path_buf(), source };
+    let length = fs::metadata(path).map_err(fail)?.len();
+    let _reservation = options.control.reserve(length)?;
+    let bytes = fs::read(path).map_err(fail)?;
+    let detected = Format::detect(Some(path), &bytes)?;
+    let mut options = options.clone();
+    if options.folder.is_none() {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        options.folder = Some(folder.unwrap_or(Path::new(".")).to_path_buf());
+    }
+    let mut loaded = read(&bytes, detected.format, &options)?;
+    loaded.warnings.splice(0..0, detected.warning);
+    Ok(loaded)
+}
+
+/// Writes a mesh file as [`Mesh::save`] does, and returns what the format could not keep. With an OBJ whose mesh has
+/// materials, a material library is written beside it.
+///
+/// # Errors
+/// [`Error::File`], [`Error::UnknownFormat`], and those of [`write()`].
+pub fn save(mesh: &Mesh, path: impl AsRef<Path>, options: &WriteOptions) -> Result<Vec<String>, Error> {
+    let path = path.as_ref();
+    let format =
+        Format::from_path(path).ok_or_else(|| Error::UnknownFormat { name: path.display().to_string() })?;
+    let mut options = options.clone();
+    let mut library = None;
+    if let (Format::Obj, Some(text)) = (format, obj::library(mesh)) {
+        let name = options.material_library.get_or_insert_with(|| library_name(path));
+        let beside = beside(path.parent().unwrap_or(Path::new("")), name)
+            .map_err(|reason| Error::InvalidArgument(format!("the material library {name:?}: {reason}")))?;
+        let mut new = NewFile::create(&beside)?;
+        io::Write::write_all(&mut new.file, &text).map_err(|source| new.error("write", source))?;
+        library = Some(new);
+    }
+    let mut new = NewFile::create(path)?;
+    let warnings = write(mesh, format, &mut new.file, &options).map_err(|error| match error {
+        Error::File { action, source, .. } => Error::File { action, path: path.to_path_buf(), source },
+        other => other,
+    })?;
+    match library {
+        None => new.commit()?,
+        Some(library) => {
+            let undo = library.commit_with_undo()?;
+            new.commit().inspect_err(|_| undo.undo())?;
+            undo.forget();
+        }
+    }
+    Ok(warnings)
+}
+
+/// The name of the material library for an OBJ file; without blanks, which part names in `mtllib`.
+fn library_name(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let clean: String =
+        stem.chars().map(|c| if c.is_whitespace() || ":\\/".contains(c) { '_' } else { c }).collect();
+    format!("{clean}.mtl")
+}
+
+/// The path of a file named in a file, which must lie in `folder` or below.
+fn beside(folder: &Path, name: &str) -> Result<PathBuf, String> {
+    // Windows programs write backslashes.
+    let relative = PathBuf::from(name.replace('\\', "/"));
+    let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
+    if name.is_empty() || name.contains('\0') {
+        return Err("the name is empty or holds a zero byte".to_string());
+    }
+    if name.contains(':') || !relative.components().all(inside) {
+        return Err(
+            "only files in the file's own folder and below are opened; copy it there and give its relative path"
+                .to_string(),
+        );
+    }
+    Ok(folder.join(relative))
+}
+
+/// Reads a regular file named in a file, if it lies in `folder` or below and has at most `limit` bytes.
+pub(super) fn read_beside(folder: &Path, name: &str, limit: u64) -> Result<Vec<u8>, String> {
+    let path = beside(folder, name)?;
+    let metadata = fs::metadata(&path).map_err(|error| error.to_string())?;
+    if !metadata.is_file() {
+        return Err("it is not a regular file".to_string());
+    }
+    if metadata.len() > limit {
+        return Err(format!("it has {} bytes, more than the {limit} allowed", metadata.len()));
+    }
+    let mut bytes = Vec::with_capacity(metadata.len() as usize);
+    let file = File::open(&path).map_err(|error| error.to_string())?;
+    file.take(limit).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
+
+/// A file that takes its place only once it is complete; dropped before, it leaves nothing behind.
+#[derive(Debug)]
+struct NewFile {
+    file: File,
+    target: PathBuf,
+    /// Where it is written; `None` for a target that is no regular file (a pipe, a device) and is written directly.
+    temporary: Option<PathBuf>,
+}
+
+impl NewFile {
+    fn create(path: &Path) -> Result<Self, Error> {
+        let fail = |action, source| Error::File { action, path: path.to_path_buf(), source };
+        // Of a symbolic link the file behind it is replaced, not the link.
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        if let Ok(metadata) = fs::metadata(&target) {
+            if metadata.is_dir() {
+                return Err(fail("write", io::ErrorKind::IsADirectory.into()));
+            }
+            if !metadata.is_file() {
+                let file =
+                    File::options().write(true).open(&target).map_err(|source| fail("write", source))?;
+                return Ok(Self { file, target, temporary: None });
+            }
+            if metadata.permissions().readonly() {
+                return Err(fail("replace", io::ErrorKind::PermissionDenied.into()));
+            }
+        }
+        let temporary = temporary_name(&target);
+        let file = File::create_new(&temporary).map_err(|source| fail("create", source))?;
+        if let Ok(metadata) = fs::metadata(&target) {
+            // Best effort: a file with usual permissions is better than none.
+            let _ = file.set_permissions(metadata.permissions());
+        }
+        Ok(Self { file, target, temporary: Some(temporary) })
+    }
+
+    fn error(&self, action: &'static str, source: io::Error) -> Error {
+        Error::File { action, path: self.target.clone(), source }
+    }
+
+    /// Puts the file in its place.
+    fn commit(mut self) -> Result<(), Error> {
+        if let Some(temporary) = &self.temporary {
+            fs::rename(temporary, &self.target).map_err(|source| self.error("replace", source))?;
+            self.temporary = None;
+        }
+        Ok(())
+    }
+
+    /// Puts the file in its place, keeping the one that was there until it is certain.
+    fn commit_with_undo(self) -> Result<Undo, Error> {
+        let target = self.target.clone();
+        let undo = if self.temporary.is_none() {
+            Undo::Nothing
+        } else if target.exists() {
+            let old = temporary_name(&target);
+            fs::hard_link(&target, &old)
+                .or_else(|_| fs::copy(&target, &old).map(|_| ()))
+                .map_err(|source| self.error("replace", source))?;
+            Undo::Restore { target, old }
+        } else {
+            Undo::Remove { target }
+        };
+        self.commit().inspect_err(|_| undo.forget())?;
+        Ok(undo)
+    }
+}
+
+impl Drop for NewFile {
+    fn drop(&mut self) {
+        if let Some(temporary) = &self.temporary {
+            let _ = fs::remove_file(temporary);
+        }
+    }
+}
+
+/// How to take back that a file was put in its place.
+#[must_use]
+enum Undo {
+    Nothing,
+    Remove { target: PathBuf },
+    Restore { target: PathBuf, old: PathBuf },
+}
+
+impl Undo {
+    /// Takes it back, as far as the system lets.
+    fn undo(&self) {
+        let _ = match self {
+            Self::Nothing => Ok(()),
+            Self::Remove { target } => fs::remove_file(target),
+            Self::Restore { target, old } => fs::rename(old, target),
+        };
+    }
+
+    /// Lets go of what was there before.
+    fn forget(&self) {
+        if let Self::Restore { old, .. } = self {
+            let _ = fs::remove_file(old);
+        }
+    }
+}
+
+/// A name in the same folder that no other file has.
+fn temporary_name(target: &Path) -> PathBuf {
+    static COUNTER: AtomicU32 = AtomicU32::new(0);
+    let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+    target.with_file_name(format!(".trisect-{}-{number}.tmp", std::process::id()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_files_below_the_folder_are_opened() {
+        let folder = Path::new("models");
+        for name in [
+            "../a.bin",
+            "/etc/passwd",
+            "a/../../b",
+            "file:///a",
+            "C:\\a.bin",
+            "http://a/b",
+            "",
+            "a\0b",
+            "\\a",
+        ] {
+            assert!(beside(folder, name).is_err(), "{name}");
+        }
+        assert_eq!(beside(folder, "textures\\a b.mtl").unwrap(), Path::new("models/textures/a b.mtl"));
+        assert_eq!(beside(folder, "./a.bin").unwrap(), Path::new("models/./a.bin"));
+    }
+
+    #[test]
+    fn library_names_have_no_blanks() {
+        assert_eq!(library_name(Path::new("out/my part.v2.obj")), "my_part.v2.mtl");
+    }
+}

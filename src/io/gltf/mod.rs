@@ -1,0 +1,119 @@
+//! glTF 2.0, as JSON with buffers (`.gltf`) and in one binary file (`.glb`).
+//!
+//! The scene is flattened: every mesh of every node, moved by the product of the node transforms in double precision,
+//! its triangles reversed where that product mirrors. Coordinates are single precision by format; written files carry
+//! the offset of the model in a node (double precision in JSON), so that large coordinates keep their digits.
+
+mod accessor;
+mod buffers;
+mod container;
+mod document;
+mod extensions;
+mod primitive;
+mod scene;
+mod write;
+
+pub(super) use write::write;
+
+use super::finish::check_finite;
+use super::notes::Notes;
+use super::{Format, ReadOptions, malformed, unsupported};
+use crate::{Error, Mesh};
+use buffers::Buffers;
+use document::Document;
+use primitive::Builder;
+
+/// A scene may take this many bytes of memory however small its file is.
+const SMALLEST_LIMIT: u64 = 64 << 20;
+
+/// Reads the mesh and the warnings.
+pub(super) fn read(
+    bytes: &[u8],
+    format: Format,
+    options: &ReadOptions,
+) -> Result<(Mesh, Vec<String>), Error> {
+    let mut notes = Notes::default();
+    let container = container::open(bytes, format, &mut notes)?;
+    let document: Document<'_> = serde_json::from_slice(container.json).map_err(|error| {
+        let place = format!("JSON line {} column {}", error.line(), error.column());
+        malformed(format, place, error.to_string())
+    })?;
+    let reader = Reader { document: &document, format };
+    reader.check_version()?;
+    extensions::check(&document.extensions_required, format)?;
+    reader.check_references()?;
+
+    let buffers = Buffers::new(&reader, container.binary, options);
+    let mut builder = Builder::new(&reader, &buffers, bytes.len() as u64, options, &mut notes);
+    scene::flatten(&reader, &mut builder)?;
+    let mut mesh = builder.finish();
+    check_finite(&mut mesh, format, &mut notes, |vertex| format!("vertex {vertex} of the scene"))?;
+    Ok((mesh, notes.into_warnings(|offset| format!("byte {offset}"))))
+}
+
+/// The document being read, and what to call it in errors.
+struct Reader<'a> {
+    document: &'a Document<'a>,
+    format: Format,
+}
+
+impl<'a> Reader<'a> {
+    /// The error for something wrong at a JSON pointer.
+    fn error(&self, pointer: impl Into<String>, what: impl Into<String>) -> Error {
+        malformed(self.format, pointer, what)
+    }
+
+    /// The item at an index found at `pointer`.
+    fn get<T>(&self, list: &'a [T], name: &str, index: u32, pointer: &str) -> Result<&'a T, Error> {
+        list.get(index as usize).ok_or_else(|| {
+            self.error(pointer, format!("names item {index} of {name:?}, which has {} items", list.len()))
+        })
+    }
+
+    fn check_version(&self) -> Result<(), Error> {
+        let asset = &self.document.asset;
+        let least = asset.min_version.as_deref().unwrap_or("2.0");
+        if asset.version.starts_with("2.") && least == "2.0" {
+            return Ok(());
+        }
+        Err(unsupported(
+            self.format,
+            format!(
+                "the file is of glTF version {}{}, this reader knows 2.0; files of version 1.0 can be converted with \
+                 \"gltf-pipeline -i in.gltf -o out.gltf\"",
+                asset.version,
+                if least == "2.0" { String::new() } else { format!(" and needs {least}") }
+            ),
+        ))
+    }
+
+    /// Makes sure that accessors and buffer views refer to what exists, whether the scene uses them or not.
+    fn check_references(&self) -> Result<(), Error> {
+        let document = self.document;
+        for (i, view) in document.buffer_views.iter().enumerate() {
+            let pointer = format!("/bufferViews/{i}");
+            let buffer = self.get(&document.buffers, "buffers", view.buffer, &pointer)?;
+            let end = view.byte_offset.checked_add(view.byte_length);
+            if end.is_none_or(|end| end > buffer.byte_length) {
+                return Err(self.error(
+                    pointer,
+                    format!(
+                        "begins at byte {} and has {} bytes, but its buffer has {}",
+                        view.byte_offset, view.byte_length, buffer.byte_length
+                    ),
+                ));
+            }
+        }
+        for (i, accessor) in document.accessors.iter().enumerate() {
+            let sparse = accessor.sparse.as_ref();
+            let sparse_views = sparse.map(|sparse| [sparse.indices.buffer_view, sparse.values.buffer_view]);
+            for view in accessor.buffer_view.into_iter().chain(sparse_views.into_iter().flatten()) {
+                self.get(&document.buffer_views, "bufferViews", view, &format!("/accessors/{i}"))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,282 @@
+//! From the primitives of a mesh to triangles.
+
+use std::collections::HashMap;
+
+use glam::{DAffine3, DVec3};
+
+use super::super::notes::Notes;
+use super::super::{ReadOptions, unsupported};
+use super::accessor::Accessors;
+use super::buffers::Buffers;
+use super::document::{MaterialObject, Primitive, Shape};
+use super::extensions::DRACO_ADVICE;
+use super::{Reader, SMALLEST_LIMIT};
+use crate::control::Reservation;
+use crate::{Error, FaceGroup, FaceGroups, Material, Mesh};
+
+/// Gathers the triangles of a scene.
+pub(super) struct Builder<'a> {
+    reader: &'a Reader<'a>,
+    buffers: &'a Buffers<'a>,
+    pub(super) accessors: Accessors<'a>,
+    options: &'a ReadOptions,
+    pub(super) notes: &'a mut Notes,
+    file_bytes: u64,
+    charged: u64,
+    reserved: u64,
+    reservations: Vec<Reservation>,
+    mesh: Mesh,
+    groups: FaceGroups,
+    /// The first vertex of an accessor under a transform: primitives share their vertices.
+    placed: HashMap<(u32, [u64; 12]), u32>,
+    /// The group of a node and a material.
+    known: HashMap<(Option<u32>, u32, Option<u32>), u32>,
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn new(
+        reader: &'a Reader<'a>,
+        buffers: &'a Buffers<'a>,
+        file_bytes: u64,
+        options: &'a ReadOptions,
+        notes: &'a mut Notes,
+    ) -> Self {
+        Self {
+            reader,
+            buffers,
+            accessors: Accessors { reader, buffers },
+            options,
+            notes,
+            file_bytes,
+            charged: 0,
+            reserved: 0,
+            reservations: Vec::new(),
+            mesh: Mesh::default(),
+            groups: FaceGroups::default(),
+            placed: HashMap::new(),
+            known: HashMap::new(),
+        }
+    }
+
+    /// Accounts for memory about to be used. Counts in accessors and instances of meshes may ask for far more than
+    /// the file has; this is where that ends.
+    pub(super) fn charge(&mut self, bytes: u64) -> Result<(), Error> {
+        self.charged = self.charged.saturating_add(bytes);
+        let whole = self.file_bytes.saturating_add(self.buffers.external_bytes());
+        let limit = whole.saturating_mul(self.options.expansion).max(SMALLEST_LIMIT);
+        if self.charged > limit {
+            return Err(Error::TooLarge {
+                what: format!(
+                    "the flattened scene needs more than {limit} bytes, {} times its file; if the file is right, \
+                     allow more (ReadOptions::expansion)",
+                    limit / whole.max(1)
+                ),
+            });
+        }
+        // Instances can make the mesh larger than the file, so this memory is accounted for as it is needed.
+        if self.charged > 2 * whole + self.reserved {
+            let more = self.charged - 2 * whole - self.reserved;
+            self.reservations.push(self.options.control.reserve(more.max(1 << 20))?);
+            self.reserved += more.max(1 << 20);
+        }
+        self.options.control.check()
+    }
+
+    /// Adds a mesh under a transform, as the given node shows it.
+    pub(super) fn add(&mut self, mesh: u32, node: Option<u32>, world: &DAffine3) -> Result<(), Error> {
+        let pointer = node.map_or("/meshes".to_string(), |node| format!("/nodes/{node}/mesh"));
+        let object = self.reader.get(&self.reader.document.meshes, "meshes", mesh, &pointer)?;
+        for (i, primitive) in object.primitives.iter().enumerate() {
+            let pointer = format!("/meshes/{mesh}/primitives/{i}");
+            let before = self.mesh.triangles.len();
+            self.primitive(primitive, world, &pointer)?;
+            let added = self.mesh.triangles.len() - before;
+            if added > 0 {
+                let group = self.group(node, mesh, primitive.material, &pointer)?;
+                self.groups.of_triangle.resize(before + added, group);
+            }
+        }
+        Ok(())
+    }
+
+    fn primitive(&mut self, primitive: &Primitive, world: &DAffine3, pointer: &str) -> Result<(), Error> {
+        let mode = primitive.mode.unwrap_or(4);
+        match mode {
+            0..=3 => {
+                self.notes.add("primitive of points or lines ignored", 1);
+                return Ok(());
+            }
+            4..=6 => {}
+            _ => {
+                return Err(self
+                    .reader
+                    .error(format!("{pointer}/mode"), format!("{mode} is no mode of glTF")));
+            }
+        }
+        let Some(position) = primitive.attributes.position else {
+            self.notes.add("primitive without positions ignored", 1);
+            return Ok(());
+        };
+        if primitive.morphs {
+            self.notes.add("mesh with morph targets read in its basic shape", 1);
+        }
+        let here = format!("{pointer}/attributes/POSITION");
+        let accessor = self.accessors.get(position, Shape::Vec3, &here)?;
+        let compressed = primitive.extensions.as_ref().is_some_and(|extensions| extensions.draco.is_some());
+        if compressed && accessor.buffer_view.is_none() && accessor.sparse.is_none() {
+            return Err(unsupported(
+                self.reader.format,
+                format!("{pointer} is compressed with KHR_draco_mesh_compression{DRACO_ADVICE}"),
+            ));
+        }
+        let vertices = accessor.count;
+        let first = self.place(position, vertices, world, &here)?;
+
+        let mirrored = is_mirrored(world);
+        let here = format!("{pointer}/indices");
+        let count = match primitive.indices {
+            Some(indices) => self.accessors.get(indices, Shape::Scalar, &here)?.count,
+            None => vertices,
+        };
+        // Indices, triangles and their groups, for at most as many triangles as indices.
+        let triangles = if mode == 4 { count / 3 } else { count };
+        self.charge(triangles.saturating_mul(16).saturating_add(count.saturating_mul(4)))?;
+        let indices = match primitive.indices {
+            Some(indices) => self.accessors.indices(indices, &here)?,
+            // The vertices were placed, so there are no more than 32 bits can count.
+            None => (0..vertices as u32).collect(),
+        };
+        if let Some(&index) = indices.iter().max().filter(|&&index| u64::from(index) >= vertices) {
+            return Err(self.reader.error(
+                here,
+                format!(
+                    "a triangle names vertex {index}, but the primitive has {vertices}; the file is corrupt"
+                ),
+            ));
+        }
+        let reached = self.mesh.triangles.len() as u64 + triangles;
+        if reached > u64::from(u32::MAX) {
+            return Err(Error::TooLarge { what: format!("the scene has {reached} triangles or more") });
+        }
+        let mut dropped = 0;
+        let mut push = |corners: [u32; 3]| {
+            let [a, b, c] = corners.map(|corner| corner + first);
+            if a == b || b == c || c == a {
+                dropped += 1;
+            } else {
+                self.mesh.triangles.push(if mirrored { [a, c, b] } else { [a, b, c] });
+            }
+        };
+        match mode {
+            4 => {
+                let (whole, rest) = indices.as_chunks::<3>();
+                whole.iter().for_each(|&corners| push(corners));
+                if !rest.is_empty() {
+                    self.notes
+                        .say(format!("{pointer}: {} indices after the last triangle ignored", rest.len()));
+                }
+            }
+            5 => {
+                for (i, window) in indices.windows(3).enumerate() {
+                    let [a, b, c] = [window[0], window[1], window[2]];
+                    push(if i % 2 == 0 { [a, b, c] } else { [a, c, b] });
+                }
+                // Triangles without area link the parts of a strip.
+                dropped = 0;
+            }
+            _ => {
+                for pair in indices.get(1..).unwrap_or_default().windows(2) {
+                    push([indices[0], pair[0], pair[1]]);
+                }
+            }
+        }
+        self.notes.add("triangle with a repeated corner dropped", dropped);
+        Ok(())
+    }
+
+    /// The first of an accessor's vertices under a transform, which are added if they are new.
+    fn place(&mut self, accessor: u32, count: u64, world: &DAffine3, pointer: &str) -> Result<u32, Error> {
+        let key = (accessor, world.to_cols_array().map(f64::to_bits));
+        if let Some(&first) = self.placed.get(&key) {
+            return Ok(first);
+        }
+        let first = self.mesh.positions.len();
+        if first as u64 + count > u64::from(u32::MAX) {
+            return Err(Error::TooLarge {
+                what: format!("the scene has {} vertices or more", first as u64 + count),
+            });
+        }
+        // Once decoded, once in the mesh.
+        self.charge(count.saturating_mul(48))?;
+        let mut positions = self.accessors.numbers::<3>(accessor, pointer)?;
+        if *world != DAffine3::IDENTITY {
+            for position in &mut positions {
+                *position = world.transform_point3(DVec3::from_array(*position)).to_array();
+            }
+        }
+        if first == 0 {
+            self.mesh.positions = positions;
+        } else {
+            self.mesh.positions.append(&mut positions);
+        }
+        self.placed.insert(key, first as u32);
+        Ok(first as u32)
+    }
+
+    fn group(
+        &mut self,
+        node: Option<u32>,
+        mesh: u32,
+        material: Option<u32>,
+        pointer: &str,
+    ) -> Result<u32, Error> {
+        let key = (node, mesh, material);
+        if let Some(&group) = self.known.get(&key) {
+            return Ok(group);
+        }
+        let document = self.reader.document;
+        let node = node.and_then(|node| document.nodes.get(node as usize)).and_then(|node| node.0.as_ref());
+        let name = node.and_then(|node| node.name.as_deref());
+        let name = name.or_else(|| document.meshes.get(mesh as usize).and_then(|mesh| mesh.name.as_deref()));
+        let name = name.unwrap_or_default().to_string();
+        let material = match material {
+            None => None,
+            Some(index) => {
+                let pointer = format!("{pointer}/material");
+                Some(material_of(self.reader.get(&document.materials, "materials", index, &pointer)?))
+            }
+        };
+        let name_bytes = name.len() + material.as_ref().map_or(0, |material| material.name.len());
+        self.charge(200 + name_bytes as u64)?;
+        let group = self.groups.list.len() as u32;
+        self.groups.list.push(FaceGroup { name, material });
+        self.known.insert(key, group);
+        Ok(group)
+    }
+
+    /// The mesh.
+    pub(super) fn finish(mut self) -> Mesh {
+        if self.groups.list.len() > 1 || self.groups.list.iter().any(|group| *group != FaceGroup::default()) {
+            self.mesh.groups = self.groups;
+        }
+        self.mesh
+    }
+}
+
+/// Whether a transform turns left hands into right ones.
+fn is_mirrored(world: &DAffine3) -> bool {
+    let matrix = world.matrix3;
+    let largest = matrix.to_cols_array().into_iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    largest > 0.0 && (matrix * largest.recip()).determinant() < 0.0
+}
+
+fn material_of(material: &MaterialObject) -> Material {
+    let Some(fields) = material.0.as_deref() else {
+        return Material { name: String::new(), base_color: [1.0; 4] };
+    };
+    let color = fields.pbr_metallic_roughness.as_ref().and_then(|pbr| pbr.base_color_factor);
+    Material {
+        name: fields.name.as_deref().unwrap_or_default().to_string(),
+        base_color: color.unwrap_or([1.0; 4]),
+    }
+}

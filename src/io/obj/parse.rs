@@ -1,0 +1,290 @@
+//! The statements of a piece of an OBJ file.
+
+use std::ops::Range;
+
+use super::super::faces::{FaceList, FacePlace, too_large};
+use super::super::notes::Notes;
+use super::super::scan::{Scanner, line_place, quote};
+use super::super::{Format, malformed};
+use crate::{Control, Error};
+
+/// What one piece of the file holds.
+#[derive(Debug, Default)]
+pub(super) struct Piece<'a> {
+    pub(super) positions: Vec<[f64; 3]>,
+    pub(super) faces: FaceList,
+    pub(super) changes: Vec<Change<'a>>,
+    pub(super) libraries: Vec<&'a [u8]>,
+    pub(super) notes: Notes,
+    /// Whether there were lines that are no statements.
+    pub(super) strange: bool,
+}
+
+/// A change of the group or material of the faces that follow.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Change<'a> {
+    pub(super) at: FacePlace,
+    pub(super) kind: Kind,
+    pub(super) name: &'a [u8],
+}
+
+/// What changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Object,
+    Group,
+    Material,
+}
+
+/// Why a piece could not be parsed.
+#[derive(Debug)]
+pub(super) enum Fault {
+    Error(Error),
+    /// An index counted backwards, in a piece that does not know how many vertices come before it.
+    Relative,
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        Self::Error(error)
+    }
+}
+
+/// How many bytes are parsed between two looks at the limits.
+const CHECK_INTERVAL: usize = 1 << 16;
+
+impl<'a> Piece<'a> {
+    /// Parses the statements in a range of whole lines.
+    pub(super) fn parse(bytes: &'a [u8], range: Range<usize>, control: &Control) -> Result<Self, Fault> {
+        let mut piece = Self::default();
+        let first = range.start == 0;
+        let mut scanner = Scanner::new(&bytes[..range.end], range.start);
+        if first && bytes.starts_with(b"\xef\xbb\xbf") {
+            scanner.advance(3);
+        }
+        let mut corners = Vec::new();
+        while scanner.offset() < range.end {
+            control.check()?;
+            let pause = scanner.offset().saturating_add(CHECK_INTERVAL).min(range.end);
+            while scanner.offset() < pause {
+                piece.statement(bytes, &mut scanner, first, &mut corners)?;
+            }
+        }
+        Ok(piece)
+    }
+
+    #[inline(always)]
+    fn statement(
+        &mut self,
+        bytes: &'a [u8],
+        scanner: &mut Scanner<'a>,
+        first: bool,
+        corners: &mut Vec<u32>,
+    ) -> Result<(), Fault> {
+        scanner.skip_blanks();
+        match scanner.rest() {
+            [b'v', b' ' | b'\t', ..] => {
+                scanner.advance(2);
+                self.vertex(scanner)?;
+            }
+            [b'f', b' ' | b'\t', ..] => {
+                scanner.advance(2);
+                self.face(bytes, scanner, first, corners)?;
+            }
+            [b'v', b't' | b'n' | b'p', b' ' | b'\t', ..] => scanner.skip_statement(),
+            [b'\n' | b'\r', ..] => scanner.advance(1),
+            [b'#', ..] => scanner.skip_line(),
+            [] => {}
+            _ => self.other(bytes, scanner)?,
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn vertex(&mut self, scanner: &mut Scanner<'a>) -> Result<(), Error> {
+        let mut position = [0.0; 3];
+        for (axis, coordinate) in position.iter_mut().enumerate() {
+            scanner.skip_blanks();
+            match scanner.float() {
+                Ok(value) => *coordinate = value,
+                Err(_) => {
+                    let name = ["x", "y", "z"][axis];
+                    return Err(scanner.expected(Format::Obj, &format!("the {name} coordinate of a vertex")));
+                }
+            }
+        }
+        self.positions.push(position);
+        scanner.skip_blanks();
+        if scanner.at_line_end() {
+            scanner.skip_line();
+        } else {
+            self.vertex_tail(scanner);
+        }
+        Ok(())
+    }
+
+    /// The numbers after the coordinates: a weight, or a colour.
+    #[cold]
+    fn vertex_tail(&mut self, scanner: &mut Scanner<'a>) {
+        let start = scanner.offset();
+        let (mut count, mut only) = (0, 1.0);
+        let mut finite = true;
+        loop {
+            scanner.skip_blanks();
+            if scanner.at_line_end() {
+                break;
+            }
+            match scanner.float() {
+                Ok(value) => {
+                    finite &= value.is_finite();
+                    only = value;
+                }
+                Err(_) => {
+                    self.notes.at(format!("{} after the coordinates ignored", quote(scanner.word())), start);
+                    break;
+                }
+            }
+            count += 1;
+        }
+        if count >= 3 && !finite {
+            self.notes.at("vertex colour that is not a number ignored", start);
+        } else if count == 1 && only != 1.0 {
+            self.notes.at("vertex weight other than 1 ignored", start);
+        }
+        scanner.skip_statement();
+    }
+
+    #[inline(always)]
+    fn face(
+        &mut self,
+        bytes: &'a [u8],
+        scanner: &mut Scanner<'a>,
+        first: bool,
+        corners: &mut Vec<u32>,
+    ) -> Result<(), Fault> {
+        let start = scanner.offset();
+        corners.clear();
+        loop {
+            scanner.skip_blanks();
+            let index = match scanner.digits() {
+                Some(index @ 1..=0xffff_ffff) => (index - 1) as u32,
+                Some(index) => return Err(bad_index(bytes, scanner.offset(), index).into()),
+                None if scanner.at_line_end() => break,
+                None if first => self.relative_index(bytes, scanner)?,
+                None if scanner.peek() == Some(b'-') => return Err(Fault::Relative),
+                None => return Err(scanner.expected(Format::Obj, "a vertex index").into()),
+            };
+            if scanner.peek() == Some(b'/') {
+                while matches!(scanner.peek(), Some(b'/' | b'-' | b'0'..=b'9')) {
+                    scanner.advance(1);
+                }
+            }
+            if !matches!(scanner.peek(), None | Some(b' ' | b'\t' | b'\n' | b'\r' | b'\\' | b'#')) {
+                return Err(scanner.expected(Format::Obj, "a blank or the line's end after an index").into());
+            }
+            corners.push(index);
+        }
+        if !self.faces.push(corners) {
+            let what = match corners.len() {
+                0..3 => "face with fewer than three corners ignored",
+                _ => "face with fewer than three different corners dropped",
+            };
+            self.notes.at(what, start);
+        } else if !self.faces.has_room() {
+            return Err(too_large(Format::Obj, "faces").into());
+        }
+        scanner.skip_line();
+        Ok(())
+    }
+
+    /// An index counted backwards from the last vertex so far.
+    #[cold]
+    fn relative_index(&self, bytes: &[u8], scanner: &mut Scanner<'a>) -> Result<u32, Error> {
+        if scanner.peek() != Some(b'-') {
+            return Err(scanner.expected(Format::Obj, "a vertex index"));
+        }
+        scanner.advance(1);
+        let back = scanner.digits().ok_or_else(|| scanner.expected(Format::Obj, "a vertex index"))?;
+        let known = self.positions.len() as u64;
+        match known.checked_sub(back) {
+            Some(index) if back > 0 && index <= u64::from(u32::MAX) => Ok(index as u32),
+            _ => Err(malformed(
+                Format::Obj,
+                line_place(bytes, scanner.offset()),
+                format!("a face counts back to vertex -{back}, but {known} vertices come before it"),
+            )),
+        }
+    }
+
+    /// Statements other than vertices and faces.
+    #[cold]
+    fn other(&mut self, bytes: &'a [u8], scanner: &mut Scanner<'a>) -> Result<(), Error> {
+        let start = scanner.offset();
+        let word = scanner.word();
+        let kind = match word {
+            b"o" => Some(Kind::Object),
+            b"g" => Some(Kind::Group),
+            b"usemtl" => Some(Kind::Material),
+            _ => None,
+        };
+        if let Some(kind) = kind {
+            self.change(kind, scanner.line());
+            return Ok(());
+        }
+        match word {
+            b"v" | b"f" => {
+                return Err(malformed(
+                    Format::Obj,
+                    line_place(bytes, start),
+                    format!("{} without numbers; the file is cut off or corrupt", quote(word)),
+                ));
+            }
+            b"mtllib" => {
+                self.libraries.push(scanner.line());
+                return Ok(());
+            }
+            b"p" => self.notes.at("point element ignored", start),
+            b"l" => self.notes.at("line element ignored", start),
+            b"curv" | b"curv2" | b"surf" => self.notes.at("free-form curve or surface ignored", start),
+            b"s" | b"vt" | b"vn" | b"vp" | b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod"
+            | b"usemap" | b"maplib" | b"shadow_obj" | b"trace_obj" | b"cstype" | b"deg" | b"bmat"
+            | b"step" | b"parm" | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"ctech"
+            | b"stech" => {}
+            _ => {
+                self.strange = true;
+                self.notes.at(format!("statement {} not understood and ignored", quote(word)), start);
+            }
+        }
+        scanner.skip_statement();
+        Ok(())
+    }
+
+    /// Notes a change; one that no face came under is forgotten.
+    fn change(&mut self, kind: Kind, name: &'a [u8]) {
+        let at = self.faces.end();
+        let since = self.changes.iter().rposition(|change| change.at != at).map_or(0, |i| i + 1);
+        if kind == Kind::Object {
+            // A new object ends the group before it.
+            for i in (since..self.changes.len()).rev() {
+                if self.changes[i].kind != Kind::Material {
+                    self.changes.remove(i);
+                }
+            }
+        }
+        match self.changes[since..].iter_mut().find(|change| change.kind == kind) {
+            Some(change) => change.name = name,
+            None => self.changes.push(Change { at, kind, name }),
+        }
+    }
+}
+
+#[cold]
+fn bad_index(bytes: &[u8], offset: usize, index: u64) -> Error {
+    let what = match index {
+        0 => "a face names vertex 0, but OBJ counts vertices from 1; if the program that wrote the file counts from 0, \
+              add 1 to every index"
+            .to_string(),
+        _ => format!("a face names vertex {index}, more than 32-bit indices can name"),
+    };
+    malformed(Format::Obj, line_place(bytes, offset), what)
+}

@@ -1,0 +1,121 @@
+//! What a caller may ask of a reader or writer.
+
+use std::path::PathBuf;
+
+use crate::Control;
+
+/// How to read a file.
+#[derive(Clone, Debug)]
+pub struct ReadOptions {
+    pub(super) folder: Option<PathBuf>,
+    pub(super) expansion: u64,
+    pub(super) control: Control,
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        Self { folder: None, expansion: 64, control: Control::new() }
+    }
+}
+
+impl ReadOptions {
+    /// No folder for further files, no limits but the usual ones.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Where files named in the file are looked for: material libraries of OBJ, buffers of glTF. Only files in this
+    /// folder and below are opened. Without a folder none are; [`load`](super::load) sets it to the file's own.
+    #[must_use]
+    pub fn folder(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.folder = Some(folder.into());
+        self
+    }
+
+    /// The mesh of a glTF scene may be larger than its file, since many nodes can show one mesh. It may take at most
+    /// `times` the bytes of the file and its buffers, or 64 MiB if that is more. The default is 64.
+    #[must_use]
+    pub fn expansion(mut self, times: u64) -> Self {
+        self.expansion = times;
+        self
+    }
+
+    /// Cancellation, deadline and memory ceiling.
+    #[must_use]
+    pub fn control(mut self, control: Control) -> Self {
+        self.control = control;
+        self
+    }
+}
+
+/// Whether a format that has both is written as text or binary.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Encoding {
+    /// Binary; little-endian in PLY.
+    #[default]
+    Binary,
+    /// Binary, big-endian in PLY; as [`Binary`](Self::Binary) elsewhere.
+    BinaryBigEndian,
+    /// Text.
+    Ascii,
+}
+
+/// Precision of the coordinates written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Precision {
+    /// Every coordinate reads back with the same bits (text: the shortest such digits). Binary STL and glTF have room
+    /// for single precision only and ignore this.
+    #[default]
+    Double,
+    /// Coordinates are rounded to `f32`.
+    Single,
+}
+
+/// How to write a file.
+#[derive(Clone, Debug, Default)]
+pub struct WriteOptions {
+    pub(super) encoding: Encoding,
+    pub(super) precision: Precision,
+    pub(super) material_library: Option<String>,
+    pub(super) control: Control,
+}
+
+impl WriteOptions {
+    /// Binary where there is a choice, in double precision.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Text or binary, for STL and PLY.
+    #[must_use]
+    pub fn encoding(mut self, encoding: Encoding) -> Self {
+        self.encoding = encoding;
+        self
+    }
+
+    /// Precision of the coordinates, for OBJ, PLY, OFF and ASCII STL.
+    #[must_use]
+    pub fn precision(mut self, precision: Precision) -> Self {
+        self.precision = precision;
+        self
+    }
+
+    /// The name of the material library that a written OBJ refers to. [`save`](super::save) sets it, and writes that
+    /// file too; without a name the OBJ names its materials but no library.
+    #[must_use]
+    pub fn material_library(mut self, name: impl Into<String>) -> Self {
+        self.material_library = Some(name.into());
+        self
+    }
+
+    /// Cancellation and deadline.
+    #[must_use]
+    pub fn control(mut self, control: Control) -> Self {
+        self.control = control;
+        self
+    }
+}

@@ -1,0 +1,61 @@
+//! PLY, ASCII and binary of either byte order: vertices, faces and triangle strips.
+//!
+//! Elements may come in any order, with any further properties and further elements, which are skipped. Coordinates
+//! may be of any number type, list counts and indices of any integer type.
+
+mod binary;
+mod body;
+mod header;
+mod write;
+
+pub(super) use write::write;
+
+use super::faces::{FaceList, index_error, too_large};
+use super::finish::check_finite;
+use super::notes::Notes;
+use super::scan::line_place;
+use super::{Format, ReadOptions, malformed};
+use crate::{Error, Mesh};
+use body::{AsciiSource, Body};
+use header::{Coding, Header};
+
+/// Reads the mesh and the warnings.
+pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<String>), Error> {
+    let header = Header::parse(bytes)?;
+    let control = &options.control;
+    let Body { positions, faces, mut notes } = match header.coding {
+        Coding::Ascii => Body::read(&header, &mut AsciiSource::new(bytes, header.end), control)?,
+        Coding::LittleEndian => binary::read::<false>(bytes, &header, control)?,
+        Coding::BigEndian => binary::read::<true>(bytes, &header, control)?,
+    };
+    let Some(positions) = positions else {
+        return Err(malformed(Format::Ply, "header", "there is no element \"vertex\""));
+    };
+    let mesh = assemble(positions, faces, &mut notes, options)?;
+    let place = |offset| match header.coding {
+        Coding::Ascii => line_place(bytes, offset),
+        _ => format!("byte {offset}"),
+    };
+    Ok((mesh, notes.into_warnings(place)))
+}
+
+fn assemble(
+    positions: Vec<[f64; 3]>,
+    faces: FaceList,
+    notes: &mut Notes,
+    options: &ReadOptions,
+) -> Result<Mesh, Error> {
+    if let Some(largest) = faces.largest().filter(|&index| index as usize >= positions.len()) {
+        return Err(index_error(Format::Ply, "the faces", u64::from(largest), positions.len()));
+    }
+    let (triangles, _) = faces.into_triangles(&positions, &[], notes, &options.control)?;
+    if triangles.len() > u32::MAX as usize {
+        return Err(too_large(Format::Ply, "triangles"));
+    }
+    let mut mesh = Mesh::new(positions, triangles);
+    check_finite(&mut mesh, Format::Ply, notes, |vertex| format!("vertex {vertex}"))?;
+    Ok(mesh)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,126 @@
+//! Binary STL: 80 bytes of header, the number of facets, 50 bytes for each.
+
+use std::ops::Range;
+
+use super::super::notes::Notes;
+use super::super::{Format, malformed, parallel};
+use super::weld::Weld;
+use crate::{Control, Error, Mesh};
+
+const HEADER: usize = 84;
+const FACET: usize = 50;
+
+/// Facets between two looks at the limits.
+const CHECK_INTERVAL: usize = 1 << 14;
+
+/// Fewer facets are not worth a thread.
+const SMALLEST_PIECE: usize = 1 << 16;
+
+/// The length that a binary STL file with this beginning should have.
+pub(in crate::io) fn exact_length(bytes: &[u8]) -> Option<u64> {
+    let count = bytes.get(80..HEADER)?.try_into().ok().map(u32::from_le_bytes)?;
+    Some(HEADER as u64 + FACET as u64 * u64::from(count))
+}
+
+/// Reads the facets that are there.
+pub(super) fn read(bytes: &[u8], notes: &mut Notes, control: &Control) -> Result<Mesh, Error> {
+    let Some(expected) = exact_length(bytes) else {
+        return Err(malformed(
+            Format::Stl,
+            "byte 0",
+            format!(
+                "{} bytes are too few for a binary STL file, and it is no ASCII STL file, which would begin with \
+                 \"solid\"",
+                bytes.len()
+            ),
+        ));
+    };
+    let (facets, rest) = bytes[HEADER..].as_chunks::<FACET>();
+    let announced = (expected - HEADER as u64) / FACET as u64;
+    let count = if announced == facets.len() as u64 || rest.is_empty() && matches!(announced, 0 | 0xffff_ffff)
+    {
+        // Programs that write to a pipe cannot go back to fill in the count.
+        if announced != facets.len() as u64 {
+            notes.say(format!("the header announces {announced} facets; all {} were read", facets.len()));
+        }
+        facets.len()
+    } else if announced > facets.len() as u64 {
+        return Err(malformed(
+            Format::Stl,
+            format!("byte {}", bytes.len()),
+            format!(
+                "the header announces {announced} facets, but the file ends after {}; it is cut off (export or \
+                 download it again) or not an STL file",
+                facets.len()
+            ),
+        ));
+    } else {
+        let surplus = bytes.len() as u64 - expected;
+        notes.say(format!("{surplus} bytes after the last facet ignored"));
+        announced as usize
+    };
+    let ranges = parallel::ranges(count, parallel::pieces(count, SMALLEST_PIECE));
+    let mut pieces = parallel::map(ranges, |range| Piece::read(facets, range, control)).into_iter();
+    let mut whole = pieces.next().unwrap_or_else(|| Ok(Piece::new(0)))?;
+    for piece in pieces {
+        whole.append(&piece?)?;
+    }
+    notes.add("facet with two equal corners dropped", whole.degenerate);
+    Ok(Mesh::new(whole.weld.into_positions(), whole.triangles))
+}
+
+/// A run of facets, with vertices of its own.
+struct Piece {
+    weld: Weld<[f32; 3]>,
+    triangles: Vec<[u32; 3]>,
+    degenerate: usize,
+}
+
+impl Piece {
+    fn new(facets: usize) -> Self {
+        Self { weld: Weld::new(facets), triangles: Vec::with_capacity(facets), degenerate: 0 }
+    }
+
+    fn read(facets: &[[u8; FACET]], range: Range<usize>, control: &Control) -> Result<Self, Error> {
+        let mut piece = Self::new(range.len());
+        for i in range.clone() {
+            if (i - range.start).is_multiple_of(CHECK_INTERVAL) {
+                control.check()?;
+            }
+            let corners = corners(&facets[i]);
+            if !corners.as_flattened().iter().all(|coordinate| coordinate.is_finite()) {
+                return Err(malformed(
+                    Format::Stl,
+                    format!("byte {}", HEADER + i * FACET),
+                    format!("facet {i} has a coordinate that is not a finite number"),
+                ));
+            }
+            let [a, b, c] = corners;
+            let triangle = [piece.weld.vertex(a)?, piece.weld.vertex(b)?, piece.weld.vertex(c)?];
+            if triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0] {
+                piece.degenerate += 1;
+            } else {
+                piece.triangles.push(triangle);
+            }
+        }
+        Ok(piece)
+    }
+
+    /// Adds the facets that follow: their vertices are looked up once each, and numbered as if read in one run.
+    fn append(&mut self, later: &Self) -> Result<(), Error> {
+        let numbers: Vec<u32> =
+            later.weld.corners().iter().map(|&corner| self.weld.vertex(corner)).collect::<Result<_, _>>()?;
+        self.triangles
+            .extend(later.triangles.iter().map(|triangle| triangle.map(|corner| numbers[corner as usize])));
+        self.degenerate += later.degenerate;
+        Ok(())
+    }
+}
+
+/// The corners of a facet, after its normal; zeros made positive.
+#[inline(always)]
+fn corners(facet: &[u8; FACET]) -> [[f32; 3]; 3] {
+    let (numbers, _) = facet[12..48].as_chunks::<4>();
+    let number = |i: usize| f32::from_le_bytes(numbers[i]) + 0.0;
+    [[number(0), number(1), number(2)], [number(3), number(4), number(5)], [number(6), number(7), number(8)]]
+}

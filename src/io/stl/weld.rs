@@ -1,0 +1,162 @@
+//! Vertices from the corners of triangles: equal coordinates, one vertex.
+
+use std::hash::{BuildHasher, RandomState};
+
+use super::super::Format;
+use super::super::faces::too_large;
+use crate::Error;
+
+const EMPTY: u32 = u32::MAX;
+
+/// Coordinates that can be vertices: equal bits, equal vertex.
+pub(super) trait Corner: Copy + Default + PartialEq {
+    /// The bits, as two words to hash.
+    fn words(self) -> [u64; 2];
+    /// As written to the mesh.
+    fn position(self) -> [f64; 3];
+}
+
+impl Corner for [f32; 3] {
+    #[inline(always)]
+    fn words(self) -> [u64; 2] {
+        let [x, y, z] = self.map(|coordinate| u64::from(coordinate.to_bits()));
+        [x | y << 32, z]
+    }
+
+    #[inline(always)]
+    fn position(self) -> [f64; 3] {
+        self.map(f64::from)
+    }
+}
+
+impl Corner for [f64; 3] {
+    #[inline(always)]
+    fn words(self) -> [u64; 2] {
+        let [x, y, z] = self.map(f64::to_bits);
+        [x ^ z.rotate_left(21), y ^ z.rotate_left(43)]
+    }
+
+    #[inline(always)]
+    fn position(self) -> [f64; 3] {
+        self
+    }
+}
+
+/// A table of the vertices so far, in the order in which they came: the numbering does not depend on the hash.
+#[derive(Debug)]
+pub(super) struct Weld<C> {
+    corners: Vec<C>,
+    /// Indices into `corners` by hash, a power of two of them.
+    slots: Vec<u32>,
+    /// The vertices asked for last, by hash: most corners are found here, in the nearest memory.
+    recent: Vec<(C, u32)>,
+    seed: u64,
+}
+
+/// At most this many vertices are kept near, a power of two.
+const RECENT: usize = 1 << 14;
+
+impl<C: Corner> Weld<C> {
+    /// With room for the vertices of about this many triangles.
+    pub(super) fn new(triangles: usize) -> Self {
+        // A closed surface has half as many vertices as triangles.
+        let slots = triangles.max(8).next_power_of_two();
+        // The seed differs from run to run, so that no file can be made whose corners all collide.
+        let seed = RandomState::new().hash_one(0_u8);
+        Self {
+            corners: Vec::with_capacity(triangles / 2 + 4),
+            slots: vec![EMPTY; slots],
+            recent: vec![(C::default(), EMPTY); slots.min(RECENT)],
+            seed,
+        }
+    }
+
+    /// The vertex with these coordinates. Zeros must be positive, and no coordinate NaN.
+    #[inline(always)]
+    pub(super) fn vertex(&mut self, corner: C) -> Result<u32, Error> {
+        let hash = self.hash(corner);
+        let recent = (hash >> 40) as usize & (self.recent.len() - 1);
+        let (known, index) = self.recent[recent];
+        if known == corner && index != EMPTY {
+            return Ok(index);
+        }
+        let index = self.find_or_add(corner, hash)?;
+        self.recent[recent] = (corner, index);
+        Ok(index)
+    }
+
+    fn find_or_add(&mut self, corner: C, hash: u64) -> Result<u32, Error> {
+        let mask = self.slots.len() - 1;
+        let mut slot = hash as usize & mask;
+        loop {
+            let index = self.slots[slot];
+            if index == EMPTY {
+                break;
+            }
+            if self.corners[index as usize] == corner {
+                return Ok(index);
+            }
+            slot = (slot + 1) & mask;
+        }
+        let index = self.corners.len();
+        if index >= EMPTY as usize {
+            return Err(too_large(Format::Stl, "vertices"));
+        }
+        self.slots[slot] = index as u32;
+        self.corners.push(corner);
+        if self.corners.len() * 4 > self.slots.len() * 3 {
+            self.grow();
+        }
+        Ok(index as u32)
+    }
+
+    #[inline(always)]
+    fn hash(&self, corner: C) -> u64 {
+        let [a, b] = corner.words();
+        let product = u128::from(a ^ self.seed)
+            * u128::from(b.wrapping_add(0x9e37_79b9_7f4a_7c15) ^ self.seed.rotate_left(32) | 1);
+        (product >> 64) as u64 ^ product as u64
+    }
+
+    #[cold]
+    fn grow(&mut self) {
+        let mask = self.slots.len() * 2 - 1;
+        self.slots.clear();
+        self.slots.resize(mask + 1, EMPTY);
+        for index in 0..self.corners.len() {
+            let mut slot = self.hash(self.corners[index]) as usize & mask;
+            while self.slots[slot] != EMPTY {
+                slot = (slot + 1) & mask;
+            }
+            self.slots[slot] = index as u32;
+        }
+    }
+
+    /// The vertices so far.
+    pub(super) fn corners(&self) -> &[C] {
+        &self.corners
+    }
+
+    /// The vertices, in double precision.
+    pub(super) fn into_positions(self) -> Vec<[f64; 3]> {
+        drop(self.slots);
+        self.corners.into_iter().map(Corner::position).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vertices_are_numbered_as_they_come() {
+        let mut weld = Weld::new(0);
+        let corner = |i: u32| [i as f32, (i % 7) as f32, 1.0];
+        for round in 0..2 {
+            for i in 0..10_000 {
+                assert_eq!(weld.vertex(corner(i)).unwrap(), i, "round {round}");
+            }
+        }
+        assert_eq!(weld.into_positions()[9_999], [9_999.0, 3.0, 1.0]);
+    }
+}
