@@ -71,6 +71,9 @@ pub(crate) fn targets(writing: &Writing, drawing: &Drawing, common: &Common) -> 
         return Err(Fault::usage("--json and -o - both want standard output; use --report FILE"));
     }
     let mut targets = Vec::new();
+    if let Some(path) = writing.output.iter().chain(&drawing.png).find(|path| path.is_dir()) {
+        return Err(Fault::usage(format!("{} is a folder; name a file in it", path.display())));
+    }
     for path in &writing.output {
         let kind = if path.as_os_str() == STANDARD {
             let format = forced.ok_or_else(|| {
@@ -95,9 +98,6 @@ pub(crate) fn targets(writing: &Writing, drawing: &Drawing, common: &Common) -> 
         let earlier = targets[..index].iter().map(|earlier| &earlier.path);
         if earlier.chain(&common.report).any(|path| *path == target.path) {
             return Err(Fault::usage(format!("{} is named as an output twice", target.name())));
-        }
-        if target.path.is_dir() {
-            return Err(Fault::usage(format!("{} is a folder; name a file in it", target.name())));
         }
     }
     Ok(targets)
