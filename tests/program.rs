@@ -281,6 +281,18 @@ fn the_report_of_a_failed_run_says_so() {
     folder.run("convert a.obj c.off --report none/r.json").exits(2).says("none/r.json");
 }
 
+#[test]
+fn an_output_that_is_write_protected_is_left_alone() {
+    let folder = workshop();
+    folder.write("kept.off", "precious");
+    let path = folder.path("kept.off");
+    let mut permissions = path.metadata().expect("it exists").permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(&path, permissions).expect("it can be protected");
+    folder.run("convert a.obj kept.off").exits(2).says("kept.off");
+    assert_eq!(folder.read("kept.off"), "precious");
+}
+
 #[cfg(unix)]
 #[test]
 fn an_output_that_is_a_link_stays_one() {

@@ -3,6 +3,7 @@
 use clap::ArgMatches;
 use serde_json::{Value, json};
 use trisect::Error;
+use trisect::mesh::Diagnosis;
 
 use super::arguments::Check;
 use super::fault::{self, Exit, Fault};
@@ -12,7 +13,7 @@ use super::report::{Measures, into_map};
 use super::requests::{self, Request};
 use super::session::Session;
 use super::stand_in::io::FormatNames as _; // replaced when io lands
-use super::stand_in::mesh::{DiagnosisJson as _, MeshOperations as _}; // replaced when mesh lands
+use super::stand_in::mesh::{DiagnosisJson as _, diagnose}; // replaced when mesh lands
 
 /// What `check` found out about one file.
 struct Verdict {
@@ -58,7 +59,7 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
         Err(error) => return refused(&name, error, None),
     };
     let Input { mesh, format, warnings, reserved: _reserved } = input;
-    let diagnosis = mesh.diagnose(); // replaced when mesh lands: trisect::mesh::diagnose(&mesh)
+    let diagnosis = diagnose(&mesh);
     let mut object = Measures::of_mesh(&mesh).to_json();
     object.insert("format".into(), format.extension().into());
     object.insert("warnings".into(), json!(warnings));
@@ -66,12 +67,7 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     let Usable { solid, turned, crossings } = match operands::usable(mesh, arguments.using, &control) {
         Ok(usable) => usable,
         Err(error) => {
-            // An error that carries a diagnosis has said it all; the others leave the rest to be told.
-            let more = match error {
-                Error::NotClosed(_) | Error::SelfCrossing(_) => None,
-                _ => Some(diagnosis.to_string()),
-            };
-            let mut verdict = refused(&name, error, more.as_deref())?;
+            let mut verdict = refused(&name, error, Some(&diagnosis))?;
             object.extend(into_map(verdict.object));
             verdict.object = object.into();
             return Ok(Verdict { warnings, ..verdict });
@@ -92,24 +88,26 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     if let Some(count) = crossings.map(|crossings| crossings.tolerated).filter(|&count| count > 0) {
         text.push_str(&format!("  {count} self-crossings no deeper than rounding, which are tolerated\n"));
     }
-    text.push_str(&indented(&diagnosis.to_string()));
+    text.push_str(&indented(&format!("{diagnosis:#}")));
     Ok(Verdict { exit: Exit::Fine, text, object: object.into(), warnings })
 }
 
 /// The verdict for a file that cannot be used.
-fn refused(name: &str, error: Error, diagnosis: Option<&str>) -> Result<Verdict, Fault> {
+fn refused(name: &str, error: Error, diagnosis: Option<&Diagnosis>) -> Result<Verdict, Fault> {
     let exit = fault::exit_of(&error);
-    let text = error.to_string();
-    let fault = Fault::from(error);
     if matches!(exit, Exit::Limit | Exit::Internal) {
-        return Err(fault);
+        return Err(error.into());
     }
     let answer = if exit == Exit::Unreadable { "unreadable" } else { "not usable" };
-    let mut lines = text.lines();
-    let mut text = format!("{name}: {answer}: {}\n", lines.next().unwrap_or_default());
-    text.push_str(&indented(&lines.collect::<Vec<_>>().join("\n")));
-    text.push_str(&indented(diagnosis.unwrap_or_default()));
-    let object = json!({ "file": name, "usable": false, "error": fault.to_json() });
+    // The places are listed below, so the first line does without them.
+    let (reason, diagnosis) = match &error {
+        Error::NotClosed(found) => ("the mesh is not a closed surface".into(), Some(&**found)),
+        Error::SelfCrossing(found) => ("the surface crosses itself".into(), Some(&**found)),
+        other => (fault::one_line(&other.to_string()), diagnosis),
+    };
+    let mut text = format!("{name}: {answer}: {reason}\n");
+    text.push_str(&diagnosis.map(|found| indented(&format!("{found:#}"))).unwrap_or_default());
+    let object = json!({ "file": name, "usable": false, "error": Fault::from(error).to_json() });
     Ok(Verdict { exit, text, object, warnings: Vec::new() })
 }
 

@@ -38,7 +38,7 @@ pub(crate) fn run(
     session.console.stage(&format!("reading {}", request.name()), 0.0);
     let Input { mesh, format, warnings, reserved: _reserved } =
         operands::read(&request, &session.limits, &control).map_err(of_input)?;
-    let (mesh, turned) = if arguments.orient { operands::oriented(&mesh) } else { (mesh, false) };
+    let (mesh, turned) = if arguments.orient { operands::oriented(mesh) } else { (mesh, false) };
     let seconds = session.took("read", start);
     for warning in &warnings {
         session.warn(format!("{}: {warning}", request.name()));

@@ -57,7 +57,7 @@ pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Res
     };
     control.check()?;
     for transform in &request.transforms {
-        mesh = transform.apply(&mesh);
+        mesh = transform.apply(mesh)?;
     }
     if !request.transforms.is_empty() && mesh.positions.as_flattened().iter().any(|value| !value.is_finite())
     {
@@ -103,7 +103,7 @@ pub(crate) struct Crossings {
 
 /// Makes a mesh an operand, or says why it cannot be one.
 pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usable, Error> {
-    let (mesh, turned) = if using.orient { oriented(&mesh) } else { (mesh, false) };
+    let (mesh, turned) = if using.orient { oriented(mesh) } else { (mesh, false) };
     let solid = super::stand_in::mesh::solid(mesh)?; // replaced when mesh lands: Solid::try_from
     if solid.volume() < 0.0 {
         return Err(Error::InsideOut { volume: solid.volume() });
@@ -122,10 +122,11 @@ pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usab
 }
 
 /// The mesh with its faces outwards, and whether that changed it.
-pub(crate) fn oriented(mesh: &Mesh) -> (Mesh, bool) {
-    let turned = mesh.oriented();
-    let changed = turned.triangles != mesh.triangles;
-    (turned, changed)
+pub(crate) fn oriented(mesh: Mesh) -> (Mesh, bool) {
+    let before = mesh.triangles.clone();
+    let mesh = mesh.oriented();
+    let turned = mesh.triangles != before;
+    (mesh, turned)
 }
 
 /// Reads all inputs and makes them operands; the first fault in the order of the command line counts.

@@ -5,23 +5,24 @@ use trisect::{Mesh, Solid};
 
 use super::operands::Operand;
 use super::stand_in::io::FormatNames as _; // replaced when io lands
-use super::stand_in::mesh::{SolidMeasures as _, volume}; // replaced when mesh lands
+use super::stand_in::mesh::{Bounds, MeshOperations as _, SolidMeasures as _}; // replaced when mesh lands
 
 /// Measures of a mesh. Those that only a closed surface has are absent for the others.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Measures {
     vertices: usize,
     triangles: usize,
     area: f64,
-    bounds: Option<[[f64; 3]; 2]>,
+    bounds: Option<Bounds>,
     closed: Option<Closed>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 struct Closed {
     manifold: bool,
     shells: usize,
-    genus: i64,
+    /// Absent where more than two triangles meet at an edge.
+    genus: Option<usize>,
     volume: f64,
 }
 
@@ -31,8 +32,8 @@ impl Measures {
         Self {
             vertices: mesh.positions.len(),
             triangles: mesh.triangles.len(),
-            area: area(mesh),
-            bounds: bounds(mesh),
+            area: mesh.area(),
+            bounds: mesh.bounds(),
             closed: None,
         }
     }
@@ -43,7 +44,7 @@ impl Measures {
             manifold: solid.is_manifold(),
             shells: solid.components(),
             genus: solid.genus(),
-            volume: volume(solid.mesh()), // replaced when mesh lands: solid.volume()
+            volume: solid.mesh().volume(), // replaced when mesh lands: solid.volume(), computed once
         };
         Self { closed: Some(closed), ..Self::of_mesh(solid.mesh()) }
     }
@@ -56,7 +57,7 @@ impl Measures {
             Some(Closed { manifold, shells, genus, volume }) => {
                 parts.push(if manifold { "closed" } else { "closed, not manifold" }.into());
                 parts.push(counted(shells, "shell"));
-                if genus != 0 {
+                if let Some(genus) = genus.filter(|&genus| genus != 0) {
                     parts.push(format!("genus {genus}"));
                 }
                 parts.push(format!("volume {}", short(volume)));
@@ -70,17 +71,17 @@ impl Measures {
     pub(crate) fn table(&self) -> Vec<(&'static str, String)> {
         let mut rows =
             vec![("vertices", self.vertices.to_string()), ("triangles", self.triangles.to_string())];
-        if let Some([low, high]) = self.bounds {
+        if let Some(bounds) = self.bounds {
             let three = |v: [f64; 3]| v.map(short).join(" ");
-            rows.push(("bounds", format!("{} to {}", three(low), three(high))));
-            rows.push(("size", three(std::array::from_fn(|axis| high[axis] - low[axis]))));
+            rows.push(("bounds", format!("{} to {}", three(bounds.low), three(bounds.high))));
+            rows.push(("size", three(bounds.size())));
         }
         rows.push(("area", short(self.area)));
         if let Some(Closed { manifold, shells, genus, volume }) = self.closed {
             rows.push(("volume", short(volume)));
             rows.push(("closed", if manifold { "yes, manifold" } else { "yes, not manifold" }.into()));
             rows.push(("shells", shells.to_string()));
-            rows.push(("genus", genus.to_string()));
+            rows.extend(genus.map(|genus| ("genus", genus.to_string())));
         }
         rows
     }
@@ -93,11 +94,11 @@ impl Measures {
             "triangles": self.triangles,
             "empty": self.triangles == 0,
             "area": self.area,
-            "bounds": self.bounds,
+            "bounds": self.bounds.map(|bounds| [bounds.low, bounds.high]),
             "closed": closed.is_some(),
             "manifold": closed.map(|closed| closed.manifold),
             "shells": closed.map(|closed| closed.shells),
-            "genus": closed.map(|closed| closed.genus),
+            "genus": closed.and_then(|closed| closed.genus),
             "volume": closed.map(|closed| closed.volume),
         });
         into_map(object)
@@ -167,34 +168,6 @@ pub(crate) fn time(seconds: f64) -> String {
         ..1.0 => format!("{:.0} ms", seconds * 1e3),
         _ => format!("{seconds:.2} s"),
     }
-}
-
-/// Corners of a triangle, if they exist.
-fn corners(mesh: &Mesh, triangle: [u32; 3]) -> Option<[[f64; 3]; 3]> {
-    let corner = |k: usize| mesh.positions.get(triangle[k] as usize).copied();
-    Some([corner(0)?, corner(1)?, corner(2)?])
-}
-
-fn area(mesh: &Mesh) -> f64 {
-    let doubled = |[a, b, c]: [[f64; 3]; 3]| {
-        let edge = |to: [f64; 3]| -> [f64; 3] { std::array::from_fn(|axis| to[axis] - a[axis]) };
-        let (u, v) = (edge(b), edge(c));
-        let minor = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];
-        minor(1, 2).hypot(minor(2, 0)).hypot(minor(0, 1))
-    };
-    mesh.triangles.iter().filter_map(|&t| corners(mesh, t)).map(doubled).sum::<f64>() / 2.0
-}
-
-/// The box around the vertices that triangles use.
-fn bounds(mesh: &Mesh) -> Option<[[f64; 3]; 2]> {
-    let points = mesh.triangles.iter().filter_map(|&t| corners(mesh, t)).flatten();
-    points.fold(None, |bounds, p| {
-        let [low, high] = bounds.unwrap_or([p, p]);
-        Some([
-            std::array::from_fn(|axis| low[axis].min(p[axis])),
-            std::array::from_fn(|axis| high[axis].max(p[axis])),
-        ])
-    })
 }
 
 #[cfg(test)]

@@ -4,8 +4,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
-use trisect::Mesh;
 use trisect::io::Format;
+use trisect::{Error, Mesh};
 
 use super::fault::Fault;
 use super::stand_in::mesh::MeshOperations as _; // replaced when mesh lands
@@ -26,12 +26,14 @@ pub(crate) enum Transform {
 
 impl Transform {
     /// The mesh, moved.
-    pub(crate) fn apply(&self, mesh: &Mesh) -> Mesh {
-        match *self {
-            Self::Translate(by) => mesh.translated(by),
-            Self::Rotate(degrees) => mesh.rotated(degrees),
-            Self::Scale(by) => mesh.scaled(by),
-            Self::Matrix(rows) => mesh.transformed(rows),
+    pub(crate) fn apply(&self, mesh: Mesh) -> Result<Mesh, Error> {
+        match self {
+            Self::Translate(by) => Ok(mesh.translated(*by)),
+            Self::Rotate([x, y, z]) => {
+                mesh.rotated([1.0, 0.0, 0.0], *x)?.rotated([0.0, 1.0, 0.0], *y)?.rotated([0.0, 0.0, 1.0], *z)
+            }
+            Self::Scale(by) => mesh.scaled(*by),
+            Self::Matrix(rows) => mesh.transformed(rows.as_flattened()),
         }
     }
 }

@@ -23,6 +23,9 @@ impl<'a> Stage<'a> {
     pub(crate) fn new(path: &Path, limits: &'a Limits) -> io::Result<Self> {
         // A link keeps pointing where it did: the file behind it is replaced.
         let place = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        if fs::metadata(&place).is_ok_and(|old| old.permissions().readonly()) {
+            return Err(io::ErrorKind::PermissionDenied.into());
+        }
         let beside = folder_of(&place);
         let mut unfinished = limits.unfinished();
         for attempt in 0_u32.. {
