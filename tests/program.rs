@@ -15,7 +15,7 @@ fn workshop() -> Folder {
     folder.write("b.obj", cube([0.5; 3], [1.5; 3]));
     folder.write("open.obj", opened(&unit_cube()));
     folder.write("inside.obj", inside_out(&unit_cube()));
-    folder.write("damaged.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+    folder.write("damaged.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 x\nf 1 2 3\n");
     folder.write("warned.obj", format!("mtllib missing.mtl\n{}", unit_cube()));
     folder
 }

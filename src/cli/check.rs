@@ -9,7 +9,7 @@ use super::arguments::Check;
 use super::fault::{self, Exit, Fault};
 use super::operands::{self, Input, Usable};
 use super::output;
-use super::report::{Measures, into_map};
+use super::report::{self, Measures, into_map};
 use super::requests::{self, Request};
 use super::session::Session;
 use super::stand_in::io::FormatNames as _; // replaced when io lands
@@ -74,11 +74,13 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
         }
     };
     let measures = Measures::of_solid(&solid);
+    let (cleaning, cleaned) = report::cleaning(&solid);
     object.extend(measures.to_json());
     object.extend(into_map(json!({
         "file": name,
         "usable": true,
         "turned": turned,
+        "cleaning": cleaned,
         "self_crossings": crossings.as_ref().map(|crossings| &crossings.object),
     })));
     let mut text = format!("{name}: usable: {}\n", measures.line());
@@ -88,7 +90,10 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     if let Some(count) = crossings.map(|crossings| crossings.tolerated).filter(|&count| count > 0) {
         text.push_str(&format!("  {count} self-crossings no deeper than rounding, which are tolerated\n"));
     }
-    text.push_str(&indented(&format!("{diagnosis:#}")));
+    text.push_str(&cleaning.map(|cleaning| format!("  {cleaning}\n")).unwrap_or_default());
+    if diagnosis.to_string() != Diagnosis::default().to_string() {
+        text.push_str(&indented(&format!("{diagnosis:#}")));
+    }
     Ok(Verdict { exit: Exit::Fine, text, object: object.into(), warnings })
 }
 

@@ -88,6 +88,9 @@ fn describe(operands: &[Operand], session: &mut Session<'_>) {
     for (index, operand) in operands.iter().enumerate() {
         let measures = Measures::of_solid(&operand.solid);
         session.console.say(&report::operand_line(operand, &measures));
+        if let (Some(cleaning), _) = report::cleaning(&operand.solid) {
+            session.console.detail(&format!("  {cleaning}"));
+        }
         for transform in &operand.request.transforms {
             session.console.detail(&format!("  {transform}"));
         }

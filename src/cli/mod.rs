@@ -153,6 +153,20 @@ mod tests {
     }
 
     #[test]
+    fn every_verb_and_option_is_documented() {
+        let text = include_str!("../../docs/program.md");
+        let command = Arguments::command();
+        for verb in command.get_subcommands() {
+            assert!(text.contains(&format!("`{}`", verb.get_name())), "{}", verb.get_name());
+            for name in
+                command.get_arguments().chain(verb.get_arguments()).filter_map(|option| option.get_long())
+            {
+                assert!(text.contains(&format!("`--{name}")), "{}: --{name}", verb.get_name());
+            }
+        }
+    }
+
+    #[test]
     fn a_panic_becomes_an_internal_fault_that_says_how_to_report_it() {
         let fault = guarded(|| -> Result<(), Fault> { panic!("broken {}", "invariant") }).unwrap_err();
         assert_eq!(fault.exit, Exit::Internal);

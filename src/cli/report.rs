@@ -105,6 +105,33 @@ impl Measures {
     }
 }
 
+/// What was left out or joined to make a solid of its mesh, in words and as JSON.
+pub(crate) fn cleaning(solid: &Solid) -> (Option<String>, Value) {
+    let done = solid.cleaning();
+    let counts = [
+        (done.welded_vertices, "vertex of equal coordinates joined", "vertices of equal coordinates joined"),
+        (
+            done.repeated_corners,
+            "triangle with a repeated corner left out",
+            "triangles with a repeated corner left out",
+        ),
+        (done.opposite_pairs, "pair of opposite triangles left out", "pairs of opposite triangles left out"),
+        (done.unreferenced_vertices, "unused vertex left out", "unused vertices left out"),
+    ];
+    let words: Vec<String> = counts
+        .iter()
+        .filter(|(count, ..)| *count > 0)
+        .map(|(count, one, several)| format!("{count} {}", if *count == 1 { one } else { several }))
+        .collect();
+    let object = json!({
+        "welded_vertices": done.welded_vertices,
+        "repeated_corners": done.repeated_corners,
+        "opposite_pairs": done.opposite_pairs,
+        "unreferenced_vertices": done.unreferenced_vertices,
+    });
+    ((!words.is_empty()).then(|| words.join(", ")), object)
+}
+
 /// The JSON object of an operand.
 pub(crate) fn operand_json(operand: &Operand, index: usize, measures: &Measures) -> Value {
     let mut object = measures.to_json();
@@ -115,6 +142,7 @@ pub(crate) fn operand_json(operand: &Operand, index: usize, measures: &Measures)
         "format": operand.format.extension(),
         "transforms": transforms,
         "turned": operand.turned,
+        "cleaning": cleaning(&operand.solid).1,
         "self_crossings": operand.crossings.as_ref().map(|crossings| &crossings.object),
         "warnings": operand.warnings,
         "seconds": operand.seconds,

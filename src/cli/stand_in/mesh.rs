@@ -160,7 +160,16 @@ impl SelfCrossings {
     }
 }
 
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Cleaning {
+    pub(crate) repeated_corners: usize,
+    pub(crate) opposite_pairs: usize,
+    pub(crate) welded_vertices: usize,
+    pub(crate) unreferenced_vertices: usize,
+}
+
 pub(crate) trait SolidMeasures {
+    fn cleaning(&self) -> Cleaning;
     fn is_manifold(&self) -> bool;
     fn components(&self) -> usize;
     fn genus(&self) -> Option<usize>;
@@ -168,6 +177,10 @@ pub(crate) trait SolidMeasures {
 }
 
 impl SolidMeasures for Solid {
+    fn cleaning(&self) -> Cleaning {
+        Cleaning::default()
+    }
+
     fn is_manifold(&self) -> bool {
         true
     }
