@@ -1,10 +1,11 @@
 //! Shaded pictures of meshes, in software: no window, no graphics card, the same bytes everywhere.
 //!
 //! ```no_run
-//! use trisect::{primitives, render};
+//! use trisect::{Mesh, render};
 //!
-//! let block = primitives::cuboid([0.0; 3], [1.0, 2.0, 3.0]);
-//! render::mesh(&block, &render::View::default(), None).save_png("block.png")?;
+//! let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+//! let tetrahedron = Mesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
+//! render::mesh(&tetrahedron, &render::View::default(), None).save_png("tetrahedron.png")?;
 //! # Ok::<(), trisect::Error>(())
 //! ```
 //!
