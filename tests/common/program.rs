@@ -164,6 +164,18 @@ pub(crate) fn unit_cube() -> String {
     cube([0.0; 3], [1.0; 3])
 }
 
+/// A folder with a few inputs.
+pub(crate) fn workshop() -> Folder {
+    let folder = Folder::new();
+    folder.write("a.obj", unit_cube());
+    folder.write("b.obj", cube([0.5; 3], [1.5; 3]));
+    folder.write("open.obj", opened(&unit_cube()));
+    folder.write("inside.obj", inside_out(&unit_cube()));
+    folder.write("damaged.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 x\nf 1 2 3\n");
+    folder.write("warned.obj", format!("mtllib missing.mtl\n{}", unit_cube()));
+    folder
+}
+
 /// The same surface with its faces inwards.
 pub(crate) fn inside_out(obj: &str) -> String {
     obj.lines()
