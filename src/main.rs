@@ -1,3 +1,7 @@
-//! The command-line program.
+//! The command-line program. `trisect --help` tells what it does; `docs/program.md` tells it in full.
 
-fn main() {}
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::run()
+}

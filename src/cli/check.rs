@@ -1,0 +1,124 @@
+//! `check`: can files be operands, and if not, why and where.
+
+use clap::ArgMatches;
+use serde_json::{Value, json};
+use trisect::Error;
+use trisect::mesh::Diagnosis;
+
+use super::arguments::Check;
+use super::fault::{self, Exit, Fault};
+use super::operands::{self, Input, Usable};
+use super::output;
+use super::report::{self, Measures, into_map};
+use super::requests::{self, Request};
+use super::session::Session;
+use super::stand_in::io::FormatNames as _; // replaced when io lands
+use super::stand_in::mesh::{DiagnosisJson as _, diagnose}; // replaced when mesh lands
+
+/// What `check` found out about one file.
+struct Verdict {
+    exit: Exit,
+    text: String,
+    object: Value,
+    warnings: Vec<String>,
+}
+
+/// Checks every input; the worst answer decides the exit code, an unreadable file before an unusable one.
+pub(crate) fn run(arguments: &Check, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    let requests = requests::requests(matches, arguments.reading.format)?;
+    let (mut unreadable, mut unusable) = (false, false);
+    let mut objects = Vec::new();
+    for request in &requests {
+        session.console.stage(&format!("checking {}", request.name()), 0.0);
+        let verdict = check(request, arguments, session)?;
+        unreadable |= verdict.exit == Exit::Unreadable;
+        unusable |= verdict.exit != Exit::Fine;
+        if !session.common.json && (!session.common.quiet || verdict.exit != Exit::Fine) {
+            session.console.pause(|| output::print(&verdict.text))?;
+        }
+        for warning in verdict.warnings {
+            session.warn(format!("{}: {warning}", request.name()));
+        }
+        objects.push(verdict.object);
+    }
+    session.note("files", objects);
+    session.note("usable", !unusable);
+    Ok(match (unreadable, unusable) {
+        (true, _) => Exit::Unreadable,
+        (false, true) => Exit::Unusable,
+        (false, false) => Exit::Fine,
+    })
+}
+
+/// Checks one input. Only limits end the run; every other fault is the answer.
+fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<Verdict, Fault> {
+    let control = session.control();
+    let name = request.name();
+    let input = match operands::read(request, &session.limits, &control) {
+        Ok(input) => input,
+        Err(error) => return refused(&name, error, None),
+    };
+    let Input { mesh, format, warnings, reserved: _reserved } = input;
+    let diagnosis = diagnose(&mesh);
+    let mut object = Measures::of_mesh(&mesh).to_json();
+    object.insert("format".into(), format.extension().into());
+    object.insert("warnings".into(), json!(warnings));
+    object.insert("diagnosis".into(), diagnosis.to_json());
+    let Usable { solid, turned, crossings } = match operands::usable(mesh, arguments.using, &control) {
+        Ok(usable) => usable,
+        Err(error) => {
+            let mut verdict = refused(&name, error, Some(&diagnosis))?;
+            object.extend(into_map(verdict.object));
+            verdict.object = object.into();
+            return Ok(Verdict { warnings, ..verdict });
+        }
+    };
+    let measures = Measures::of_solid(&solid);
+    let (cleaning, cleaned) = report::cleaning(&solid);
+    object.extend(measures.to_json());
+    object.extend(into_map(json!({
+        "file": name,
+        "usable": true,
+        "turned": turned,
+        "cleaning": cleaned,
+        "self_crossings": crossings.as_ref().map(|crossings| &crossings.object),
+    })));
+    let mut text = format!("{name}: usable: {}\n", measures.line());
+    if turned {
+        text.push_str("  faces pointed inwards; --orient turns them\n");
+    }
+    if let Some(count) = crossings.map(|crossings| crossings.tolerated).filter(|&count| count > 0) {
+        text.push_str(&format!("  {count} self-crossings no deeper than rounding, which are tolerated\n"));
+    }
+    text.push_str(&cleaning.map(|cleaning| format!("  {cleaning}\n")).unwrap_or_default());
+    if diagnosis.to_string() != Diagnosis::default().to_string() {
+        text.push_str(&indented(&format!("{diagnosis:#}")));
+    }
+    Ok(Verdict { exit: Exit::Fine, text, object: object.into(), warnings })
+}
+
+/// The verdict for a file that cannot be used.
+fn refused(name: &str, error: Error, diagnosis: Option<&Diagnosis>) -> Result<Verdict, Fault> {
+    let exit = fault::exit_of(&error);
+    if matches!(exit, Exit::Limit | Exit::Internal) {
+        return Err(error.into());
+    }
+    let answer = if exit == Exit::Unreadable { "unreadable" } else { "not usable" };
+    // The places are listed below, so the first line does without them.
+    let (reason, diagnosis) = match &error {
+        Error::NotClosed(found) => ("the mesh is not a closed surface".into(), Some(&**found)),
+        Error::SelfCrossing(found) => ("the surface crosses itself".into(), Some(&**found)),
+        other => (fault::one_line(&other.to_string()), diagnosis),
+    };
+    let mut text = format!("{name}: {answer}: {reason}\n");
+    text.push_str(&diagnosis.map(|found| indented(&format!("{found:#}"))).unwrap_or_default());
+    let object = json!({ "file": name, "usable": false, "error": Fault::from(error).to_json() });
+    Ok(Verdict { exit, text, object, warnings: Vec::new() })
+}
+
+fn indented(text: &str) -> String {
+    text.lines()
+        .filter(|line| !line.trim().is_empty())
+        .map(|line| format!("  {}\n", line.trim_end()))
+        .collect()
+}

@@ -1,0 +1,110 @@
+//! `convert`: read, move, write.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::ArgMatches;
+use serde_json::json;
+use trisect::Error;
+
+use super::arguments::{Colours, Convert, Writing};
+use super::fault::{Exit, Fault};
+use super::operands::{self, Input};
+use super::output::{self, Product, Target};
+use super::report::{self, Measures};
+use super::requests::{self, Request};
+use super::session::Session;
+use super::stand_in::io::FormatNames as _; // replaced when io lands
+
+/// Converts one input.
+pub(crate) fn run(
+    arguments: &Convert,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let (request, output) = input_and_output(arguments, matches)?;
+    let writing = Writing { output, ..arguments.writing };
+    let targets = output::targets(&writing, &arguments.drawing, session.common)?;
+    if targets.is_empty() {
+        return Err(Fault::usage("nowhere to put the result: add an output file, -o FILE or --png FILE"));
+    }
+    if !arguments.dry_run {
+        output::probe(&targets, &session.limits)?;
+    }
+
+    let control = session.control();
+    let of_input = |error: Error| error.of_operand(0, request.name());
+    let start = Instant::now();
+    session.console.stage(&format!("reading {}", request.name()), 0.0);
+    let Input { mesh, format, warnings, reserved: _reserved } =
+        operands::read(&request, &session.limits, &control).map_err(of_input)?;
+    let (mesh, turned) = if arguments.orient { operands::oriented(mesh) } else { (mesh, false) };
+    let seconds = session.took("read", start);
+    for warning in &warnings {
+        session.warn(format!("{}: {warning}", request.name()));
+    }
+    let measures = Measures::of_mesh(&mesh);
+    let mut object = measures.to_json();
+    // Whether the surface is closed is not looked into here; `check` and `info` tell.
+    object.retain(|key, _| !matches!(key.as_str(), "closed" | "manifold" | "shells" | "genus" | "volume"));
+    object.extend(report::into_map(json!({
+        "file": request.name(),
+        "format": format.extension(),
+        "turned": turned,
+        "transforms": request.transforms.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "warnings": warnings,
+        "seconds": seconds,
+    })));
+    session.note("input", object);
+
+    let names: Vec<String> = targets.iter().map(Target::name).collect();
+    let what = format!(
+        "{} ({format}): {}{} ({})",
+        request.name(),
+        report::counted(mesh.triangles.len(), "triangle"),
+        if turned { ", turned outwards" } else { "" },
+        report::time(seconds)
+    );
+    if arguments.dry_run {
+        session.console.say(&format!("dry run: {what}; would write {}", names.join(", ")));
+        session.note("dry_run", true);
+        return Ok(Exit::Fine);
+    }
+    let start = Instant::now();
+    session.console.stage("writing", 1.0);
+    let drawing = &arguments.drawing;
+    let picture = || {
+        let operands = mesh.triangles.iter().map(|_| 0);
+        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), &mesh, operands);
+        trisect::render::mesh(&mesh, &output::view(drawing), colours.as_deref())
+    };
+    let options = output::write_options(&writing, &session.limits);
+    let product = Product { mesh: &mesh, options, picture: &picture };
+    let (outputs, warnings) = output::write_all(&targets, &product, &session.limits)?;
+    session.note("outputs", outputs);
+    for warning in warnings {
+        session.warn(warning);
+    }
+    session.took("write", start);
+    session.console.say(&format!("{what} -> {}", names.join(", ")));
+    Ok(Exit::Fine)
+}
+
+/// The one input, and the outputs: those of `-o`, or else the second file.
+fn input_and_output(arguments: &Convert, matches: &ArgMatches) -> Result<(Request, Vec<PathBuf>), Fault> {
+    let mut output = arguments.writing.output.clone();
+    if let ([_, second], true) = (arguments.files.as_slice(), output.is_empty()) {
+        output.push(second.clone());
+    } else if arguments.files.len() > 1 {
+        return Err(Fault::usage("convert takes one input; with -o the second file is one too many"));
+    }
+    let mut requests = requests::placed_requests(matches)?.into_iter();
+    let input = requests.next().ok_or_else(|| Fault::usage("an input is needed"))?;
+    if requests.next().is_some_and(|second| !second.transforms.is_empty()) {
+        return Err(Fault::usage("a transform stands after the output; put it right after the input"));
+    }
+    let mut input = [input];
+    requests::name_formats(&mut input, arguments.reading.format)?;
+    let [input] = input;
+    Ok((input, output))
+}

@@ -1,0 +1,180 @@
+//! Failures of a run: exit codes, the line printed, the JSON object.
+
+use std::io;
+
+use serde_json::{Map, Value, json};
+use trisect::{Error, Failure};
+
+use super::stand_in::mesh::DiagnosisJson as _; // replaced when mesh lands
+
+/// The version of the JSON objects' layout. It rises when a key changes its meaning or goes; new keys may come
+/// without.
+pub(crate) const SCHEMA: u32 = 1;
+
+/// How a run ended. The numbers are the exit codes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[repr(u8)]
+pub(crate) enum Exit {
+    /// Done.
+    Fine = 0,
+    /// The command line makes no sense.
+    Usage = 1,
+    /// An input cannot be read, or an output cannot be written.
+    Unreadable = 2,
+    /// An input was read but cannot be used as asked.
+    Unusable = 3,
+    /// A limit was hit, or the run was cancelled.
+    Limit = 4,
+    /// Done, with warnings, and those were to count.
+    Warnings = 5,
+    /// A fault of the program.
+    Internal = 70,
+}
+
+impl Exit {
+    /// The exit code.
+    pub(crate) fn code(self) -> u8 {
+        self as u8
+    }
+
+    /// The name in JSON.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Fine => "fine",
+            Self::Usage => "usage",
+            Self::Unreadable => "unreadable",
+            Self::Unusable => "unusable",
+            Self::Limit => "limit",
+            Self::Warnings => "warnings",
+            Self::Internal => "internal",
+        }
+    }
+}
+
+/// A failure that ends the run.
+#[derive(Debug)]
+pub(crate) struct Fault {
+    pub(crate) exit: Exit,
+    pub(crate) message: String,
+    /// What the library said, if it was the library.
+    error: Option<Box<Error>>,
+}
+
+impl Fault {
+    /// A command line that makes no sense.
+    pub(crate) fn usage(message: impl Into<String>) -> Self {
+        Self { exit: Exit::Usage, message: message.into(), error: None }
+    }
+
+    /// A fault of the program itself.
+    pub(crate) fn internal(message: impl Into<String>) -> Self {
+        Self { exit: Exit::Internal, message: message.into(), error: None }
+    }
+
+    /// An output that cannot be written.
+    pub(crate) fn output(path: impl Into<std::path::PathBuf>, source: io::Error) -> Self {
+        Error::File { action: "write", path: path.into(), source }.into()
+    }
+
+    /// This fault, said to have come while `what` was done.
+    pub(crate) fn during(mut self, what: &str) -> Self {
+        self.message = format!("{what}: {}", self.message);
+        self
+    }
+
+    /// Whether the reader of our standard output went away, which is no failure.
+    pub(crate) fn is_broken_pipe(&self) -> bool {
+        matches!(self.error.as_deref(), Some(Error::File { action: "write", source, .. })
+            if source.kind() == io::ErrorKind::BrokenPipe)
+    }
+
+    /// The JSON value of the key `error`.
+    pub(crate) fn to_json(&self) -> Value {
+        let mut object = Map::new();
+        object.insert("kind".into(), self.exit.name().into());
+        object.insert("message".into(), self.message.as_str().into());
+        let mut error = self.error.as_deref();
+        while let Some(current) = error {
+            error = None;
+            match current {
+                Error::Operand { operand, name, source } => {
+                    object.insert("operand".into(), json!(operand + 1));
+                    object.insert("file".into(), name.as_str().into());
+                    error = Some(source);
+                }
+                Error::Malformed { format, place, .. } => {
+                    object.insert("format".into(), format.to_string().to_lowercase().into());
+                    object.insert("place".into(), place.as_str().into());
+                }
+                Error::NotClosed(diagnosis) | Error::SelfCrossing(diagnosis) => {
+                    object.insert("diagnosis".into(), diagnosis.to_json());
+                }
+                _ => {}
+            }
+        }
+        object.into()
+    }
+
+    /// The whole JSON object of a run that ended before it could be described further.
+    pub(crate) fn to_object(&self) -> Value {
+        json!({ "schema": SCHEMA, "exit_code": self.exit.code(), "error": self.to_json() })
+    }
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        Self { exit: exit_of(&error), message: one_line(&error.to_string()), error: Some(Box::new(error)) }
+    }
+}
+
+/// The exit code of a library error.
+pub(crate) fn exit_of(error: &Error) -> Exit {
+    match error.failure() {
+        Failure::Usage => Exit::Usage,
+        Failure::Unreadable => Exit::Unreadable,
+        Failure::Unusable => Exit::Unusable,
+        Failure::Limit => Exit::Limit,
+        _ => Exit::Internal,
+    }
+}
+
+/// A message with its line ends replaced, so that an error is one line.
+pub(crate) fn one_line(text: &str) -> String {
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faults_tell_the_operand_and_the_place() {
+        let inner = Error::Malformed {
+            format: trisect::io::Format::Obj,
+            place: "line 12".into(),
+            what: "a face has two corners".into(),
+        };
+        let fault = Fault::from(inner.of_operand(1, "tool.obj"));
+        assert_eq!(fault.exit, Exit::Unreadable);
+        assert_eq!(fault.message, "operand 2 (tool.obj): damaged OBJ file, line 12: a face has two corners");
+        let object = fault.to_object();
+        assert_eq!(object["schema"], 1);
+        assert_eq!(object["exit_code"], 2);
+        assert_eq!(object["error"]["operand"], 2);
+        assert_eq!(object["error"]["file"], "tool.obj");
+        assert_eq!(object["error"]["place"], "line 12");
+        assert_eq!(object["error"]["kind"], "unreadable");
+    }
+
+    #[test]
+    fn messages_are_one_line() {
+        assert_eq!(one_line("first:\n  second\n\n  third\n"), "first:; second; third");
+    }
+
+    #[test]
+    fn only_a_broken_pipe_is_no_failure() {
+        assert!(Fault::output("-", io::ErrorKind::BrokenPipe.into()).is_broken_pipe());
+        assert!(!Fault::output("-", io::ErrorKind::PermissionDenied.into()).is_broken_pipe());
+        assert!(!Fault::usage("x").is_broken_pipe());
+    }
+}

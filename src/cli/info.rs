@@ -1,0 +1,126 @@
+//! `info`: what is in files, and which formats there are.
+
+use clap::ArgMatches;
+use serde_json::{Value, json};
+use trisect::io::Format;
+use trisect::{Error, Mesh};
+
+use super::arguments::Info;
+use super::fault::{Exit, Fault};
+use super::operands::{self, Input};
+use super::output;
+use super::report::{Measures, counted};
+use super::requests::{self, Request};
+use super::session::Session;
+use super::stand_in::io::FormatNames as _; // replaced when io lands
+
+/// Describes every input, or the formats.
+pub(crate) fn run(arguments: &Info, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    if arguments.formats {
+        return formats(session);
+    }
+    let control = session.control();
+    let mut objects = Vec::new();
+    for (index, request) in requests::requests(matches, arguments.reading.format)?.iter().enumerate() {
+        let of_this = |error: Error| error.of_operand(index, request.name());
+        session.console.stage(&format!("reading {}", request.name()), 0.0);
+        let Input { mesh, format, warnings, reserved: _reserved } =
+            operands::read(request, &session.limits, &control).map_err(of_this)?;
+        let (text, object) = describe(request, &mesh, format, &warnings);
+        if !session.common.json {
+            session.console.pause(|| output::print(&text))?;
+        }
+        for warning in warnings {
+            session.warn(format!("{}: {warning}", request.name()));
+        }
+        objects.push(object);
+    }
+    session.note("files", objects);
+    Ok(Exit::Fine)
+}
+
+fn formats(session: &mut Session<'_>) -> Result<Exit, Fault> {
+    let listed: Vec<Value> = Format::ALL
+        .iter()
+        .map(|format| json!({ "format": format.extension(), "name": format.to_string() }))
+        .collect();
+    session.note("formats", listed);
+    if !session.common.json {
+        let lines = Format::ALL
+            .iter()
+            .map(|format| format!(".{:6} {format}, read and written\n", format.extension()));
+        output::print(&lines.collect::<String>())?;
+    }
+    Ok(Exit::Fine)
+}
+
+fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String]) -> (String, Value) {
+    let (measures, state) = match super::stand_in::mesh::solid(mesh.clone()) {
+        // replaced when mesh lands: Solid::try_from(mesh.clone())
+        Ok(solid) => (Measures::of_solid(&solid), None),
+        Err(error) => (Measures::of_mesh(mesh), Some(super::fault::one_line(&error.to_string()))),
+    };
+    let mut rows = measures.table();
+    if let Some(state) = &state {
+        rows.push(("closed", state.clone()));
+    }
+    let mut text = format!("{} ({format})\n", request.name());
+    for (name, value) in rows {
+        text.push_str(&format!("  {name:10} {value}\n"));
+    }
+    let groups = groups(mesh);
+    text.push_str(&format!("  {:10} {}\n", "groups", groups.len()));
+    for group in &groups {
+        text.push_str(&format!("    {}\n", group.line()));
+    }
+
+    let mut object = measures.to_json();
+    object.insert("file".into(), request.name().into());
+    object.insert("format".into(), format.extension().into());
+    object.insert("state".into(), json!(state));
+    object.insert("groups".into(), groups.iter().map(Group::to_json).collect::<Vec<_>>().into());
+    object.insert("warnings".into(), json!(warnings));
+    (text, object.into())
+}
+
+/// A group of faces with its size.
+struct Group<'a> {
+    name: &'a str,
+    material: Option<&'a trisect::Material>,
+    triangles: usize,
+}
+
+impl Group<'_> {
+    fn line(&self) -> String {
+        let name = if self.name.is_empty() { "(unnamed)" } else { self.name };
+        let material = match self.material {
+            Some(material) => format!(", material {}", material.name),
+            None => String::new(),
+        };
+        format!("{name}: {}{material}", counted(self.triangles, "triangle"))
+    }
+
+    fn to_json(&self) -> Value {
+        json!({
+            "name": self.name,
+            "triangles": self.triangles,
+            "material": self.material.map(|material| &material.name),
+            "base_color": self.material.map(|material| material.base_color),
+        })
+    }
+}
+
+fn groups(mesh: &Mesh) -> Vec<Group<'_>> {
+    let mut groups: Vec<Group<'_>> = mesh
+        .groups
+        .list
+        .iter()
+        .map(|group| Group { name: &group.name, material: group.material.as_ref(), triangles: 0 })
+        .collect();
+    for &group in &mesh.groups.of_triangle {
+        if let Some(group) = groups.get_mut(group as usize) {
+            group.triangles += 1;
+        }
+    }
+    groups
+}

@@ -1,0 +1,178 @@
+//! The command-line program: arguments, one file per verb, reports, exit codes.
+
+mod arguments;
+mod check;
+mod combine;
+mod convert;
+mod fault;
+mod info;
+mod limits;
+mod operands;
+mod output;
+mod progress;
+mod report;
+mod requests;
+mod session;
+mod stage;
+mod stand_in; // replaced when io, mesh and boolean land
+mod values;
+
+use std::any::Any;
+use std::io::Write as _;
+use std::panic::{self, AssertUnwindSafe};
+use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
+
+use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
+use trisect::Operation;
+
+use arguments::{Arguments, Verb};
+use fault::{Exit, Fault};
+use session::Session;
+
+/// Runs the program with the arguments of the process.
+pub(crate) fn run() -> ExitCode {
+    let line: Vec<_> = std::env::args_os().collect();
+    let json = line.iter().any(|word| word == "--json");
+    let parsed = Arguments::command().try_get_matches_from(&line).and_then(|matches| {
+        let arguments = Arguments::from_arg_matches(&matches)?;
+        Ok((arguments, matches))
+    });
+    let exit = match parsed {
+        Ok((arguments, matches)) => run_verb(&arguments, &matches),
+        Err(error) => usage(&error, json),
+    };
+    ExitCode::from(exit.code())
+}
+
+/// Help, version, and command lines that clap refuses.
+fn usage(error: &clap::Error, json: bool) -> Exit {
+    // Nobody is left to tell if the stream is closed.
+    let _ = error.print();
+    if !error.use_stderr() {
+        return Exit::Fine;
+    }
+    if json {
+        let text = error.to_string();
+        let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
+        let _ = writeln!(std::io::stdout(), "{}", Fault::usage(message).to_object());
+    }
+    Exit::Usage
+}
+
+fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
+    let mut session = match Session::begin(&arguments.common, arguments.verb.name()) {
+        Ok(session) => session,
+        Err(fault) => {
+            let _ = writeln!(std::io::stderr(), "trisect: {}", fault.message);
+            return fault.exit;
+        }
+    };
+    let result = guarded(|| {
+        set_threads(arguments.common.threads)?;
+        let (_, matches) = matches.subcommand().ok_or_else(|| Fault::internal("no verb"))?;
+        match &arguments.verb {
+            Verb::Union(combine) => combine::run(Operation::Union, combine, matches, &mut session),
+            Verb::Difference(combine) => combine::run(Operation::Difference, combine, matches, &mut session),
+            Verb::Intersection(combine) => {
+                combine::run(Operation::Intersection, combine, matches, &mut session)
+            }
+            Verb::Xor(combine) => {
+                combine::run(Operation::SymmetricDifference, combine, matches, &mut session)
+            }
+            Verb::Check(check) => check::run(check, matches, &mut session),
+            Verb::Info(info) => info::run(info, matches, &mut session),
+            Verb::Convert(convert) => convert::run(convert, matches, &mut session),
+        }
+    });
+    session.end(result)
+}
+
+#[cfg(feature = "parallel")]
+fn set_threads(threads: Option<u16>) -> Result<(), Fault> {
+    match threads {
+        None => Ok(()),
+        Some(threads) => rayon::ThreadPoolBuilder::new()
+            .num_threads(usize::from(threads))
+            .build_global()
+            .map_err(|error| Fault::internal(format!("cannot start {threads} threads: {error}"))),
+    }
+}
+
+#[cfg(not(feature = "parallel"))]
+fn set_threads(_: Option<u16>) -> Result<(), Fault> {
+    Ok(())
+}
+
+/// Where the last panic happened; the hook knows, the unwinding does not.
+static PANIC_PLACE: Mutex<Option<String>> = Mutex::new(None);
+
+/// Turns a panic into a fault that says how to report it.
+fn guarded<T>(verb: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+    let verbose = std::env::var_os("RUST_BACKTRACE").is_some();
+    let usual = panic::take_hook();
+    panic::set_hook(Box::new(move |info| {
+        let place = info.location().map(ToString::to_string);
+        *PANIC_PLACE.lock().unwrap_or_else(PoisonError::into_inner) = place;
+        if verbose {
+            usual(info);
+        }
+    }));
+    let result = panic::catch_unwind(AssertUnwindSafe(verb));
+    drop(panic::take_hook());
+    result.unwrap_or_else(|payload| Err(internal_fault(&*payload)))
+}
+
+fn internal_fault(payload: &(dyn Any + Send)) -> Fault {
+    let what = payload
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| payload.downcast_ref::<&str>().copied())
+        .unwrap_or("unknown");
+    let place = PANIC_PLACE.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let line: Vec<String> = std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect();
+    Fault::internal(format!(
+        "internal fault: {} (at {}). This is a bug in trisect, not in your files; please report it with them and with \
+         this line: trisect {} on {} {}: {}",
+        fault::one_line(what),
+        place.as_deref().unwrap_or("an unknown place"),
+        env!("CARGO_PKG_VERSION"),
+        std::env::consts::OS,
+        std::env::consts::ARCH,
+        line.join(" "),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn every_verb_and_option_is_documented() {
+        let text = include_str!("../../docs/program.md");
+        let command = Arguments::command();
+        for verb in command.get_subcommands() {
+            assert!(text.contains(&format!("`{}`", verb.get_name())), "{}", verb.get_name());
+            for name in
+                command.get_arguments().chain(verb.get_arguments()).filter_map(|option| option.get_long())
+            {
+                assert!(text.contains(&format!("`--{name}")), "{}: --{name}", verb.get_name());
+            }
+        }
+    }
+
+    #[test]
+    fn a_panic_becomes_an_internal_fault_that_says_how_to_report_it() {
+        let fault = guarded(|| -> Result<(), Fault> { panic!("broken {}", "invariant") }).unwrap_err();
+        assert_eq!(fault.exit, Exit::Internal);
+        assert_eq!(fault.exit.code(), 70);
+        for part in ["broken invariant", file!(), env!("CARGO_PKG_VERSION"), "report"] {
+            assert!(fault.message.contains(part), "{part} is missing in: {}", fault.message);
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! Inputs made operands: reading, moving to their place, and the checks.
+
+use std::io::Read as _;
+use std::path::Path;
+use std::time::Instant;
+
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
+use serde_json::Value;
+use trisect::control::Reservation;
+use trisect::io::Format;
+use trisect::{Control, Error, Mesh, Solid};
+
+use super::arguments::Using;
+use super::limits::Limits;
+use super::progress::Console;
+use super::requests::Request;
+use super::stand_in::io; // replaced when io lands
+use super::stand_in::mesh::{MeshOperations as _, SolidMeasures as _}; // replaced when mesh lands
+
+/// A file that was read and moved.
+pub(crate) struct Input {
+    pub(crate) mesh: Mesh,
+    pub(crate) format: Format,
+    pub(crate) warnings: Vec<String>,
+    /// The mesh's share of the memory ceiling.
+    pub(crate) reserved: Reservation,
+}
+
+/// An input that can take part in a boolean.
+pub(crate) struct Operand {
+    pub(crate) request: Request,
+    pub(crate) solid: Solid,
+    pub(crate) format: Format,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) turned: bool,
+    pub(crate) crossings: Option<Crossings>,
+    pub(crate) seconds: f64,
+    _reserved: Reservation,
+}
+
+/// Reads one input and moves it to its place.
+pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Result<Input, Error> {
+    let options = io::ReadOptions::new().control(control.clone());
+    let io::Loaded { mut mesh, format, warnings, .. } = match request.format {
+        Some(format) => {
+            let (bytes, options) = if request.is_standard() {
+                (limits.while_waiting(standard_input)?, options)
+            } else {
+                let folder = request.path.parent().unwrap_or(Path::new(""));
+                let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+                (file(&request.path, limits)?, options.folder(folder))
+            };
+            io::read(&bytes, format, &options)?
+        }
+        None => io::load(&request.path, &options)?,
+    };
+    control.check()?;
+    for transform in &request.transforms {
+        mesh = transform.apply(mesh)?;
+    }
+    if !request.transforms.is_empty() && mesh.positions.as_flattened().iter().any(|value| !value.is_finite())
+    {
+        return Err(Error::InvalidArgument(
+            "its transforms move vertices out of the range of numbers".into(),
+        ));
+    }
+    let bytes = size_of_val(&*mesh.positions) + size_of_val(&*mesh.triangles);
+    let reserved = control.reserve(bytes as u64)?;
+    Ok(Input { mesh, format, warnings, reserved })
+}
+
+fn file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Error> {
+    let endless = std::fs::metadata(path).is_ok_and(|file| !file.is_file());
+    let bytes = if endless { limits.while_waiting(|| std::fs::read(path)) } else { std::fs::read(path) };
+    bytes.map_err(|source| Error::File { action: "read", path: path.to_path_buf(), source })
+}
+
+fn standard_input() -> Result<Vec<u8>, Error> {
+    let mut bytes = Vec::new();
+    match std::io::stdin().lock().read_to_end(&mut bytes) {
+        Ok(_) => Ok(bytes),
+        Err(source) => Err(Error::File { action: "read", path: "standard input".into(), source }),
+    }
+}
+
+/// A solid that can be an operand, and what its checks found.
+pub(crate) struct Usable {
+    pub(crate) solid: Solid,
+    /// Whether `--orient` had to turn it.
+    pub(crate) turned: bool,
+    /// The answer of the self-crossing check; `None` under `--assume-clean`.
+    pub(crate) crossings: Option<Crossings>,
+}
+
+/// Self-crossings of an operand that was not refused for them.
+pub(crate) struct Crossings {
+    /// How many are no deeper than rounding.
+    pub(crate) tolerated: usize,
+    /// All that is known about them.
+    pub(crate) object: Value,
+}
+
+/// Makes a mesh an operand, or says why it cannot be one.
+pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usable, Error> {
+    let (mesh, turned) = if using.orient { oriented(mesh) } else { (mesh, false) };
+    let solid = super::stand_in::mesh::solid(mesh)?; // replaced when mesh lands: Solid::try_from
+    if solid.volume() < 0.0 {
+        return Err(Error::InsideOut { volume: solid.volume() });
+    }
+    let crossings = match using.assume_clean {
+        true => None,
+        false => {
+            let found = solid.self_crossings(control)?;
+            if let Some(refusal) = found.refusal() {
+                return Err(refusal);
+            }
+            Some(Crossings { tolerated: found.tolerated(), object: found.to_json() })
+        }
+    };
+    Ok(Usable { solid, turned, crossings })
+}
+
+/// The mesh with its faces outwards, and whether that changed it.
+pub(crate) fn oriented(mesh: Mesh) -> (Mesh, bool) {
+    let before = mesh.triangles.clone();
+    let mesh = mesh.oriented();
+    let turned = mesh.triangles != before;
+    (mesh, turned)
+}
+
+/// Reads all inputs and makes them operands; the first fault in the order of the command line counts.
+pub(crate) fn operands(
+    requests: Vec<Request>,
+    using: Using,
+    limits: &Limits,
+    control: &Control,
+    console: &Console,
+) -> Result<Vec<Operand>, Error> {
+    let one = |(index, request): (usize, Request)| {
+        console.stage(&format!("reading {}", request.name()), 0.0);
+        let name = request.name();
+        operand(request, using, limits, control).map_err(|error| error.of_operand(index, name))
+    };
+    #[cfg(feature = "parallel")]
+    let operands: Vec<Result<Operand, Error>> = requests.into_par_iter().enumerate().map(one).collect();
+    #[cfg(not(feature = "parallel"))]
+    let operands: Vec<Result<Operand, Error>> = requests.into_iter().enumerate().map(one).collect();
+    operands.into_iter().collect()
+}
+
+fn operand(request: Request, using: Using, limits: &Limits, control: &Control) -> Result<Operand, Error> {
+    let start = Instant::now();
+    let Input { mesh, format, warnings, reserved } = read(&request, limits, control)?;
+    let Usable { solid, turned, crossings } = usable(mesh, using, control)?;
+    let seconds = start.elapsed().as_secs_f64();
+    Ok(Operand { request, solid, format, warnings, turned, crossings, seconds, _reserved: reserved })
+}

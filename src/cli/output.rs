@@ -1,0 +1,297 @@
+//! Where results go: files, standard output, pictures, the report.
+
+use std::fs::{self, File};
+use std::io::{self as std_io, IsTerminal as _, Write};
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+use trisect::io::Format;
+use trisect::render::{self, Picture};
+use trisect::{Error, Failure, Mesh};
+
+use super::arguments::{Colours, Common, Drawing, Up, Writing};
+use super::fault::Fault;
+use super::limits::Limits;
+use super::requests::STANDARD;
+use super::stage::{self, Stage};
+use super::stand_in::io::{self, FormatNames as _}; // replaced when io lands
+
+/// Where one output goes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Target {
+    pub(crate) path: PathBuf,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// A file named for its format.
+    Mesh(Format),
+    /// A file of a format its name does not tell, or contradicts.
+    Forced(Format),
+    Standard(Format),
+    Picture,
+}
+
+impl Target {
+    /// The name in messages.
+    pub(crate) fn name(&self) -> String {
+        if self.path == Path::new(STANDARD) {
+            "standard output".into()
+        } else {
+            self.path.display().to_string()
+        }
+    }
+
+    /// The format in lower case, as in JSON.
+    pub(crate) fn format(&self) -> String {
+        match self.kind {
+            Kind::Mesh(format) | Kind::Forced(format) | Kind::Standard(format) => format.extension().into(),
+            Kind::Picture => "png".into(),
+        }
+    }
+}
+
+/// What is to be written: the mesh, how, and how to draw it.
+pub(crate) struct Product<'a> {
+    pub(crate) mesh: &'a Mesh,
+    pub(crate) options: io::WriteOptions,
+    /// Draws the picture, when one is asked for.
+    pub(crate) picture: &'a dyn Fn() -> Picture,
+}
+
+/// The outputs a command line asks for.
+pub(crate) fn targets(writing: &Writing, drawing: &Drawing, common: &Common) -> Result<Vec<Target>, Fault> {
+    let forced = writing.output_format;
+    let standard = writing.output.iter().filter(|path| path.as_os_str() == STANDARD).count();
+    if standard > 1 {
+        return Err(Fault::usage("standard output can be only one of the outputs"));
+    }
+    if standard == 1 && common.json {
+        return Err(Fault::usage("--json and -o - both want standard output; use --report FILE"));
+    }
+    let mut targets = Vec::new();
+    if let Some(path) = writing.output.iter().chain(&drawing.png).find(|path| path.is_dir()) {
+        return Err(Fault::usage(format!("{} is a folder; name a file in it", path.display())));
+    }
+    for path in &writing.output {
+        let kind = if path.as_os_str() == STANDARD {
+            let format = forced.ok_or_else(|| {
+                Fault::usage(
+                    "standard output has no name to tell its format; add --output-format, such as \
+                     --output-format stl",
+                )
+            })?;
+            refuse_terminal(format, writing.ascii)?;
+            Kind::Standard(format)
+        } else if let (Some(format), 0) = (forced, standard) {
+            if Format::from_path(path) == Some(format) { Kind::Mesh(format) } else { Kind::Forced(format) }
+        } else if is_png(path) {
+            Kind::Picture
+        } else {
+            Kind::Mesh(Format::from_path(path).ok_or_else(|| unknown_format(path))?)
+        };
+        targets.push(Target { path: path.clone(), kind });
+    }
+    targets.extend(drawing.png.iter().map(|path| Target { path: path.clone(), kind: Kind::Picture }));
+    for (index, target) in targets.iter().enumerate() {
+        let earlier = targets[..index].iter().map(|earlier| &earlier.path);
+        if earlier.chain(&common.report).any(|path| *path == target.path) {
+            return Err(Fault::usage(format!("{} is named as an output twice", target.name())));
+        }
+    }
+    Ok(targets)
+}
+
+fn is_png(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
+}
+
+fn unknown_format(path: &Path) -> Fault {
+    Fault::usage(format!(
+        "cannot tell the format of {} by its name; known endings: {}, png; or add --output-format",
+        path.display(),
+        Format::ALL.map(Format::extension).join(", ")
+    ))
+}
+
+fn refuse_terminal(format: Format, ascii: bool) -> Result<(), Fault> {
+    let binary = match format {
+        Format::Glb => true,
+        Format::Stl | Format::Ply => !ascii,
+        _ => false,
+    };
+    if binary && std_io::stdout().is_terminal() {
+        return Err(Fault::usage(format!(
+            "standard output is a terminal, and {format} is binary; send it to a file or a pipe{}",
+            if format == Format::Glb { "" } else { ", or add --ascii" }
+        )));
+    }
+    Ok(())
+}
+
+/// How to write meshes.
+pub(crate) fn write_options(writing: &Writing, limits: &Limits) -> io::WriteOptions {
+    let mut options = io::WriteOptions::new().control(limits.control());
+    if writing.ascii {
+        options = options.encoding(io::Encoding::Ascii);
+    }
+    if writing.single {
+        options = options.precision(io::Precision::Single);
+    }
+    options
+}
+
+/// Fails early where an output could not be written after a long run.
+pub(crate) fn probe(targets: &[Target], limits: &Limits) -> Result<(), Fault> {
+    for target in targets {
+        if !is_device(&target.path) && !matches!(target.kind, Kind::Standard(_)) {
+            Stage::new(&target.path, limits).map_err(|error| Fault::output(&target.path, error))?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes every output, and returns a JSON description of each, and warnings. No file changes before all of them
+/// are written in full.
+pub(crate) fn write_all(
+    targets: &[Target],
+    product: &Product<'_>,
+    limits: &Limits,
+) -> Result<(Vec<Value>, Vec<String>), Fault> {
+    let mut stages = Vec::new();
+    let mut staged = Vec::new();
+    let mut warnings = Vec::new();
+    let mut sizes = vec![None; targets.len()];
+    let (mut streams, mut files) = (Vec::new(), Vec::new());
+    for (index, target) in targets.iter().enumerate() {
+        let stream = matches!(target.kind, Kind::Standard(_)) || is_device(&target.path);
+        if stream { &mut streams } else { &mut files }.push((index, target));
+    }
+    for (index, target) in files {
+        let stage = Stage::new(&target.path, limits).map_err(|error| Fault::output(&target.path, error))?;
+        let said = write_file(target, &stage.path(), product).map_err(|error| failed(target, error))?;
+        warnings.extend(said.into_iter().map(|warning| format!("{}: {warning}", target.name())));
+        stages.push(stage);
+        staged.push(index);
+    }
+    for (_, target) in streams {
+        match write_stream(target, product).map_err(|error| failed(target, error)) {
+            Ok(said) => {
+                warnings.extend(said.into_iter().map(|warning| format!("{}: {warning}", target.name())));
+            }
+            Err(fault) if fault.is_broken_pipe() => {}
+            Err(fault) => return Err(fault),
+        }
+    }
+    for (index, bytes) in staged.iter().zip(stage::commit(&stages, limits)?) {
+        sizes[*index] = Some(bytes);
+    }
+    let described = targets.iter().zip(sizes).map(|(target, bytes)| {
+        json!({ "file": target.path.display().to_string(), "format": target.format(), "bytes": bytes })
+    });
+    Ok((described.collect(), warnings))
+}
+
+/// Writes a file in its hidden folder.
+fn write_file(target: &Target, path: &Path, product: &Product<'_>) -> Result<Vec<String>, Error> {
+    match target.kind {
+        Kind::Mesh(_) => io::save(product.mesh, path, &product.options),
+        Kind::Forced(format) | Kind::Standard(format) => {
+            let mut file = File::create(path).map_err(|source| file_error(path, source))?;
+            io::write(product.mesh, format, &mut file, &product.options)
+        }
+        Kind::Picture => (product.picture)().save_png(path).map(|()| Vec::new()),
+    }
+}
+
+/// Writes to standard output or to a device, which cannot be replaced by a finished file.
+fn write_stream(target: &Target, product: &Product<'_>) -> Result<Vec<String>, Error> {
+    let failed = |source| file_error(&target.path, source);
+    let mut out: Box<dyn Write> = match target.kind {
+        Kind::Standard(_) => Box::new(std_io::stdout().lock()),
+        _ => Box::new(File::options().write(true).open(&target.path).map_err(failed)?),
+    };
+    let warnings = match target.kind {
+        Kind::Mesh(format) | Kind::Forced(format) | Kind::Standard(format) => {
+            io::write(product.mesh, format, &mut out, &product.options)?
+        }
+        Kind::Picture => {
+            (product.picture)().write_png(&mut out).map_err(failed)?;
+            Vec::new()
+        }
+    };
+    out.flush().map_err(failed)?;
+    Ok(warnings)
+}
+
+/// An existing thing that is not a file: writing beside it and renaming would destroy it.
+fn is_device(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|what| !what.is_file() && !what.is_dir())
+}
+
+/// The error, said of the output the user named instead of the file in the hidden folder.
+fn failed(target: &Target, error: Error) -> Fault {
+    match error {
+        Error::File { action, source, .. } => {
+            Error::File { action, path: target.path.clone(), source }.into()
+        }
+        limit if limit.failure() == Failure::Limit => limit.into(),
+        other => Fault::from(other).during(&format!("writing {}", target.name())),
+    }
+}
+
+fn file_error(path: &Path, source: std_io::Error) -> Error {
+    Error::File { action: "write", path: path.to_path_buf(), source }
+}
+
+/// How the picture is taken.
+pub(crate) fn view(drawing: &Drawing) -> render::View {
+    let mut view = render::View::default();
+    [view.width, view.height] = drawing.png_size;
+    view.perspective = !drawing.png_parallel;
+    if drawing.png_up == Up::Y {
+        let [x, y, z] = view.direction;
+        (view.direction, view.up) = ([x, z, -y], [0.0, 1.0, 0.0]);
+    }
+    view.direction = drawing.view.unwrap_or(view.direction);
+    view
+}
+
+/// The colours of the picture of `mesh`; `operand` tells the operand of each triangle.
+pub(crate) fn colours(
+    what: Colours,
+    mesh: &Mesh,
+    operand: impl Iterator<Item = usize>,
+) -> Option<Vec<[u8; 3]>> {
+    match what {
+        Colours::Operand => Some(operand.map(render::palette).collect()),
+        Colours::Material => render::material_colours(mesh),
+        Colours::None => None,
+    }
+}
+
+/// Writes the report file.
+pub(crate) fn write_report(path: &Path, report: &Value, limits: &Limits) -> Result<(), Fault> {
+    let failed = |error| Fault::output(path, error);
+    let text = format!("{report:#}\n");
+    if is_device(path) {
+        let mut out = File::options().write(true).open(path).map_err(failed)?;
+        return out.write_all(text.as_bytes()).map_err(failed);
+    }
+    let stage = Stage::new(path, limits).map_err(failed)?;
+    fs::write(stage.path(), text).map_err(failed)?;
+    stage::replace(&stage, limits)?;
+    Ok(())
+}
+
+/// Prints text on standard output; a reader that went away is no failure.
+pub(crate) fn print(text: &str) -> Result<(), Fault> {
+    let mut out = std_io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std_io::ErrorKind::BrokenPipe => {
+            Err(Fault::output("standard output", error))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,243 @@
+//! What a run says about meshes: one summary line for people, one JSON object for programs.
+
+use serde_json::{Map, Value, json};
+use trisect::{Mesh, Solid};
+
+use super::operands::Operand;
+use super::stand_in::io::FormatNames as _; // replaced when io lands
+use super::stand_in::mesh::{Bounds, MeshOperations as _, SolidMeasures as _}; // replaced when mesh lands
+
+/// Measures of a mesh. Those that only a closed surface has are absent for the others.
+#[derive(Clone, Debug)]
+pub(crate) struct Measures {
+    vertices: usize,
+    triangles: usize,
+    area: f64,
+    bounds: Option<Bounds>,
+    closed: Option<Closed>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Closed {
+    manifold: bool,
+    shells: usize,
+    /// Absent where more than two triangles meet at an edge.
+    genus: Option<usize>,
+    volume: f64,
+}
+
+impl Measures {
+    /// Measures of a mesh that need not be closed.
+    pub(crate) fn of_mesh(mesh: &Mesh) -> Self {
+        Self {
+            vertices: mesh.positions.len(),
+            triangles: mesh.triangles.len(),
+            area: mesh.area(),
+            bounds: mesh.bounds(),
+            closed: None,
+        }
+    }
+
+    /// Measures of a solid.
+    pub(crate) fn of_solid(solid: &Solid) -> Self {
+        let closed = Closed {
+            manifold: solid.is_manifold(),
+            shells: solid.components(),
+            genus: solid.genus(),
+            volume: solid.mesh().volume(), // replaced when mesh lands: solid.volume(), computed once
+        };
+        Self { closed: Some(closed), ..Self::of_mesh(solid.mesh()) }
+    }
+
+    /// The part of a summary line after the name.
+    pub(crate) fn line(&self) -> String {
+        let mut parts = vec![counted(self.triangles, "triangle")];
+        match self.closed {
+            _ if self.triangles == 0 => return "empty".into(),
+            Some(Closed { manifold, shells, genus, volume }) => {
+                parts.push(if manifold { "closed" } else { "closed, not manifold" }.into());
+                parts.push(counted(shells, "shell"));
+                if let Some(genus) = genus.filter(|&genus| genus != 0) {
+                    parts.push(format!("genus {genus}"));
+                }
+                parts.push(format!("volume {}", short(volume)));
+            }
+            None => parts.push("not closed".into()),
+        }
+        parts.join(", ")
+    }
+
+    /// Lines of a description, each a name and its value.
+    pub(crate) fn table(&self) -> Vec<(&'static str, String)> {
+        let mut rows =
+            vec![("vertices", self.vertices.to_string()), ("triangles", self.triangles.to_string())];
+        if let Some(bounds) = self.bounds {
+            let three = |v: [f64; 3]| v.map(short).join(" ");
+            rows.push(("bounds", format!("{} to {}", three(bounds.low), three(bounds.high))));
+            rows.push(("size", three(bounds.size())));
+        }
+        rows.push(("area", short(self.area)));
+        if let Some(Closed { manifold, shells, genus, volume }) = self.closed {
+            rows.push(("volume", short(volume)));
+            rows.push(("closed", if manifold { "yes, manifold" } else { "yes, not manifold" }.into()));
+            rows.push(("shells", shells.to_string()));
+            rows.extend(genus.map(|genus| ("genus", genus.to_string())));
+        }
+        rows
+    }
+
+    /// The measures as JSON keys. What only a closed surface has is null for the others.
+    pub(crate) fn to_json(&self) -> Map<String, Value> {
+        let closed = self.closed;
+        let object = json!({
+            "vertices": self.vertices,
+            "triangles": self.triangles,
+            "empty": self.triangles == 0,
+            "area": self.area,
+            "bounds": self.bounds.map(|bounds| [bounds.low, bounds.high]),
+            "closed": closed.is_some(),
+            "manifold": closed.map(|closed| closed.manifold),
+            "shells": closed.map(|closed| closed.shells),
+            "genus": closed.and_then(|closed| closed.genus),
+            "volume": closed.map(|closed| closed.volume),
+        });
+        into_map(object)
+    }
+}
+
+/// What was left out or joined to make a solid of its mesh, in words and as JSON.
+pub(crate) fn cleaning(solid: &Solid) -> (Option<String>, Value) {
+    let done = solid.cleaning();
+    let counts = [
+        (done.welded_vertices, "vertex of equal coordinates joined", "vertices of equal coordinates joined"),
+        (
+            done.repeated_corners,
+            "triangle with a repeated corner left out",
+            "triangles with a repeated corner left out",
+        ),
+        (done.opposite_pairs, "pair of opposite triangles left out", "pairs of opposite triangles left out"),
+        (done.unreferenced_vertices, "unused vertex left out", "unused vertices left out"),
+    ];
+    let words: Vec<String> = counts
+        .iter()
+        .filter(|(count, ..)| *count > 0)
+        .map(|(count, one, several)| format!("{count} {}", if *count == 1 { one } else { several }))
+        .collect();
+    let object = json!({
+        "welded_vertices": done.welded_vertices,
+        "repeated_corners": done.repeated_corners,
+        "opposite_pairs": done.opposite_pairs,
+        "unreferenced_vertices": done.unreferenced_vertices,
+    });
+    ((!words.is_empty()).then(|| words.join(", ")), object)
+}
+
+/// The JSON object of an operand.
+pub(crate) fn operand_json(operand: &Operand, index: usize, measures: &Measures) -> Value {
+    let mut object = measures.to_json();
+    let transforms: Vec<String> = operand.request.transforms.iter().map(ToString::to_string).collect();
+    object.extend(into_map(json!({
+        "operand": index + 1,
+        "file": operand.request.name(),
+        "format": operand.format.extension(),
+        "transforms": transforms,
+        "turned": operand.turned,
+        "cleaning": cleaning(&operand.solid).1,
+        "self_crossings": operand.crossings.as_ref().map(|crossings| &crossings.object),
+        "warnings": operand.warnings,
+        "seconds": operand.seconds,
+    })));
+    object.into()
+}
+
+/// The summary line of an operand.
+pub(crate) fn operand_line(operand: &Operand, measures: &Measures) -> String {
+    let mut line = format!("{}: {}", operand.request.name(), measures.line());
+    if operand.turned {
+        line.push_str(", turned outwards");
+    }
+    match operand.crossings.as_ref().map(|crossings| crossings.tolerated) {
+        None => line.push_str(", not checked for self-crossings"),
+        Some(0) => {}
+        Some(count) => {
+            line.push_str(&format!(", {} no deeper than rounding", counted(count, "self-crossing")));
+        }
+    }
+    format!("{line} ({})", time(operand.seconds))
+}
+
+/// The keys of a JSON object.
+pub(crate) fn into_map(object: Value) -> Map<String, Value> {
+    match object {
+        Value::Object(map) => map,
+        other => [("value".to_string(), other)].into_iter().collect(),
+    }
+}
+
+/// A number of things.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
+/// A number with at most ten significant digits.
+pub(crate) fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.abs().to_string();
+    }
+    let scientific = format!("{value:.9e}");
+    let rounded: f64 = scientific.parse().unwrap_or(value);
+    if (1e-5..1e12).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
+/// A duration.
+pub(crate) fn time(seconds: f64) -> String {
+    match seconds {
+        ..0.01 => format!("{:.1} ms", seconds * 1e3),
+        ..1.0 => format!("{:.0} ms", seconds * 1e3),
+        _ => format!("{seconds:.2} s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_but_right() {
+        assert_eq!(short(0.875), "0.875");
+        assert_eq!(short(0.1 + 0.2), "0.3");
+        assert_eq!(short(-0.0), "0");
+        assert_eq!(short(347_866.25), "347866.25");
+        assert_eq!(short(1.0 / 3.0), "0.3333333333");
+        assert_eq!(short(1.5e-7), "1.5e-7");
+        assert_eq!(short(2.5e15), "2.5e15");
+        assert_eq!(short(f64::NAN), "NaN");
+    }
+
+    #[test]
+    fn measures_of_an_open_mesh_leave_out_what_it_does_not_have() {
+        let square = Mesh::new(
+            vec![[0.0; 3], [2.0, 0.0, 0.0], [2.0, 3.0, 0.0], [0.0, 3.0, 0.0], [9.0; 3]],
+            vec![[0, 1, 2], [0, 2, 3]],
+        );
+        let measures = Measures::of_mesh(&square);
+        let object = measures.to_json();
+        assert_eq!(object["area"], 6.0);
+        assert_eq!(
+            object["bounds"],
+            json!([[0.0, 0.0, 0.0], [2.0, 3.0, 0.0]]),
+            "unused vertices do not count"
+        );
+        assert_eq!(object["closed"], false);
+        assert_eq!(object["volume"], Value::Null);
+        assert_eq!(measures.line(), "2 triangles, not closed");
+        assert_eq!(Measures::of_mesh(&Mesh::default()).line(), "empty");
+    }
+
+    #[test]
+    fn durations_read_well() {
+        assert_eq!(time(0.000_34), "0.3 ms");
+        assert_eq!(time(0.0123), "12 ms");
+        assert_eq!(time(12.345), "12.35 s");
+    }
+}

@@ -1,0 +1,198 @@
+//! Inputs as the command line names them: which transforms belong to which file, and its format.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use clap::ArgMatches;
+use trisect::io::Format;
+use trisect::{Error, Mesh};
+
+use super::fault::Fault;
+use super::stand_in::mesh::MeshOperations as _; // replaced when mesh lands
+
+/// The name that stands for standard input and output.
+pub(crate) const STANDARD: &str = "-";
+
+/// A transform of an input.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Transform {
+    Translate([f64; 3]),
+    /// Degrees about x, then y, then z.
+    Rotate([f64; 3]),
+    Scale([f64; 3]),
+    /// Rows of an affine map.
+    Matrix([[f64; 4]; 4]),
+}
+
+impl Transform {
+    /// The mesh, moved.
+    pub(crate) fn apply(&self, mesh: Mesh) -> Result<Mesh, Error> {
+        match self {
+            Self::Translate(by) => Ok(mesh.translated(*by)),
+            Self::Rotate([x, y, z]) => {
+                mesh.rotated([1.0, 0.0, 0.0], *x)?.rotated([0.0, 1.0, 0.0], *y)?.rotated([0.0, 0.0, 1.0], *z)
+            }
+            Self::Scale(by) => mesh.scaled(*by),
+            Self::Matrix(rows) => mesh.transformed(rows.as_flattened()),
+        }
+    }
+}
+
+impl fmt::Display for Transform {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (name, values) = match self {
+            Self::Translate(by) => ("translate", by.as_slice()),
+            Self::Rotate(degrees) => ("rotate", degrees.as_slice()),
+            Self::Scale(by) => ("scale", by.as_slice()),
+            Self::Matrix(rows) => ("matrix", rows.as_flattened()),
+        };
+        let values: Vec<String> = values.iter().map(ToString::to_string).collect();
+        write!(f, "{name} {}", values.join(","))
+    }
+}
+
+/// An input as the command line names it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Request {
+    pub(crate) path: PathBuf,
+    pub(crate) format: Option<Format>,
+    pub(crate) transforms: Vec<Transform>,
+}
+
+impl Request {
+    /// The name in messages.
+    pub(crate) fn name(&self) -> String {
+        if self.is_standard() { "standard input".into() } else { self.path.display().to_string() }
+    }
+
+    /// Whether this is standard input.
+    pub(crate) fn is_standard(&self) -> bool {
+        self.path == Path::new(STANDARD)
+    }
+}
+
+/// The inputs among a verb's matches, each with the transforms that stand after it and before the next one.
+pub(crate) fn requests(matches: &ArgMatches, format: Option<Format>) -> Result<Vec<Request>, Fault> {
+    let mut requests = placed_requests(matches)?;
+    name_formats(&mut requests, format)?;
+    Ok(requests)
+}
+
+/// The files and their transforms, formats left open.
+///
+/// clap numbers every value by its place on the command line ([`ArgMatches::indices_of`]); sorting files and
+/// transforms by that number restores the order in which they were written.
+pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Fault> {
+    enum Item {
+        File(PathBuf),
+        Transform(&'static str, Transform),
+    }
+    let mut items: Vec<(usize, Item)> =
+        placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(path))).collect();
+    let mut transforms = |name, values: Vec<(usize, Transform)>| {
+        items.extend(values.into_iter().map(|(at, transform)| (at, Item::Transform(name, transform))));
+    };
+    transforms(
+        "--translate",
+        placed(matches, "translate").map(|(at, v)| (at, Transform::Translate(v))).collect(),
+    );
+    transforms("--rotate", placed(matches, "rotate").map(|(at, v)| (at, Transform::Rotate(v))).collect());
+    transforms("--scale", placed(matches, "scale").map(|(at, v)| (at, Transform::Scale(v))).collect());
+    transforms("--matrix", placed(matches, "matrix").map(|(at, v)| (at, Transform::Matrix(v))).collect());
+    items.sort_by_key(|&(at, _)| at);
+
+    let mut requests: Vec<Request> = Vec::new();
+    for (_, item) in items {
+        match (item, requests.last_mut()) {
+            (Item::File(path), _) => requests.push(Request { path, format: None, transforms: Vec::new() }),
+            (Item::Transform(_, transform), Some(request)) => request.transforms.push(transform),
+            (Item::Transform(name, _), None) => {
+                return Err(Fault::usage(format!(
+                    "{name} stands before the first input; a transform applies to the input just before it"
+                )));
+            }
+        }
+    }
+    Ok(requests)
+}
+
+/// The values of an argument, each with its place on the command line.
+fn placed<T: Clone + Send + Sync + 'static>(
+    matches: &ArgMatches,
+    id: &str,
+) -> impl Iterator<Item = (usize, T)> {
+    let values: Vec<T> = matches.get_many::<T>(id).into_iter().flatten().cloned().collect();
+    let places: Vec<usize> = matches.indices_of(id).into_iter().flatten().collect();
+    places.into_iter().zip(values)
+}
+
+/// `--format` is for standard input, or for every input when standard input is not among them.
+pub(crate) fn name_formats(requests: &mut [Request], format: Option<Format>) -> Result<(), Fault> {
+    let standard = requests.iter().filter(|request| request.is_standard()).count();
+    if standard > 1 {
+        return Err(Fault::usage("standard input can be only one of the inputs"));
+    }
+    if standard == 1 && format.is_none() {
+        return Err(Fault::usage(
+            "standard input has no name to tell its format; add --format, such as --format stl",
+        ));
+    }
+    for request in requests {
+        if request.is_standard() || standard == 0 {
+            request.format = format;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+    use crate::cli::arguments::Arguments;
+
+    fn parse(line: &str) -> Result<Vec<Request>, Fault> {
+        let matches = Arguments::command().try_get_matches_from(line.split(' ')).expect("clap accepts it");
+        let (_, matches) = matches.subcommand().expect("a verb");
+        requests(matches, matches.get_one::<Format>("format").copied())
+    }
+
+    #[test]
+    fn transforms_belong_to_the_input_before_them_in_their_order() {
+        let requests = parse(
+            "trisect union a.obj --scale 2 --translate -1,0,0 --scale 3 -q b.obj c.obj -o x.obj --rotate 0,0,90",
+        )
+        .expect("valid");
+        let transforms: Vec<Vec<String>> = requests
+            .iter()
+            .map(|request| request.transforms.iter().map(ToString::to_string).collect())
+            .collect();
+        assert_eq!(transforms[0], ["scale 2,2,2", "translate -1,0,0", "scale 3,3,3"]);
+        assert!(transforms[1].is_empty());
+        assert_eq!(transforms[2], ["rotate 0,0,90"]);
+    }
+
+    #[test]
+    fn a_transform_before_the_first_input_is_refused() {
+        let fault = parse("trisect union --translate 1,0,0 a.obj b.obj").expect_err("no input before it");
+        assert!(fault.message.contains("--translate stands before the first input"));
+    }
+
+    #[test]
+    fn equal_files_stay_separate_inputs() {
+        let requests = parse("trisect union a.obj a.obj --translate 1,0,0").expect("valid");
+        assert_eq!([requests[0].transforms.len(), requests[1].transforms.len()], [0, 1]);
+    }
+
+    #[test]
+    fn format_is_for_standard_input_if_there_is_one() {
+        let formats = |line| {
+            parse(line).map(|requests| requests.iter().map(|request| request.format).collect::<Vec<_>>())
+        };
+        assert_eq!(formats("trisect union - b.obj --format stl").expect("valid"), [Some(Format::Stl), None]);
+        assert_eq!(formats("trisect union a b --format off").expect("valid"), [Some(Format::Off); 2]);
+        assert!(formats("trisect union - b.obj").is_err());
+        assert!(formats("trisect union - - --format stl").is_err());
+    }
+}

@@ -1,0 +1,186 @@
+//! Values on the command line: vectors, sizes, times, formats, directions.
+
+use std::time::Duration;
+
+use trisect::io::Format;
+
+use super::stand_in::io::FormatNames as _; // replaced when io lands
+
+/// `count` finite numbers separated by commas or blanks.
+fn numbers<const COUNT: usize>(text: &str) -> Result<[f64; COUNT], String> {
+    let words: Vec<&str> = text.split([',', ' ', '\t', '\n']).filter(|word| !word.is_empty()).collect();
+    let mut values = [0.0; COUNT];
+    if words.len() != COUNT {
+        return Err(format!("expected {COUNT} numbers separated by commas, found {}", words.len()));
+    }
+    for (value, word) in values.iter_mut().zip(words) {
+        let number: f64 = word.parse().map_err(|_| format!("'{word}' is not a number"))?;
+        if !number.is_finite() {
+            return Err(format!("'{word}' is not a finite number"));
+        }
+        *value = number;
+    }
+    Ok(values)
+}
+
+/// `x,y,z`.
+pub(crate) fn vector(text: &str) -> Result<[f64; 3], String> {
+    numbers(text)
+}
+
+/// `s` or `x,y,z`, none of them zero.
+pub(crate) fn scale(text: &str) -> Result<[f64; 3], String> {
+    let factors = match numbers::<1>(text) {
+        Ok([factor]) => [factor; 3],
+        Err(_) if text.contains([',', ' ']) => vector(text)?,
+        Err(error) => return Err(error.replace("1 numbers separated by commas", "one number or three")),
+    };
+    match factors.contains(&0.0) {
+        true => Err("a factor of zero would flatten the model".into()),
+        false => Ok(factors),
+    }
+}
+
+/// Sixteen numbers, row by row as written on paper; the last row must be 0 0 0 1.
+pub(crate) fn matrix(text: &str) -> Result<[[f64; 4]; 4], String> {
+    let flat: [f64; 16] = numbers(text)?;
+    let rows = std::array::from_fn(|row| std::array::from_fn(|column| flat[4 * row + column]));
+    if rows[3] != [0.0, 0.0, 0.0, 1.0] {
+        return Err("the last row must be 0,0,0,1: numbers are expected row by row, the translation in the \
+                    fourth column"
+            .into());
+    }
+    Ok(rows)
+}
+
+/// A direction to look from: a name or `x,y,z`.
+pub(crate) fn direction(text: &str) -> Result<[f64; 3], String> {
+    Ok(match text {
+        "front" => [0.0, -1.0, 0.0],
+        "back" => [0.0, 1.0, 0.0],
+        "left" => [-1.0, 0.0, 0.0],
+        "right" => [1.0, 0.0, 0.0],
+        "top" => [0.0, 0.0, 1.0],
+        "bottom" => [0.0, 0.0, -1.0],
+        _ => match vector(text) {
+            Ok([0.0, 0.0, 0.0]) => return Err("0,0,0 is no direction".into()),
+            Ok(direction) => direction,
+            Err(error) => {
+                return Err(format!("{error}; or one of front, back, left, right, top, bottom"));
+            }
+        },
+    })
+}
+
+/// Bytes, with an optional suffix K, M, G or T (powers of 1024; `KB` and `KiB` mean the same).
+pub(crate) fn bytes(text: &str) -> Result<u64, String> {
+    let lower = text.trim().to_ascii_lowercase();
+    let digits = lower.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let factor = match &lower[digits.len()..] {
+        "" | "b" => 1_u64,
+        "k" | "kb" | "kib" => 1 << 10,
+        "m" | "mb" | "mib" => 1 << 20,
+        "g" | "gb" | "gib" => 1 << 30,
+        "t" | "tb" | "tib" => 1 << 40,
+        suffix => return Err(format!("unknown unit '{suffix}'; use K, M, G or T, such as 4G")),
+    };
+    let count: f64 = digits.trim().parse().map_err(|_| "expected a size such as 512M or 4G".to_string())?;
+    let bytes = count * factor as f64;
+    if !(1.0..1e18).contains(&bytes) {
+        return Err("the size must be at least one byte and less than 10^18".into());
+    }
+    Ok(bytes as u64)
+}
+
+/// Seconds, fractions allowed.
+pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds: f64 = text.trim().parse().map_err(|_| "expected a number of seconds".to_string())?;
+    if !(seconds > 0.0 && seconds < 1e9) {
+        return Err("the time must be more than 0 and less than 10^9 seconds".into());
+    }
+    Ok(Duration::from_secs_f64(seconds))
+}
+
+/// The name of a format.
+pub(crate) fn format(text: &str) -> Result<Format, String> {
+    Format::from_name(text).ok_or_else(|| {
+        let known: Vec<&str> = Format::ALL.iter().map(|format| format.extension()).collect();
+        format!("unknown format; known formats: {}", known.join(", "))
+    })
+}
+
+/// The largest side of a picture, in pixels: the samples behind it take 32 bytes per pixel.
+const MAX_PICTURE: u32 = 4096;
+
+/// `WIDTHxHEIGHT` in pixels.
+pub(crate) fn picture_size(text: &str) -> Result<[u32; 2], String> {
+    let side = |text: &str| text.parse::<u32>().ok().filter(|side| (1..=MAX_PICTURE).contains(side));
+    text.split_once(['x', 'X'])
+        .and_then(|(width, height)| Some([side(width)?, side(height)?]))
+        .ok_or_else(|| format!("expected WIDTHxHEIGHT such as 1024x768, each from 1 to {MAX_PICTURE}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_take_commas_or_blanks_and_refuse_the_rest() {
+        assert_eq!(vector("1,-2.5,3e2"), Ok([1.0, -2.5, 300.0]));
+        assert_eq!(vector("1, -2.5  3e2"), Ok([1.0, -2.5, 300.0]));
+        assert!(vector("1,2").unwrap_err().contains("found 2"));
+        assert!(vector("1,2,x").unwrap_err().contains("'x'"));
+        assert!(vector("1,2,inf").unwrap_err().contains("finite"));
+    }
+
+    #[test]
+    fn scale_takes_one_or_three_factors_but_not_zero() {
+        assert_eq!(scale("2"), Ok([2.0; 3]));
+        assert_eq!(scale("1,-1,2"), Ok([1.0, -1.0, 2.0]));
+        assert!(scale("0").is_err());
+        assert!(scale("1,2").is_err());
+        assert!(scale("big").is_err());
+    }
+
+    #[test]
+    fn matrices_are_row_by_row() {
+        let rows = matrix("1 0 0 5  0 1 0 6  0 0 1 7  0 0 0 1").expect("a translation");
+        assert_eq!([rows[0][3], rows[1][3], rows[2][3]], [5.0, 6.0, 7.0]);
+        assert!(matrix("1,0,0,0, 0,1,0,0, 0,0,1,0, 5,6,7,1").unwrap_err().contains("last row"));
+        assert!(matrix("1,2,3").unwrap_err().contains("16"));
+    }
+
+    #[test]
+    fn sizes_have_units() {
+        assert_eq!(bytes("4G"), Ok(4 << 30));
+        assert_eq!(bytes("1.5kib"), Ok(1536));
+        assert_eq!(bytes("100"), Ok(100));
+        for bad in ["", "G", "-1", "4X", "nan", "1e30"] {
+            assert!(bytes(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn seconds_are_positive() {
+        assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
+        for bad in ["0", "-1", "nan", "inf", "soon"] {
+            assert!(seconds(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn pictures_have_two_sides_within_bounds() {
+        assert_eq!(picture_size("640x480"), Ok([640, 480]));
+        for bad in ["640", "0x3", "5000x10", "axb", "-1x2"] {
+            assert!(picture_size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn directions_are_names_or_vectors() {
+        assert_eq!(direction("top"), Ok([0.0, 0.0, 1.0]));
+        assert_eq!(direction("-1,0,0"), Ok([-1.0, 0.0, 0.0]));
+        assert!(direction("0,0,0").is_err());
+        assert!(direction("sideways").unwrap_err().contains("front"));
+    }
+}

@@ -1,0 +1,92 @@
+//! Triangles made ready for drawing: corners in the picture, depth as a plane over it, lit colour.
+
+use glam::{DVec2, DVec3};
+
+use super::View;
+use super::camera::{Camera, Seen};
+use crate::Mesh;
+
+/// A visible triangle of the picture.
+#[derive(Clone, Debug)]
+pub(super) struct Facet {
+    pub(super) corners: [[f64; 2]; 3],
+    /// Closeness at the first corner, and its change per sample to the right and downwards.
+    closeness: f64,
+    pub(super) slope: DVec2,
+    /// Closeness at the farthest and the nearest corner: bounds what the slope of a sliver may extrapolate.
+    range: [f64; 2],
+    /// Unit normal in camera axes, turned towards the eye.
+    pub(super) normal: DVec3,
+    /// Linear colour after lighting.
+    pub(super) light: [f32; 3],
+    /// Area in samples.
+    pub(super) area: f64,
+}
+
+impl Facet {
+    /// Closeness at a position in the picture.
+    pub(super) fn closeness_at(&self, at: DVec2) -> f64 {
+        let value = self.closeness + self.slope.dot(at - DVec2::from(self.corners[0]));
+        value.clamp(self.range[0], self.range[1])
+    }
+}
+
+/// The drawable triangles of a mesh in their order. Those that are degenerate in the picture, name missing
+/// vertices or have a vertex that cannot be seen are left out.
+pub(super) fn facets(mesh: &Mesh, view: &View, colours: Option<&[[u8; 3]]>, camera: &Camera) -> Vec<Facet> {
+    let local: Vec<DVec3> = mesh.positions.iter().map(|&p| camera.local(p.into())).collect();
+    let seen: Vec<Option<Seen>> = local.iter().map(|&p| camera.see(p)).collect();
+    let facet = |(index, triangle): (usize, &[u32; 3])| {
+        let corner = |k: usize| -> Option<(DVec3, Seen)> {
+            let vertex = triangle[k] as usize;
+            Some((*local.get(vertex)?, (*seen.get(vertex)?)?))
+        };
+        let corners = [corner(0)?, corner(1)?, corner(2)?];
+        let colour = colours.and_then(|colours| colours.get(index)).copied().unwrap_or(view.colour);
+        facet(corners, colour, camera)
+    };
+    mesh.triangles.iter().enumerate().filter_map(facet).collect()
+}
+
+fn facet(corners: [(DVec3, Seen); 3], colour: [u8; 3], camera: &Camera) -> Option<Facet> {
+    let [(a, seen_a), (b, seen_b), (c, seen_c)] = corners;
+    let (u, v) = (seen_b.at - seen_a.at, seen_c.at - seen_a.at);
+    let doubled = u.perp_dot(v);
+    let (rise_u, rise_v) = (seen_b.closeness - seen_a.closeness, seen_c.closeness - seen_a.closeness);
+    let slope = DVec2::new(rise_u * v.y - rise_v * u.y, rise_v * u.x - rise_u * v.x) / doubled;
+    if doubled == 0.0 || !slope.is_finite() {
+        return None;
+    }
+    // Rows count downwards, so counter-clockwise triangles have a negative determinant.
+    let front = doubled < 0.0;
+    let outward = (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Z);
+    let normal = if outward.dot(camera.towards_eye(a)) < 0.0 { -outward } else { outward };
+    let range = [seen_a, seen_b, seen_c].map(|seen| seen.closeness);
+    Some(Facet {
+        corners: [seen_a.at, seen_b.at, seen_c.at].map(|at| at.to_array()),
+        closeness: seen_a.closeness,
+        slope,
+        range: [range[0].min(range[1]).min(range[2]), range[0].max(range[1]).max(range[2])],
+        normal,
+        light: lit(colour, normal, front),
+        area: doubled.abs() / 2.0,
+    })
+}
+
+/// Two lamps fixed to the camera, a strong one from the upper left and a weak one from the right, and light from
+/// all around that is brighter from above.
+fn lit(colour: [u8; 3], normal: DVec3, front: bool) -> [f32; 3] {
+    let key = DVec3::new(-0.60, 0.60, 0.53);
+    let fill = DVec3::new(0.80, -0.05, 0.60);
+    let around = 0.30 + 0.10 * normal.y;
+    let light = around + 0.78 * normal.dot(key).max(0.0) + 0.17 * normal.dot(fill).max(0.0);
+    let tint = if front { [1.0; 3] } else { [0.85, 0.32, 0.28] };
+    std::array::from_fn(|channel| (linear(colour[channel]) * tint[channel] * light) as f32)
+}
+
+/// An sRGB byte as linear light, with the curve taken as a square: close enough to the eye, and the same bits on
+/// every machine, which a power function does not promise.
+pub(super) fn linear(byte: u8) -> f64 {
+    let value = f64::from(byte) / 255.0;
+    value * value
+}
