@@ -44,7 +44,12 @@ impl CutEdges {
             match edges.last_mut() {
                 Some(edge) if edge.low == node.low && edge.high == node.high => edge.end += 1,
                 _ => {
-                    edges.push(CutEdge { low: node.low, high: node.high, first: i as u32, end: i as u32 + 1 })
+                    edges.push(CutEdge {
+                        low: node.low,
+                        high: node.high,
+                        first: i as u32,
+                        end: i as u32 + 1,
+                    });
                 }
             }
             edge_of_node.push(edges.len() as u32 - 1);

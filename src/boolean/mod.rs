@@ -31,8 +31,6 @@ mod operands;
 mod outcome;
 mod overlap;
 mod pair;
-#[cfg(test)]
-mod scratch_tests;
 mod self_crossings;
 mod tidy;
 mod walls;

@@ -12,8 +12,7 @@ use super::output;
 use super::report::{self, Measures, into_map};
 use super::requests::{self, Request};
 use super::session::Session;
-use super::stand_in::io::FormatNames as _; // replaced when io lands
-use super::stand_in::mesh::{DiagnosisJson as _, diagnose}; // replaced when mesh lands
+use trisect::mesh::diagnose;
 
 /// What `check` found out about one file.
 struct Verdict {
@@ -59,7 +58,7 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
         Err(error) => return refused(&name, error, None),
     };
     let Input { mesh, format, warnings, reserved: _reserved } = input;
-    let diagnosis = diagnose(&mesh);
+    let mut diagnosis = diagnose(&mesh);
     let mut object = Measures::of_mesh(&mesh).to_json();
     object.insert("format".into(), format.extension().into());
     object.insert("warnings".into(), json!(warnings));
@@ -67,6 +66,10 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     let Usable { solid, turned, crossings } = match operands::usable(mesh, arguments.using, &control) {
         Ok(usable) => usable,
         Err(error) => {
+            if let Error::SelfCrossing(found) = &error {
+                diagnosis.self_crossings = Some((&**found).into());
+                object.insert("diagnosis".into(), diagnosis.to_json());
+            }
             let mut verdict = refused(&name, error, Some(&diagnosis))?;
             object.extend(into_map(verdict.object));
             verdict.object = object.into();
@@ -107,7 +110,7 @@ fn refused(name: &str, error: Error, diagnosis: Option<&Diagnosis>) -> Result<Ve
     // The places are listed below, so the first line does without them.
     let (reason, diagnosis) = match &error {
         Error::NotClosed(found) => ("the mesh is not a closed surface".into(), Some(&**found)),
-        Error::SelfCrossing(found) => ("the surface crosses itself".into(), Some(&**found)),
+        Error::SelfCrossing(_) => ("the surface crosses itself".into(), diagnosis),
         other => (fault::one_line(&other.to_string()), diagnosis),
     };
     let mut text = format!("{name}: {answer}: {reason}\n");

@@ -13,7 +13,6 @@ use super::output::{self, Product, Target};
 use super::report::{self, Measures};
 use super::requests;
 use super::session::Session;
-use super::stand_in::boolean::Certified as _; // replaced when boolean lands
 
 /// Runs a boolean of the inputs.
 pub(crate) fn run(

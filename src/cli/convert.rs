@@ -14,7 +14,6 @@ use super::output::{self, Product, Target};
 use super::report::{self, Measures};
 use super::requests::{self, Request};
 use super::session::Session;
-use super::stand_in::io::FormatNames as _; // replaced when io lands
 
 /// Converts one input.
 pub(crate) fn run(

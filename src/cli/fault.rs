@@ -5,8 +5,6 @@ use std::io;
 use serde_json::{Map, Value, json};
 use trisect::{Error, Failure};
 
-use super::stand_in::mesh::DiagnosisJson as _; // replaced when mesh lands
-
 /// The version of the JSON objects' layout. It rises when a key changes its meaning or goes; new keys may come
 /// without.
 pub(crate) const SCHEMA: u32 = 1;
@@ -106,8 +104,11 @@ impl Fault {
                     object.insert("format".into(), format.to_string().to_lowercase().into());
                     object.insert("place".into(), place.as_str().into());
                 }
-                Error::NotClosed(diagnosis) | Error::SelfCrossing(diagnosis) => {
+                Error::NotClosed(diagnosis) => {
                     object.insert("diagnosis".into(), diagnosis.to_json());
+                }
+                Error::SelfCrossing(crossings) => {
+                    object.insert("self_crossings".into(), crossings.to_json());
                 }
                 _ => {}
             }

@@ -12,7 +12,6 @@ use super::output;
 use super::report::{Measures, counted};
 use super::requests::{self, Request};
 use super::session::Session;
-use super::stand_in::io::FormatNames as _; // replaced when io lands
 
 /// Describes every input, or the formats.
 pub(crate) fn run(arguments: &Info, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
@@ -55,8 +54,7 @@ fn formats(session: &mut Session<'_>) -> Result<Exit, Fault> {
 }
 
 fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String]) -> (String, Value) {
-    let (measures, state) = match super::stand_in::mesh::solid(mesh.clone()) {
-        // replaced when mesh lands: Solid::try_from(mesh.clone())
+    let (measures, state) = match trisect::Solid::try_from(mesh.clone()) {
         Ok(solid) => (Measures::of_solid(&solid), None),
         Err(error) => (Measures::of_mesh(mesh), Some(super::fault::one_line(&error.to_string()))),
     };

@@ -14,7 +14,6 @@ mod report;
 mod requests;
 mod session;
 mod stage;
-mod stand_in; // replaced when io, mesh and boolean land
 mod values;
 
 use std::any::Any;

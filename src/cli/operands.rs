@@ -15,8 +15,7 @@ use super::arguments::Using;
 use super::limits::Limits;
 use super::progress::Console;
 use super::requests::Request;
-use super::stand_in::io; // replaced when io lands
-use super::stand_in::mesh::{MeshOperations as _, SolidMeasures as _}; // replaced when mesh lands
+use trisect::io;
 
 /// A file that was read and moved.
 pub(crate) struct Input {
@@ -104,18 +103,15 @@ pub(crate) struct Crossings {
 /// Makes a mesh an operand, or says why it cannot be one.
 pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usable, Error> {
     let (mesh, turned) = if using.orient { oriented(mesh) } else { (mesh, false) };
-    let solid = super::stand_in::mesh::solid(mesh)?; // replaced when mesh lands: Solid::try_from
-    if solid.volume() < 0.0 {
-        return Err(Error::InsideOut { volume: solid.volume() });
-    }
+    let solid = Solid::try_from(mesh)?;
     let crossings = match using.assume_clean {
         true => None,
         false => {
             let found = solid.self_crossings(control)?;
-            if let Some(refusal) = found.refusal() {
-                return Err(refusal);
+            if !found.is_clean() {
+                return Err(Error::SelfCrossing(Box::new(found.clone())));
             }
-            Some(Crossings { tolerated: found.tolerated(), object: found.to_json() })
+            Some(Crossings { tolerated: found.tolerated, object: found.to_json() })
         }
     };
     Ok(Usable { solid, turned, crossings })

@@ -14,7 +14,7 @@ use super::fault::Fault;
 use super::limits::Limits;
 use super::requests::STANDARD;
 use super::stage::{self, Stage};
-use super::stand_in::io::{self, FormatNames as _}; // replaced when io lands
+use trisect::io;
 
 /// Where one output goes.
 #[derive(Clone, Debug, PartialEq)]

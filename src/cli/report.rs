@@ -4,8 +4,7 @@ use serde_json::{Map, Value, json};
 use trisect::{Mesh, Solid};
 
 use super::operands::Operand;
-use super::stand_in::io::FormatNames as _; // replaced when io lands
-use super::stand_in::mesh::{Bounds, MeshOperations as _, SolidMeasures as _}; // replaced when mesh lands
+use trisect::mesh::Bounds;
 
 /// Measures of a mesh. Those that only a closed surface has are absent for the others.
 #[derive(Clone, Debug)]
@@ -44,7 +43,7 @@ impl Measures {
             manifold: solid.is_manifold(),
             shells: solid.components(),
             genus: solid.genus(),
-            volume: solid.mesh().volume(), // replaced when mesh lands: solid.volume(), computed once
+            volume: solid.volume(),
         };
         Self { closed: Some(closed), ..Self::of_mesh(solid.mesh()) }
     }

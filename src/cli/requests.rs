@@ -8,7 +8,6 @@ use trisect::io::Format;
 use trisect::{Error, Mesh};
 
 use super::fault::Fault;
-use super::stand_in::mesh::MeshOperations as _; // replaced when mesh lands
 
 /// The name that stands for standard input and output.
 pub(crate) const STANDARD: &str = "-";

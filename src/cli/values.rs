@@ -4,8 +4,6 @@ use std::time::Duration;
 
 use trisect::io::Format;
 
-use super::stand_in::io::FormatNames as _; // replaced when io lands
-
 /// `count` finite numbers separated by commas or blanks.
 fn numbers<const COUNT: usize>(text: &str) -> Result<[f64; COUNT], String> {
     let words: Vec<&str> = text.split([',', ' ', '\t', '\n']).filter(|word| !word.is_empty()).collect();

@@ -2,6 +2,10 @@
 
 use std::fmt;
 
+use serde_json::{Value, json};
+
+use super::diagnosis::{Fault, Place};
+
 /// A pair of triangles of one surface that cross.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelfCrossing {
@@ -33,6 +37,32 @@ impl SelfCrossings {
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.count == 0
+    }
+}
+
+impl From<&SelfCrossings> for Fault {
+    fn from(crossings: &SelfCrossings) -> Self {
+        let place = |crossing: &SelfCrossing| Place {
+            triangles: crossing.triangles.to_vec(),
+            vertices: Vec::new(),
+            position: crossing.place,
+        };
+        Self { count: crossings.count, places: crossings.places.iter().map(place).collect() }
+    }
+}
+
+impl SelfCrossings {
+    /// The crossings as a JSON object with stable keys.
+    #[must_use]
+    pub fn to_json(&self) -> Value {
+        let places: Vec<Value> = self
+            .places
+            .iter()
+            .map(|crossing| {
+                json!({ "triangles": crossing.triangles, "place": crossing.place, "depth": crossing.depth })
+            })
+            .collect();
+        json!({ "count": self.count, "tolerated": self.tolerated, "tolerance": self.tolerance, "places": places })
     }
 }
 

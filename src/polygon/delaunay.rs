@@ -18,6 +18,10 @@ impl HasPosition for Vertex {
     }
 }
 
+/// An edge, or a triangle, and how often it counts.
+type CountedEdge = ([u32; 2], i32);
+type CountedTriangle = ([u32; 3], i32);
+
 /// Appends a triangulation of the region to the left of the rings and returns true; or returns false and appends nothing
 /// where the shape does not allow one (coincident projections, crossing edges, a coordinate out of range).
 pub(super) fn triangulate(points: &[[f64; 2]], rings: &[&[u32]], triangles: &mut Vec<[u32; 3]>) -> bool {
@@ -55,7 +59,7 @@ pub(crate) fn by_winding(points: &[[f64; 2]], edges: &[([u32; 2], i32)]) -> Opti
 fn split_at_vertices(
     points: &[[f64; 2]],
     edges: &[([u32; 2], i32)],
-) -> (Vec<([u32; 2], i32)>, Vec<([u32; 3], i32)>) {
+) -> (Vec<CountedEdge>, Vec<CountedTriangle>) {
     let mut vertices: Vec<u32> = edges.iter().flat_map(|(edge, _)| *edge).collect();
     vertices.sort_unstable();
     vertices.dedup();

@@ -54,7 +54,7 @@ impl BoxTree {
         let boxes: Vec<Aabb> = order.iter().map(|&key| unsorted[key as u32 as usize]).collect();
         let items = order.iter().map(|&key| items[key as u32 as usize]).collect();
 
-        let mut nodes: Vec<Aabb> = boxes.chunks(LEAF).map(|chunk| union(chunk)).collect();
+        let mut nodes: Vec<Aabb> = boxes.chunks(LEAF).map(union).collect();
         let mut levels = vec![0];
         while nodes.len() - levels[levels.len() - 1] > 1 {
             let start = levels[levels.len() - 1];

@@ -1,6 +1,5 @@
 //! Helpers shared by the tests: slow and simple judges, and ways to damage meshes.
 
-
 use std::collections::{BTreeMap, HashMap};
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};

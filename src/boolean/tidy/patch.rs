@@ -281,10 +281,10 @@ impl<'a> Patch<'a> {
         // Points that lost the triangle they were known by, but still have others.
         for &index in old {
             for (from, to) in self.border_of(index) {
-                if !self.some_face.contains_key(&from) {
-                    if let Some(face) = self.left_of(from, to) {
-                        self.some_face.insert(from, face);
-                    }
+                if !self.some_face.contains_key(&from)
+                    && let Some(face) = self.left_of(from, to)
+                {
+                    self.some_face.insert(from, face);
                 }
             }
         }

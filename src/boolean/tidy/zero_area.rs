@@ -60,7 +60,7 @@ pub(super) fn flip_chain(patch: &mut Patch<'_>) {
         if !is_flat(patch, index) {
             continue;
         }
-        let flip = longest_side(patch, index, |patch, a, c| {
+        let flip = longest_side(patch, index, |a, c| {
             let beyond = left_of.get(&(a, c))?;
             beyond.iter().copied().find(|&other| !is_flat(patch, other)).or(beyond.first().copied())
         });
@@ -111,7 +111,7 @@ pub(super) fn flip(patch: &mut Patch<'_>, planes: &Planes<'_>, height: f64) {
         if !is_low(patch, index) {
             continue;
         }
-        let Some(flip) = longest_side(patch, index, |patch, a, c| patch.left_of(a, c)) else { continue };
+        let Some(flip) = longest_side(patch, index, |a, c| patch.left_of(a, c)) else { continue };
         let Flip { flat, other, a, b, c, d } = flip;
         if d == b {
             // The same triangle turned over: both enclose nothing.
@@ -130,16 +130,12 @@ pub(super) fn flip(patch: &mut Patch<'_>, planes: &Planes<'_>, height: f64) {
 }
 
 /// The flip of the longest side of a flat triangle with the triangle that `beyond` finds on its other side.
-fn longest_side(
-    patch: &Patch<'_>,
-    flat: u32,
-    beyond: impl Fn(&Patch<'_>, u32, u32) -> Option<u32>,
-) -> Option<Flip> {
+fn longest_side(patch: &Patch<'_>, flat: u32, beyond: impl FnOnce(u32, u32) -> Option<u32>) -> Option<Flip> {
     let corners = patch.faces[flat as usize].corners;
     // Rotate so that b is the middle corner, opposite the longest side.
     let k = middle(corners.map(|point| *patch.position(point)))?;
     let [b, c, a] = [0, 1, 2].map(|i| corners[(k + i) % 3]);
-    let other = beyond(patch, a, c).filter(|&other| other != flat)?;
+    let other = beyond(a, c).filter(|&other| other != flat)?;
     let Face { corners: opposite, .. } = patch.faces[other as usize];
     let d = *opposite.iter().find(|&&point| point != a && point != c)?;
     Some(Flip { flat, other, a, b, c, d })
