@@ -8,25 +8,25 @@ use crate::{Control, Error};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Runner<'a> {
     pub(crate) control: &'a Control,
+    #[cfg(feature = "parallel")]
     parallel: bool,
 }
 
 impl<'a> Runner<'a> {
     /// Loops run on the current rayon pool, if there is one and `parallel` allows it.
     pub(crate) fn new(control: &'a Control, parallel: bool) -> Self {
-        #[cfg(feature = "parallel")]
-        let parallel = parallel && rayon::current_num_threads() > 1;
         #[cfg(not(feature = "parallel"))]
-        let parallel = {
-            let _ = parallel;
-            false
-        };
-        Self { control, parallel }
+        let _ = parallel;
+        Self {
+            control,
+            #[cfg(feature = "parallel")]
+            parallel: parallel && rayon::current_num_threads() > 1,
+        }
     }
 
     /// The same limits on the caller's thread alone.
     pub(crate) fn serial(self) -> Self {
-        Self { parallel: false, ..self }
+        Self::new(self.control, false)
     }
 
     /// Cuts `0..count` into pieces of `grain` and returns what `piece` makes of each, in order. The limits are checked
