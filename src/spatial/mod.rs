@@ -3,9 +3,11 @@
 
 mod box_tree;
 mod frame;
+mod occupancy;
 
-pub(crate) use box_tree::{BoxTree, overlapping_pairs, self_overlapping_pairs};
+pub(crate) use box_tree::{BoxTree, self_overlapping_pairs, visit_pairs};
 pub(crate) use frame::Frame;
+pub(crate) use occupancy::Occupancy;
 
 /// For each point a number that sorts points which are near each other near each other.
 pub(crate) fn morton_codes(points: &[[f64; 3]]) -> Vec<u64> {
