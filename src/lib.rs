@@ -14,6 +14,7 @@ pub mod boolean;
 pub mod control;
 mod error;
 pub mod exact;
+pub mod field;
 pub mod io;
 pub mod mesh;
 pub mod primitives;

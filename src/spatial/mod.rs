@@ -1,1 +1,26 @@
 //! Hierarchies of axis-aligned boxes over triangles, and the queries that walk them.
+//!
+//! [`TriangleTree`] answers nearest-point queries, exact ray crossings and fast winding numbers over the triangles
+//! of a mesh. Boxes are single precision about the model's centre, always rounded outward, so that they only ever
+//! spare work; distances and signs come from the `f64` vertices.
+
+mod build;
+mod closest;
+mod crossing;
+mod fast_winding;
+mod frame;
+mod morton;
+mod triangle;
+mod triangle_tree;
+mod wide;
+
+pub use closest::Closest;
+pub use crossing::{Crossings, Side};
+pub use fast_winding::FastWinding;
+pub use triangle::{Feature, closest_on_segment, closest_on_triangle};
+pub use triangle_tree::TriangleTree;
+
+pub(crate) use build::binary_tree;
+pub(crate) use frame::{Frame, SmallBox};
+pub(crate) use morton::coherent_order;
+pub(crate) use wide::{LANES, WideTree};
