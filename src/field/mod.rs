@@ -3,7 +3,16 @@
 //! Everything here is **positive inside**, zero on the boundary and negative outside, as in Choporov 2017 and 2010.
 
 mod distance;
+mod expression;
+mod formula;
+mod interval;
+mod number;
 mod pseudonormal;
+mod rfunction;
 mod work;
 
 pub use distance::{SignRule, SignedDistance, SignedDistanceAt};
+pub use expression::{Expression, Graph, Leaf, NodeId};
+pub use formula::{Formula, FormulaError};
+pub use interval::Interval;
+pub use rfunction::System;
