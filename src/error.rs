@@ -94,6 +94,13 @@ pub enum Error {
     /// An argument has no meaning: a radius that is not positive, too few segments, an empty list of operands.
     #[error("invalid argument: {0}")]
     InvalidArgument(String),
+    /// A field cannot be evaluated or meshed as asked: not a number, no surface where one is needed, a surface that
+    /// leaves the box.
+    #[error("{0}")]
+    Field(String),
+    /// A formula that cannot be read.
+    #[error("{0}")]
+    Formula(#[from] crate::field::FormulaError),
     /// The caller cancelled the operation.
     #[error("cancelled")]
     Cancelled,
@@ -138,6 +145,8 @@ impl Error {
             | Self::NotFinite { .. }
             | Self::NotClosed(_)
             | Self::InsideOut { .. }
+            | Self::Field(_)
+            | Self::Formula(_)
             | Self::SelfCrossing(_) => Failure::Unusable,
             Self::Operand { source, .. } => source.failure(),
             Self::InvalidArgument(_) => Failure::Usage,

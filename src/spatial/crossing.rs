@@ -42,7 +42,22 @@ impl TriangleTree {
         if !query.is_finite() || self.is_empty() {
             return found;
         }
-        let around = self.frame.around(query);
+        self.visit_right_of(query.to_array(), |corners| {
+            match crossing(corners.map(|corner| corner * self.unit), query * self.unit) {
+                Some(0) => found.on_surface = true,
+                Some(direction) => {
+                    found.count += 1;
+                    found.winding += direction;
+                }
+                None => {}
+            }
+        });
+        found
+    }
+
+    /// Calls `visit` with the corners of every triangle whose box meets the ray from `query` in +x.
+    pub(crate) fn visit_right_of(&self, query: [f64; 3], mut visit: impl FnMut([DVec3; 3])) {
+        let around = self.frame.around(DVec3::from_array(query));
         self.tree.visit(
             |node, lane| {
                 node.high[0][lane] >= around.low[0]
@@ -50,19 +65,8 @@ impl TriangleTree {
                         node.low[axis][lane] <= around.high[axis] && node.high[axis][lane] >= around.low[axis]
                     })
             },
-            |leaf| {
-                let corners = &self.leaves[leaf as usize].corners;
-                match crossing(corners.map(|corner| corner * self.unit), query * self.unit) {
-                    Some(0) => found.on_surface = true,
-                    Some(direction) => {
-                        found.count += 1;
-                        found.winding += direction;
-                    }
-                    None => {}
-                }
-            },
+            |leaf| visit(self.leaves[leaf as usize].corners),
         );
-        found
     }
 
     /// Whether `query` lies exactly on a triangle.

@@ -310,20 +310,24 @@ impl Tape {
         })
     }
 
-    /// Bounds of the values and of the gradient over a box.
+    /// Bounds of the gradient over a box: of the branch given by `choices`, or of all branches that may win there
+    /// if `choices` is empty.
     pub(crate) fn gradient_bounds(
         &self,
         low: [f64; 3],
         high: [f64; 3],
+        choices: &[Choice],
         scratch: &mut Scratch,
-    ) -> (Interval, [Interval; 3]) {
+    ) -> [Interval; 3] {
         let axes = std::array::from_fn(|axis| {
             let mut slope = <[Interval; 3]>::ZERO;
             slope[axis] = Interval::constant(1.0);
             Dual { value: Interval::new(low[axis], high[axis]), slope }
         });
-        let result = self.run(axes, &mut scratch.slope_bounds, |_, comparison| certain(comparison));
-        (result.value, result.slope)
+        let result = self.run(axes, &mut scratch.slope_bounds, |number, comparison| {
+            choices.get(number as usize).copied().unwrap_or_else(|| certain(comparison))
+        });
+        result.slope
     }
 
     /// The tape with the certain branches of `choices` followed and everything only the others need left out: equal

@@ -1,0 +1,108 @@
+//! Faces of cells as polygons, and the lines in which the surface cuts them.
+//!
+//! A cell's boundary is tiled by the smallest faces of the cells on either side; a face's outline is divided at
+//! every corner of another cell. Both cells of a face, and all cells round an edge, therefore see the same points.
+
+use rustc_hash::FxHashSet;
+
+use super::lattice::{Cube, Key, key, moved, unkey};
+
+/// A face that no neighbour divides: its lowest corner, the axis it is flat along, its side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Face {
+    pub(super) corner: [u32; 3],
+    pub(super) axis: usize,
+    pub(super) size: u32,
+}
+
+/// All corners of cells.
+pub(super) struct Corners(FxHashSet<Key>);
+
+impl Corners {
+    pub(super) fn of(cubes: impl Iterator<Item = Cube>) -> Self {
+        Self(cubes.flat_map(Cube::points).map(key).collect())
+    }
+
+    fn contains(&self, point: [u32; 3]) -> bool {
+        self.0.contains(&key(point))
+    }
+
+    /// The undivided faces of a cube, each with whether the cube lies below it along its axis.
+    pub(super) fn faces(&self, cube: Cube) -> Vec<(Face, bool)> {
+        let mut faces = Vec::with_capacity(6);
+        for axis in 0..3 {
+            for upper in [false, true] {
+                let corner = moved(cube.corner, axis, if upper { cube.size } else { 0 });
+                self.divide(Face { corner, axis, size: cube.size }, &mut |face| faces.push((face, upper)));
+            }
+        }
+        faces
+    }
+
+    fn divide(&self, face: Face, push: &mut impl FnMut(Face)) {
+        let (u, v) = face.directions();
+        let half = face.size / 2;
+        // At most as deep as the octree.
+        if face.size > 1 && self.contains(moved(moved(face.corner, u, half), v, half)) {
+            for (du, dv) in [(0, 0), (half, 0), (0, half), (half, half)] {
+                let corner = moved(moved(face.corner, u, du), v, dv);
+                self.divide(Face { corner, size: half, ..face }, push);
+            }
+        } else {
+            push(face);
+        }
+    }
+
+    /// The points of a face's outline, counter-clockwise about its axis.
+    pub(super) fn outline(&self, face: Face) -> Vec<Key> {
+        let (u, v) = face.directions();
+        let far_u = moved(face.corner, u, face.size);
+        let far_v = moved(face.corner, v, face.size);
+        let mut points = Vec::with_capacity(4);
+        let mut side = |start: [u32; 3], axis: usize, reverse: bool| {
+            let mut along = vec![key(start)];
+            self.points_within(start, axis, face.size, &mut along);
+            along.push(key(moved(start, axis, face.size)));
+            if reverse {
+                along.reverse();
+            }
+            along.pop();
+            points.extend(along);
+        };
+        side(face.corner, u, false);
+        side(far_u, v, false);
+        side(far_v, u, true);
+        side(face.corner, v, true);
+        points
+    }
+
+    fn points_within(&self, start: [u32; 3], axis: usize, length: u32, points: &mut Vec<Key>) {
+        let half = length / 2;
+        let middle = moved(start, axis, half);
+        if length > 1 && self.contains(middle) {
+            self.points_within(start, axis, half, points);
+            points.push(key(middle));
+            self.points_within(middle, axis, half, points);
+        }
+    }
+}
+
+impl Face {
+    /// The two axes of the face, such that they and the face's own axis are right-handed.
+    pub(super) fn directions(self) -> (usize, usize) {
+        ((self.axis + 1) % 3, (self.axis + 2) % 3)
+    }
+
+    pub(super) fn centre_doubled(self) -> [u32; 3] {
+        let (u, v) = self.directions();
+        let doubled = self.corner.map(|x| 2 * x);
+        moved(moved(doubled, u, self.size), v, self.size)
+    }
+}
+
+/// The lattice edge between two neighbouring points of an outline: its lower point and its axis.
+pub(super) fn edge_between(a: Key, b: Key) -> (Key, usize) {
+    let (low, high) = (a.min(b), a.max(b));
+    let (p, q) = (unkey(low), unkey(high));
+    (low, (0..3).find(|&axis| p[axis] != q[axis]).unwrap_or(0))
+}
