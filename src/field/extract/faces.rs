@@ -20,7 +20,11 @@ pub(super) struct Corners(FxHashSet<Key>);
 
 impl Corners {
     pub(super) fn of(cubes: impl Iterator<Item = Cube>) -> Self {
-        Self(cubes.flat_map(Cube::points).map(key).collect())
+        Self::of_points(cubes.flat_map(Cube::points))
+    }
+
+    pub(super) fn of_points(points: impl Iterator<Item = [u32; 3]>) -> Self {
+        Self(points.map(key).collect())
     }
 
     fn contains(&self, point: [u32; 3]) -> bool {

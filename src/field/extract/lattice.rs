@@ -58,6 +58,12 @@ impl Lattice {
         Self { origin, step: side / f64::from(count), count }
     }
 
+    /// The lattice with its lowest layer at z = `height`.
+    pub(super) fn flattened(mut self, height: f64) -> Self {
+        self.origin.z = height;
+        self
+    }
+
     /// Side of a finest cell.
     pub(super) fn step(&self) -> f64 {
         self.step

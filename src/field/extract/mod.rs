@@ -20,6 +20,7 @@
 //! What is *not* promised: parts of the solid thinner than [`Extraction::resolution`] may be missed or joined, and the
 //! tolerance is checked at sample points (the largest deviation found is in the report), not proven.
 
+mod contour;
 mod faces;
 mod lattice;
 mod loops;
@@ -34,7 +35,11 @@ use glam::DVec3;
 
 use super::Expression;
 use crate::{Control, Error, Mesh};
+pub use contour::ContourExtraction;
 use lattice::{DEEPEST, Lattice};
+
+/// How often cells are divided again after their neighbours are known.
+const ROUNDS: usize = 6;
 
 /// Settings of an extraction.
 #[derive(Clone, Debug)]
@@ -145,21 +150,33 @@ impl Extraction {
         let resolution = positive(self.resolution.unwrap_or(extent / 64.0), "resolution")?;
         let field = if self.clip { self.clipped(field) } else { field.clone() }.sign_form();
         let settings = octree::Settings { lattice, tolerance, resolution, control: &self.control };
-        let leaves = octree::subdivide(field.tape(), &settings)?;
-        if let Some(leaf) = leaves.iter().find(|leaf| leaf.inside && at_edge(&lattice, leaf.cube)) {
-            let place = leaf.cube.points().into_iter().find(|&point| lattice.on_boundary(point));
-            return Err(tables::unbounded(lattice.place(place.unwrap_or(leaf.cube.corner)).to_array()));
+        let mut leaves = octree::subdivide(field.tape(), &settings)?;
+        for round in 0.. {
+            if let Some(leaf) = leaves.iter().find(|leaf| leaf.inside && at_edge(&lattice, leaf.cube)) {
+                let place = leaf.cube.points().into_iter().find(|&point| lattice.on_boundary(point));
+                return Err(tables::unbounded(lattice.place(place.unwrap_or(leaf.cube.corner)).to_array()));
+            }
+            let tables = tables::Tables::new(&leaves, lattice, tolerance, &self.control)?;
+            let (mesh, deviations) = surface::assemble(&tables, &self.control)?;
+            let (cells, divided) = (tables.cells.len(), tables.divided.clone());
+            let finest = tables.cells.iter().map(|leaf| leaf.cube.size).min().unwrap_or(lattice.count);
+            // Finer neighbours may have shown what a cell's own corners did not.
+            let mut coarse =
+                divided.iter().zip(&deviations).map(|(&divided, &error)| divided || error > tolerance);
+            let wanted: Vec<bool> =
+                leaves.iter().map(|leaf| leaf.tape.is_some() && coarse.next().unwrap_or(false)).collect();
+            if round < ROUNDS && octree::refine(&mut leaves, |leaf| wanted[leaf], &settings)? {
+                continue;
+            }
+            return Ok(Extracted {
+                mesh,
+                cells,
+                divided_cells: divided.iter().filter(|&&divided| divided).count(),
+                smallest_cell: f64::from(finest) * lattice.step(),
+                deviation: deviations.iter().copied().fold(0.0, f64::max),
+            });
         }
-        let tables = tables::Tables::new(&leaves, lattice, tolerance, &self.control)?;
-        let (mesh, deviation) = surface::assemble(&tables, &self.control)?;
-        let finest = tables.cells.iter().map(|leaf| leaf.cube.size).min().unwrap_or(lattice.count);
-        Ok(Extracted {
-            mesh,
-            cells: tables.cells.len(),
-            divided_cells: tables.divided.iter().filter(|&&divided| divided).count(),
-            smallest_cell: f64::from(finest) * lattice.step(),
-            deviation,
-        })
+        Err(Error::Field("the extraction did not settle".into()))
     }
 
     /// The field, cut off at the box.

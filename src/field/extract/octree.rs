@@ -34,7 +34,8 @@ pub(super) struct Settings<'a> {
     pub(super) control: &'a Control,
 }
 
-enum Verdict {
+/// What becomes of a box.
+pub(super) enum Judgement {
     Empty { inside: bool },
     Keep(Arc<Tape>),
     Divide(Arc<Tape>),
@@ -43,29 +44,61 @@ enum Verdict {
 /// The leaves of the octree, coarse ones first, in an order that depends on the field alone.
 pub(super) fn subdivide(tape: &Arc<Tape>, settings: &Settings<'_>) -> Result<Vec<Leaf>, Error> {
     let root = Cube { corner: [0; 3], size: settings.lattice.count };
-    let mut level = vec![(root, Arc::clone(tape))];
     let mut leaves = Vec::new();
+    divide(vec![(root, Arc::clone(tape))], &mut leaves, settings)?;
+    Ok(leaves)
+}
+
+/// Divides the leaves that `wanted` picks, unless they are as small as can be. Tells whether there was one.
+pub(super) fn refine(
+    leaves: &mut Vec<Leaf>,
+    wanted: impl Fn(usize) -> bool,
+    settings: &Settings<'_>,
+) -> Result<bool, Error> {
+    let mut level = Vec::new();
+    let mut kept = Vec::with_capacity(leaves.len());
+    for (index, leaf) in leaves.drain(..).enumerate() {
+        match &leaf.tape {
+            Some(tape) if leaf.cube.size > 1 && wanted(index) => {
+                level.extend(leaf.cube.children().map(|child| (child, Arc::clone(tape))));
+            }
+            _ => kept.push(leaf),
+        }
+    }
+    *leaves = kept;
+    let found = !level.is_empty();
+    divide(level, leaves, settings)?;
+    Ok(found)
+}
+
+fn divide(
+    mut level: Vec<(Cube, Arc<Tape>)>,
+    leaves: &mut Vec<Leaf>,
+    settings: &Settings<'_>,
+) -> Result<(), Error> {
     while !level.is_empty() {
         let stage = format!("subdivide {}", settings.lattice.count / level[0].0.size);
-        let verdicts = work::pieces(level.len(), 32, settings.control, &stage, |range| {
+        let judged = work::pieces(level.len(), 32, settings.control, &stage, |range| {
             let mut scratch = Scratch::default();
             range
                 .map(|k| judge(level[k].0, &level[k].1, settings, &mut scratch))
                 .collect::<Result<Vec<_>, _>>()
         })?;
         let mut next = Vec::new();
-        for ((cube, _), verdict) in level.iter().zip(verdicts.into_iter().flatten()) {
-            match verdict {
-                Verdict::Empty { inside } => leaves.push(Leaf { cube: *cube, tape: None, inside }),
-                Verdict::Keep(tape) => leaves.push(Leaf { cube: *cube, tape: Some(tape), inside: false }),
-                Verdict::Divide(tape) => next.extend(cube.children().map(|child| (child, Arc::clone(&tape)))),
+        for ((cube, _), judgement) in level.iter().zip(judged.into_iter().flatten()) {
+            match judgement {
+                Judgement::Empty { inside } => leaves.push(Leaf { cube: *cube, tape: None, inside }),
+                Judgement::Keep(tape) => leaves.push(Leaf { cube: *cube, tape: Some(tape), inside: false }),
+                Judgement::Divide(tape) => {
+                    next.extend(cube.children().map(|child| (child, Arc::clone(&tape))))
+                }
             }
         }
         let held = (next.len() * size_of::<(Cube, Arc<Tape>)>() + leaves.len() * size_of::<Leaf>()) as u64;
         let _account = settings.control.reserve(held)?;
         level = next;
     }
-    Ok(leaves)
+    Ok(())
 }
 
 /// The value at a point; an error where the field has none.
@@ -81,31 +114,65 @@ pub(super) fn value_at(tape: &Tape, place: DVec3, scratch: &mut Scratch) -> Resu
     Ok(value)
 }
 
-fn judge(
-    cube: Cube,
+/// What is known of a box that is not certainly empty.
+pub(super) struct Probed {
+    /// The tape with the branches that win all over the box.
+    pub(super) tape: Arc<Tape>,
+    pub(super) bounds: Interval,
+    /// The field in the middle, and the length of its gradient there.
+    pub(super) middle: f64,
+    pub(super) slope: f64,
+    /// Whether the surface in the box is certainly in one piece.
+    pub(super) certain: bool,
+}
+
+/// Looks at a whole box at once: bounds of the field, by intervals and by the mean value theorem.
+pub(super) fn probe(
     tape: &Arc<Tape>,
-    settings: &Settings<'_>,
+    low: DVec3,
+    high: DVec3,
     scratch: &mut Scratch,
-) -> Result<Verdict, Error> {
-    let lattice = &settings.lattice;
-    let (low, high) = lattice.corners(cube);
+) -> Result<Result<Probed, Judgement>, Error> {
     let bounds = tape.bounds(low.to_array(), high.to_array(), scratch);
-    if let Some(verdict) = emptiness(bounds) {
-        return Ok(verdict);
+    if let Some(empty) = emptiness(bounds) {
+        return Ok(Err(empty));
     }
     let tape = match tape.simplified(&scratch.choices) {
         Some(simpler) => Arc::new(simpler),
         None => Arc::clone(tape),
     };
-    let slopes = slopes(&tape, low, high, scratch);
+    let mut slopes = slopes(&tape, low, high, scratch);
+    for axis in (0..3).filter(|&axis| low[axis] == high[axis]) {
+        for slope in &mut slopes {
+            slope[axis] = Interval::new(0.0, 0.0);
+        }
+    }
     let centre = (low + high) * 0.5;
     let middle = value_at(&tape, centre, scratch)?;
     let bounds = mean_value_bounds(middle, &slopes, high - low).meet(bounds);
-    if let Some(verdict) = emptiness(bounds) {
-        return Ok(verdict);
+    if let Some(empty) = emptiness(bounds) {
+        return Ok(Err(empty));
     }
+    let (_, gradient) = tape.gradient(centre.to_array(), scratch);
+    let certain = tape.branchings() <= MOST_BRANCHINGS && is_graph(&slopes);
+    Ok(Ok(Probed { tape, bounds, middle, slope: gradient.length(), certain }))
+}
+
+fn judge(
+    cube: Cube,
+    tape: &Arc<Tape>,
+    settings: &Settings<'_>,
+    scratch: &mut Scratch,
+) -> Result<Judgement, Error> {
+    let lattice = &settings.lattice;
+    let (low, high) = lattice.corners(cube);
+    let probed = match probe(tape, low, high, scratch)? {
+        Ok(probed) => probed,
+        Err(empty) => return Ok(empty),
+    };
+    let tape = probed.tape;
     if cube.size > lattice.count / 8 {
-        return Ok(Verdict::Divide(tape));
+        return Ok(Judgement::Divide(tape));
     }
     let points = cube.points().map(|point| lattice.place(point));
     let mut values = [0.0; 8];
@@ -114,30 +181,29 @@ fn judge(
     }
     let finest = cube.size == 1;
     let size = f64::from(cube.size) * lattice.step();
-    let certain = tape.branchings() <= MOST_BRANCHINGS && is_graph(&slopes);
+    let certain = probed.certain;
     let positive = values[0] > 0.0;
     let keep = if finest {
         true
     } else if values.iter().all(|&value| (value > 0.0) == positive) {
-        let outside = if positive { -bounds.low } else { bounds.high };
-        let (_, gradient) = tape.gradient(centre.to_array(), scratch);
-        let intrusion = outside / gradient.length();
+        let outside = if positive { -probed.bounds.low } else { probed.bounds.high };
+        let intrusion = outside / probed.slope;
         let trusted = size <= settings.resolution * if certain { 0.25 } else { 1.0 };
-        (certain && intrusion <= 0.5 * settings.tolerance) || (trusted && (middle > 0.0) == positive)
+        (certain && intrusion <= 0.5 * settings.tolerance) || (trusted && (probed.middle > 0.0) == positive)
     } else {
         let cell = Cell { tape: &tape, low, high, tolerance: settings.tolerance };
         let provable = certain || size <= settings.resolution;
         let crease_may_hide = size > settings.resolution && tape.branchings() > 0;
         provable && is_simple(&cell, &points, &values, crease_may_hide, scratch)
     };
-    Ok(if keep { Verdict::Keep(tape) } else { Verdict::Divide(tape) })
+    Ok(if keep { Judgement::Keep(tape) } else { Judgement::Divide(tape) })
 }
 
-fn emptiness(bounds: Interval) -> Option<Verdict> {
+fn emptiness(bounds: Interval) -> Option<Judgement> {
     if bounds.low > 0.0 {
-        Some(Verdict::Empty { inside: true })
+        Some(Judgement::Empty { inside: true })
     } else if bounds.high <= 0.0 {
-        Some(Verdict::Empty { inside: false })
+        Some(Judgement::Empty { inside: false })
     } else {
         None
     }

@@ -27,15 +27,15 @@ struct Piece {
     deviation: f64,
 }
 
-/// The surface, and the largest deviation found at the middles of its triangles.
-pub(super) fn assemble(tables: &Tables<'_>, control: &Control) -> Result<(Mesh, f64), Error> {
+/// The surface, and for every cell the largest deviation found at the middles of its triangles.
+pub(super) fn assemble(tables: &Tables<'_>, control: &Control) -> Result<(Mesh, Vec<f64>), Error> {
     let pieces = work::pieces(tables.cells.len(), 32, control, "surface", |range| {
         let mut scratch = Scratch::default();
         range.map(|cell| piece(tables, cell, &mut scratch)).collect::<Result<Vec<Piece>, Error>>()
     })?;
     let mut mesh = Mesh::default();
     mesh.positions = tables.places.iter().map(DVec3::to_array).collect();
-    let mut worst = 0f64;
+    let mut deviations = Vec::with_capacity(tables.cells.len());
     for piece in pieces.into_iter().flatten() {
         let first = u32::try_from(mesh.positions.len()).ok().filter(|&first| first < WITHIN);
         let Some(first) = first else {
@@ -44,10 +44,10 @@ pub(super) fn assemble(tables: &Tables<'_>, control: &Control) -> Result<(Mesh, 
         let final_number = |vertex: u32| if vertex < WITHIN { vertex } else { first + (vertex - WITHIN) };
         mesh.positions.extend(piece.places.iter().map(DVec3::to_array));
         mesh.triangles.extend(piece.triangles.iter().map(|triangle| triangle.map(final_number)));
-        worst = worst.max(piece.deviation);
+        deviations.push(piece.deviation);
     }
     drop_unused(&mut mesh);
-    Ok((mesh, worst))
+    Ok((mesh, deviations))
 }
 
 fn piece(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<Piece, Error> {
