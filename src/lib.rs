@@ -17,6 +17,7 @@ pub mod exact;
 pub mod field;
 pub mod io;
 pub mod mesh;
+pub mod model;
 pub mod primitives;
 #[cfg(feature = "render")]
 pub mod render;

@@ -2,6 +2,7 @@
 //!
 //! Everything here is **positive inside**, zero on the boundary and negative outside, as in Choporov 2017 and 2010.
 
+mod bounds;
 mod contour_distance;
 mod distance;
 mod expression;
@@ -22,6 +23,7 @@ pub use distance::{SignRule, SignedDistance, SignedDistanceAt};
 pub use expression::{Expression, Graph, Leaf, NodeId};
 pub use extract::{ContourExtraction, Extracted, Extraction};
 pub use extrude::extrude;
+pub(crate) use formula::named_system;
 pub use formula::{Formula, FormulaError};
 pub use grid::{Grid, GridFormat};
 pub use interval::Interval;

@@ -8,7 +8,7 @@ mod build;
 mod closest;
 mod crossing;
 mod fast_winding;
-mod frame;
+mod local_frame;
 mod morton;
 mod triangle;
 mod triangle_tree;
@@ -21,6 +21,6 @@ pub use triangle::{Feature, closest_on_segment, closest_on_triangle};
 pub use triangle_tree::TriangleTree;
 
 pub(crate) use build::binary_tree;
-pub(crate) use frame::{Frame, SmallBox};
+pub(crate) use local_frame::{LocalFrame, SmallBox};
 pub(crate) use morton::coherent_order;
 pub(crate) use wide::{LANES, WideTree};

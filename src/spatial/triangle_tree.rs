@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::triangle::is_needle;
-use super::{Frame, SmallBox, WideTree, binary_tree};
+use super::{LocalFrame, SmallBox, WideTree, binary_tree};
 use crate::Mesh;
 
 /// A hierarchy over the triangles of a mesh, for nearest points, exact ray crossings and winding numbers.
@@ -13,7 +13,7 @@ use crate::Mesh;
 #[derive(Clone, Debug)]
 pub struct TriangleTree {
     pub(super) tree: WideTree,
-    pub(super) frame: Frame,
+    pub(super) frame: LocalFrame,
     /// The triangles in leaf order.
     pub(super) leaves: Vec<Leaf>,
     /// For every triangle of the mesh its position in `leaves`.
@@ -55,8 +55,11 @@ impl TriangleTree {
                 triangles.push(Leaf { corners, triangle: index as u32, needle: is_needle(&corners) });
             }
         }
-        let frame =
-            if triangles.is_empty() { Frame::of(DVec3::ZERO, DVec3::ZERO) } else { Frame::of(low, high) };
+        let frame = if triangles.is_empty() {
+            LocalFrame::of(DVec3::ZERO, DVec3::ZERO)
+        } else {
+            LocalFrame::of(low, high)
+        };
         let boxes: Vec<SmallBox> = triangles
             .iter()
             .map(|leaf| {

@@ -18,6 +18,7 @@ mod token;
 use std::fmt;
 
 use super::{Expression, Graph, NodeId, System};
+pub(crate) use lower::named_system;
 use syntax::Program;
 
 /// A parsed formula.

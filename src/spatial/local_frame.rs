@@ -5,12 +5,12 @@ use glam::DVec3;
 /// Maps `f64` coordinates to the hierarchy's single-precision ones. Scaling by a power of two is exact, and
 /// recentring keeps the boxes tight for small models far from the origin.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frame {
+pub(crate) struct LocalFrame {
     centre: DVec3,
     scale: f64,
 }
 
-impl Frame {
+impl LocalFrame {
     /// The frame in which the box `low..high` has a half-extent in `0.5..=1`.
     pub(crate) fn of(low: DVec3, high: DVec3) -> Self {
         // Halved first: the sum and the difference of two finite numbers may overflow.
