@@ -12,7 +12,7 @@ struct Fields {
     /// Closed contours, each of Bezier curves end to end, each curve a list of control points.
     bezier: Option<Vec<Vec<Vec<[f64; 2]>>>>,
     /// Nodes on each contour to begin with.
-    nodes: Option<usize>,
+    initial_nodes: Option<usize>,
     /// The largest deviation of an edge from the curve.
     tolerance: Option<f64>,
 }
@@ -26,9 +26,9 @@ pub(super) fn parse(fields: serde_json::Value) -> Result<Contours, String> {
             if !(tolerance > 0.0 && tolerance.is_finite()) {
                 return Err("the tolerance must be positive".to_owned());
             }
-            let nodes = fields.nodes.unwrap_or(16);
+            let nodes = fields.initial_nodes.unwrap_or(16);
             if !(2..=1_000_000).contains(&nodes) {
-                return Err("`nodes` must be from 2 to a million".to_owned());
+                return Err("`initial_nodes` must be from 2 to a million".to_owned());
             }
             contours.iter().map(|curves| polygon(curves, nodes, tolerance)).collect::<Result<_, _>>()?
         }
