@@ -134,9 +134,9 @@ impl SignedDistance {
     /// Where `query` is, by the sign rule.
     #[must_use]
     pub fn side(&self, query: [f64; 3]) -> Side {
-        self.tree.closest(query).map_or(Side::Outside, |closest| {
-            self.side_from(query, &closest, closest.squared_distance.sqrt())
-        })
+        self.tree
+            .closest(query)
+            .map_or(Side::Outside, |closest| self.side_from(query, &closest, closest.squared_distance.sqrt()))
     }
 
     /// Signed distances at many points, on several threads. Neighbouring points share work; the results are those of

@@ -78,7 +78,7 @@ impl Evaluation {
         }
     }
 
-    /// Meshes within `tolerance`, whatever the model says for the whole (a node's own tolerance still counts).
+    /// Meshes within `tolerance`, whatever the model says.
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = Some(tolerance);
@@ -213,8 +213,11 @@ impl<'a> State<'a> {
 
     /// The tolerance that meshing a node of the given size keeps.
     fn tolerance(&self, node: usize, size: f64) -> f64 {
-        let given = self.model.nodes[node].tolerance;
-        given.or(self.settings.tolerance).or(self.model.defaults.tolerance).unwrap_or(size * 1e-3)
+        self.given_tolerance(node).unwrap_or(size * 1e-3)
+    }
+
+    fn given_tolerance(&self, node: usize) -> Option<f64> {
+        self.settings.tolerance.or(self.model.nodes[node].tolerance).or(self.model.defaults.tolerance)
     }
 
     /// The node as a mesh: by the exact booleans where it is an operation.

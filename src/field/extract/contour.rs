@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 use super::faces::{Corners, Face, edge_between};
 use super::lattice::{DEEPEST, Key, Lattice, directed, key, moved, undirected, unkey};
@@ -260,7 +261,7 @@ impl<'a> Lines<'a> {
         for &(square, tape) in &self.squares {
             let outline = self.corners.outline(square.face);
             let next = |k: usize| outline[(k + 1) % outline.len()];
-            let inside: Vec<bool> = outline.iter().map(|&point| self.is_inside(point)).collect();
+            let inside: SmallVec<[bool; 8]> = outline.iter().map(|&point| self.is_inside(point)).collect();
             let cuts = stretches(&inside);
             let edge = |k: usize| {
                 let (point, axis) = edge_between(outline[k], next(k));

@@ -4,6 +4,7 @@
 //! every corner of another cell. Both cells of a face, and all cells round an edge, therefore see the same points.
 
 use rustc_hash::FxHashSet;
+use smallvec::SmallVec;
 
 use super::lattice::{Cube, Key, key, moved, unkey};
 
@@ -32,8 +33,8 @@ impl Corners {
     }
 
     /// The undivided faces of a cube, each with whether the cube lies below it along its axis.
-    pub(super) fn faces(&self, cube: Cube) -> Vec<(Face, bool)> {
-        let mut faces = Vec::with_capacity(6);
+    pub(super) fn faces(&self, cube: Cube) -> SmallVec<[(Face, bool); 8]> {
+        let mut faces = SmallVec::new();
         for axis in 0..3 {
             for upper in [false, true] {
                 let corner = moved(cube.corner, axis, if upper { cube.size } else { 0 });
@@ -58,38 +59,38 @@ impl Corners {
     }
 
     /// The points of a face's outline, counter-clockwise about its axis.
-    pub(super) fn outline(&self, face: Face) -> Vec<Key> {
+    pub(super) fn outline(&self, face: Face) -> Outline {
         let (u, v) = face.directions();
         let far_u = moved(face.corner, u, face.size);
         let far_v = moved(face.corner, v, face.size);
-        let mut points = Vec::with_capacity(4);
-        let mut side = |start: [u32; 3], axis: usize, reverse: bool| {
-            let mut along = vec![key(start)];
-            self.points_within(start, axis, face.size, &mut along);
-            along.push(key(moved(start, axis, face.size)));
-            if reverse {
-                along.reverse();
-            }
-            along.pop();
-            points.extend(along);
-        };
-        side(face.corner, u, false);
-        side(far_u, v, false);
-        side(far_v, u, true);
-        side(face.corner, v, true);
+        let far = moved(far_u, v, face.size);
+        let mut points = Outline::new();
+        points.push(key(face.corner));
+        self.points_within(face.corner, u, face.size, false, &mut points);
+        points.push(key(far_u));
+        self.points_within(far_u, v, face.size, false, &mut points);
+        points.push(key(far));
+        self.points_within(far_v, u, face.size, true, &mut points);
+        points.push(key(far_v));
+        self.points_within(face.corner, v, face.size, true, &mut points);
         points
     }
 
-    fn points_within(&self, start: [u32; 3], axis: usize, length: u32, points: &mut Vec<Key>) {
+    /// Corners of cells between the ends of an edge, in order or the other way round.
+    fn points_within(&self, start: [u32; 3], axis: usize, length: u32, reverse: bool, points: &mut Outline) {
         let half = length / 2;
         let middle = moved(start, axis, half);
         if length > 1 && self.contains(middle) {
-            self.points_within(start, axis, half, points);
+            let (first, second) = if reverse { (middle, start) } else { (start, middle) };
+            self.points_within(first, axis, half, reverse, points);
             points.push(key(middle));
-            self.points_within(middle, axis, half, points);
+            self.points_within(second, axis, half, reverse, points);
         }
     }
 }
+
+/// Points round a face.
+pub(super) type Outline = SmallVec<[Key; 8]>;
 
 impl Face {
     /// The two axes of the face, such that they and the face's own axis are right-handed.

@@ -1,11 +1,18 @@
 //! Lines in which the surface cuts faces, chained to closed loops round a cell.
 
+use smallvec::SmallVec;
+
 /// Where the inside part of an outline begins and ends: `(enter, exit)` are positions `k` of the outline's edges from
 /// point `k` to point `k + 1`, for every stretch of inside points. An outline all inside or all outside has none.
-pub(super) fn stretches(inside: &[bool]) -> Vec<(usize, usize)> {
+pub(super) fn stretches(inside: &[bool]) -> SmallVec<[(usize, usize); 2]> {
     let count = inside.len();
+    if inside.iter().all(|&point| point == inside[0]) {
+        return SmallVec::new();
+    }
     let changes = |from: bool| {
-        (0..count).filter(move |&k| inside[k] == from && inside[(k + 1) % count] != from).collect::<Vec<_>>()
+        (0..count)
+            .filter(move |&k| inside[k] == from && inside[(k + 1) % count] != from)
+            .collect::<SmallVec<[usize; 4]>>()
     };
     let (enters, mut exits) = (changes(false), changes(true));
     // The exit that follows an enter round the outline.
@@ -56,9 +63,9 @@ mod tests {
     #[test]
     fn stretches_pair_each_enter_with_the_next_exit() {
         assert!(stretches(&[true; 4]).is_empty());
-        assert_eq!(stretches(&[false, true, true, false]), [(0, 2)]);
-        assert_eq!(stretches(&[true, false, false, true]), [(2, 0)]);
-        assert_eq!(stretches(&[true, false, true, false]), [(1, 2), (3, 0)]);
+        assert_eq!(stretches(&[false, true, true, false])[..], [(0, 2)]);
+        assert_eq!(stretches(&[true, false, false, true])[..], [(2, 0)]);
+        assert_eq!(stretches(&[true, false, true, false])[..], [(1, 2), (3, 0)]);
     }
 
     #[test]

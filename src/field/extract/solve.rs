@@ -189,8 +189,7 @@ pub(super) fn distinct(samples: &[Sample]) -> SmallVec<[&Branch; 4]> {
 }
 
 /// The kink of the line in which the surface cuts a face, between two of its points: where two branches meet, or
-/// where the tangents of one branch do. Nothing if the line is straight to within a small part of `tolerance`, or
-/// has no kink in the rectangle `low..high` (flat along `axis`).
+/// where the tangents of one branch do. Nothing if the line is as good as straight, or has no kink in the rectangle `low..high` (flat along `axis`).
 pub(super) fn kink(
     tape: &Tape,
     ends: [DVec3; 2],
@@ -224,7 +223,9 @@ pub(super) fn kink(
     let off = (at - ends[0]) - along * (at - ends[0]).dot(along);
     let error = deviation(tape, at, scratch);
     let better = crease || error < deviation(tape, middle, scratch);
-    (off.length() > 0.02 * tolerance && error <= 0.5 * tolerance && better).then_some(at)
+    // A true crease is kept however flat, so that plane-faced solids come out exact.
+    let least = if crease { 1e-7 * reach } else { 0.02 * tolerance };
+    (off.length() > least && error <= 0.5 * tolerance && better).then_some(at)
 }
 
 #[cfg(test)]

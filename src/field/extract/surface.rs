@@ -1,6 +1,7 @@
 //! Patches of all cells put together.
 
 use glam::DVec3;
+use smallvec::SmallVec;
 
 use super::faces::Face;
 use super::lattice::{Key, unkey};
@@ -99,7 +100,7 @@ fn lines(tables: &Tables<'_>, face: Face, outline: &[Key], segments: &mut Vec<Se
     match tables.line(face) {
         None => {}
         Some(FaceLine::Plain { kink }) => {
-            let inside: Vec<bool> = outline.iter().map(|&point| tables.is_inside(point)).collect();
+            let inside: SmallVec<[bool; 8]> = outline.iter().map(|&point| tables.is_inside(point)).collect();
             for (enter, exit) in stretches(&inside) {
                 let from = tables.on_edge(outline[enter], next(enter));
                 let to = tables.on_edge(outline[exit], next(exit));

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
-use super::faces::{Corners, Face, edge_between};
+use super::faces::{Corners, Face, Outline, edge_between};
 use super::lattice::{Key, Lattice, directed, moved, undirected, unkey};
 use super::loops::{Segment, chain, stretches};
 use super::octree::{Leaf, value_at};
@@ -106,16 +107,15 @@ impl<'a> Tables<'a> {
     }
 
     /// The faces of a cell with their outlines, counter-clockwise seen from outside the cell.
-    pub(super) fn boundary(&self, cell: usize) -> Vec<(Face, Vec<Key>)> {
+    pub(super) fn boundary(&self, cell: usize) -> impl Iterator<Item = (Face, Outline)> {
         let faces = self.corners.faces(self.cells[cell].cube);
-        let outlines = faces.into_iter().map(|(face, upper)| {
+        faces.into_iter().map(|(face, upper)| {
             let mut points = self.corners.outline(face);
             if !upper {
                 points.reverse();
             }
             (face, points)
-        });
-        outlines.collect()
+        })
     }
 
     /// Evaluates the field at every point of the cells' boundaries.
@@ -185,7 +185,7 @@ impl<'a> Tables<'a> {
             }) as u32
         };
         for (face, outline) in self.boundary(cell) {
-            let inside: Vec<bool> = outline.iter().map(|&point| self.is_inside(point)).collect();
+            let inside: SmallVec<[bool; 8]> = outline.iter().map(|&point| self.is_inside(point)).collect();
             let stretches = stretches(&inside);
             if stretches.is_empty() {
                 continue;
@@ -280,7 +280,7 @@ impl<'a> Tables<'a> {
                 .collect();
             return Ok(Line::Fanned(value > 0.0, spokes));
         }
-        let inside: Vec<bool> = outline.iter().map(|&point| self.is_inside(point)).collect();
+        let inside: SmallVec<[bool; 8]> = outline.iter().map(|&point| self.is_inside(point)).collect();
         let Some(&(enter, exit)) = stretches(&inside).first() else { return Ok(Line::Plain(None)) };
         let end = |k: usize| self.places[self.on_edge(outline[k], outline[(k + 1) % outline.len()]) as usize];
         let ends = [end(enter), end(exit)];
