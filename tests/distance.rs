@@ -1,4 +1,5 @@
 //! Signed distances: against exact brute force, four sign rules against each other, hard points.
+#![allow(clippy::print_stdout, reason = "figures for the documentation, shown with --nocapture")]
 
 #[path = "common/shapes.rs"]
 mod shapes;

@@ -1,4 +1,5 @@
 //! Surfaces extracted from fields: closed, manifold, sharp, within the tolerance.
+#![allow(clippy::print_stdout, reason = "figures for the documentation, shown with --nocapture")]
 
 #[path = "common/surface.rs"]
 mod surface;

@@ -2,6 +2,11 @@
 //!
 //! Everything here is **positive inside**, zero on the boundary and negative outside, as in Choporov 2017 and 2010.
 
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "a NaN fails every comparison, and is meant to be refused"
+)]
+
 mod bounds;
 mod contour_distance;
 mod distance;

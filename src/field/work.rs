@@ -33,20 +33,3 @@ pub(crate) fn pieces<T: Send>(
         (0..total).map(piece).collect()
     }
 }
-
-/// `f` of every number of `0..count`, in order, computed in pieces of `size`.
-pub(crate) fn each<T: Send>(
-    count: usize,
-    size: usize,
-    control: &Control,
-    stage: &str,
-    f: impl Fn(usize) -> Result<T, Error> + Sync + Send,
-) -> Result<Vec<T>, Error> {
-    let pieces =
-        pieces(count, size, control, stage, |range| range.map(&f).collect::<Result<Vec<T>, Error>>())?;
-    let mut all = Vec::with_capacity(count);
-    for piece in pieces {
-        all.extend(piece);
-    }
-    Ok(all)
-}

@@ -16,6 +16,11 @@
 //! # Ok::<(), trisect::Error>(())
 //! ```
 
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "a NaN fails every comparison, and is meant to be refused"
+)]
+
 mod contour;
 mod evaluate;
 mod load;

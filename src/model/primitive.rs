@@ -82,7 +82,7 @@ pub(super) fn parse(kind: &str, fields: serde_json::Value) -> Option<Result<Prim
         serde_json::from_value(fields).map_err(|error| error.to_string())
     }
     let parsed = match kind {
-        "box" => read(fields).and_then(from_box),
+        "box" => read(fields).and_then(|fields| from_box(&fields)),
         "sphere" => read(fields).map(|f: SphereFields| Primitive::Sphere {
             center: DVec3::from_array(f.center),
             radius: f.radius,
@@ -109,7 +109,7 @@ pub(super) fn parse(kind: &str, fields: serde_json::Value) -> Option<Result<Prim
     Some(parsed.and_then(checked))
 }
 
-fn from_box(fields: BoxFields) -> Result<Primitive, String> {
+fn from_box(fields: &BoxFields) -> Result<Primitive, String> {
     match (fields.low, fields.high, fields.size, fields.center) {
         (Some(low), Some(high), None, None) => {
             Ok(Primitive::Box { low: DVec3::from_array(low), high: DVec3::from_array(high) })

@@ -4,6 +4,11 @@
 //! of a mesh. Boxes are single precision about the model's centre, always rounded outward, so that they only ever
 //! spare work; distances and signs come from the `f64` vertices.
 
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "a NaN fails every comparison, and is meant to be refused"
+)]
+
 mod build;
 mod closest;
 mod crossing;

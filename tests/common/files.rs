@@ -4,13 +4,13 @@
 use trisect::Mesh;
 
 /// Reads OFF (triangles) or little-endian binary PLY with float positions.
-pub fn read(path: &str) -> Mesh {
+pub(crate) fn read(path: &str) -> Mesh {
     let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{path}: {error}"));
     if path.ends_with(".ply") { ply(&bytes) } else { off(&String::from_utf8_lossy(&bytes)) }
 }
 
 /// A triangle mesh in OFF, corners after the third of a polygon fanned.
-pub fn off(text: &str) -> Mesh {
+pub(crate) fn off(text: &str) -> Mesh {
     let mut words = text.lines().flat_map(|line| {
         line.split('#').next().unwrap_or("").split_whitespace().map(str::to_owned).collect::<Vec<_>>()
     });
@@ -62,7 +62,7 @@ fn ply(bytes: &[u8]) -> Mesh {
 }
 
 /// An `.npy` array of doubles with three columns.
-pub fn points(path: &str) -> Vec<[f64; 3]> {
+pub(crate) fn points(path: &str) -> Vec<[f64; 3]> {
     let bytes = std::fs::read(path).expect("points");
     let header = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
     bytes[header..]

@@ -4,7 +4,7 @@
 use trisect::Mesh;
 
 /// An axis-aligned box.
-pub fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
+pub(crate) fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
     let positions =
         (0..8).map(|k| [0, 1, 2].map(|a| if k >> a & 1 == 0 { low[a] } else { high[a] })).collect();
     let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -13,7 +13,7 @@ pub fn cuboid(low: [f64; 3], high: [f64; 3]) -> Mesh {
 
 /// A sphere of `rings` circles of latitude and twice as many meridians, its points moved outward or inward by up to
 /// `bumps`.
-pub fn sphere(center: [f64; 3], radius: f64, rings: u32, bumps: f64) -> Mesh {
+pub(crate) fn sphere(center: [f64; 3], radius: f64, rings: u32, bumps: f64) -> Mesh {
     let count = 2 * rings;
     let mut mesh = Mesh::default();
     let mut point = |polar: f64, around: f64| {
@@ -43,7 +43,7 @@ pub fn sphere(center: [f64; 3], radius: f64, rings: u32, bumps: f64) -> Mesh {
 }
 
 /// A torus about the z axis.
-pub fn torus(radius: f64, tube: f64, around: u32, across: u32) -> Mesh {
+pub(crate) fn torus(radius: f64, tube: f64, around: u32, across: u32) -> Mesh {
     let mut mesh = Mesh::default();
     for i in 0..around {
         for j in 0..across {
@@ -60,7 +60,7 @@ pub fn torus(radius: f64, tube: f64, around: u32, across: u32) -> Mesh {
 }
 
 /// A star-shaped prism whose caps are fans of needles and obtuse triangles from one corner: `points` spikes.
-pub fn spiky(points: u32, thin: f64) -> Mesh {
+pub(crate) fn spiky(points: u32, thin: f64) -> Mesh {
     let mut mesh = Mesh::default();
     let count = 2 * points;
     for z in [0.0, thin] {
@@ -83,7 +83,7 @@ pub fn spiky(points: u32, thin: f64) -> Mesh {
 }
 
 /// Both meshes in one.
-pub fn joined(mut a: Mesh, b: &Mesh) -> Mesh {
+pub(crate) fn joined(mut a: Mesh, b: &Mesh) -> Mesh {
     let first = a.positions.len() as u32;
     a.positions.extend(&b.positions);
     a.triangles.extend(b.triangles.iter().map(|t| t.map(|v| v + first)));

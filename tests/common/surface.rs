@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use trisect::Mesh;
 
 /// Signed volume enclosed.
-pub fn volume(mesh: &Mesh) -> f64 {
+pub(crate) fn volume(mesh: &Mesh) -> f64 {
     let at = |vertex: u32| glam::DVec3::from_array(mesh.positions[vertex as usize]);
     let origin = mesh.positions.first().map_or(glam::DVec3::ZERO, |&p| glam::DVec3::from_array(p));
     mesh.triangles
@@ -20,7 +20,7 @@ pub fn volume(mesh: &Mesh) -> f64 {
 
 /// Number of connected pieces and the sum of their genera; panics, saying where, unless the mesh is a closed
 /// 2-manifold without isolated vertices: every directed edge once, its opposite once, one fan at every vertex.
-pub fn manifold(mesh: &Mesh) -> (usize, i64) {
+pub(crate) fn manifold(mesh: &Mesh) -> (usize, i64) {
     let mut edges: HashMap<(u32, u32), u32> = HashMap::new();
     for (index, &[a, b, c]) in mesh.triangles.iter().enumerate() {
         assert!(a != b && b != c && c != a, "triangle {index} repeats a corner");

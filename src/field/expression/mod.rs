@@ -61,7 +61,8 @@ impl SystemKey {
     fn of(system: System) -> Option<Self> {
         match system {
             System::R1 => None,
-            System::Alpha(alpha) if alpha == 1.0 => None,
+            // The limit is minimum and maximum.
+            System::Alpha(1.0) => None,
             System::Alpha(alpha) => Some(Self::Alpha(alpha.to_bits())),
             System::R0 => Some(Self::R0),
             System::R0m(order) => Some(Self::R0m(order)),

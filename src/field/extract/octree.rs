@@ -90,7 +90,7 @@ fn divide(
                 Judgement::Empty { inside } => leaves.push(Leaf { cube: *cube, tape: None, inside }),
                 Judgement::Keep(tape) => leaves.push(Leaf { cube: *cube, tape: Some(tape), inside: false }),
                 Judgement::Divide(tape) => {
-                    next.extend(cube.children().map(|child| (child, Arc::clone(&tape))))
+                    next.extend(cube.children().map(|child| (child, Arc::clone(&tape))));
                 }
             }
         }
@@ -324,9 +324,9 @@ fn is_simple(
         let ends = [segment.from, segment.to].map(|vertex| places[vertex as usize].1);
         let (mut low, mut high) = (cell.low, cell.high);
         if upper {
-            low[axis] = high[axis]
+            low[axis] = high[axis];
         } else {
-            high[axis] = low[axis]
+            high[axis] = low[axis];
         }
         let found = kink(cell.tape, ends, (low, high), axis, cell.tolerance, scratch);
         kinks.extend(found);

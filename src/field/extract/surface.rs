@@ -34,8 +34,7 @@ pub(super) fn assemble(tables: &Tables<'_>, control: &Control) -> Result<(Mesh, 
         let mut scratch = Scratch::default();
         range.map(|cell| piece(tables, cell, &mut scratch)).collect::<Result<Vec<Piece>, Error>>()
     })?;
-    let mut mesh = Mesh::default();
-    mesh.positions = tables.places.iter().map(DVec3::to_array).collect();
+    let mut mesh = Mesh::new(tables.places.iter().map(DVec3::to_array).collect(), Vec::new());
     let mut deviations = Vec::with_capacity(tables.cells.len());
     for piece in pieces.into_iter().flatten() {
         let first = u32::try_from(mesh.positions.len()).ok().filter(|&first| first < WITHIN);

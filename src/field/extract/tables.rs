@@ -49,6 +49,9 @@ struct Boundary {
     divided: bool,
 }
 
+/// Crossed edges, each with its first cell, and crossed faces.
+type Crossed = (Vec<(u64, u32)>, Vec<SharedFace>);
+
 /// A face met by several cells: the first of them is the one whose tape is used.
 struct SharedFace {
     face: Face,
@@ -149,7 +152,7 @@ impl<'a> Tables<'a> {
     }
 
     /// Finds crossed edges and faces, each with the first cell that has it, and the cells to divide.
-    fn find_crossed(&mut self, control: &Control) -> Result<(Vec<(u64, u32)>, Vec<SharedFace>), Error> {
+    fn find_crossed(&mut self, control: &Control) -> Result<Crossed, Error> {
         let boundaries = work::pieces(self.cells.len(), 64, control, "crossings", |range| {
             Ok(range.map(|cell| self.crossed(cell)).collect::<Vec<Boundary>>())
         })?;

@@ -102,7 +102,7 @@ pub(super) fn call(
             }
             let copies = match arguments.get(2) {
                 Some(_) => match constant(graph, 2, "the number of copies")? {
-                    copies if copies >= 0.0 && copies <= 1e9 && copies.fract() == 0.0 => Some(copies as u32),
+                    copies if (0.0..=1e9).contains(&copies) && copies.fract() == 0.0 => Some(copies as u32),
                     _ => return Err("the number of copies of `repeat` must be a whole number".to_owned()),
                 },
                 None => None,

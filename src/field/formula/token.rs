@@ -33,8 +33,7 @@ type Input<'a> = LocatingSlice<&'a str>;
 pub(super) fn tokens(text: &str) -> Result<Vec<Placed>, Fault> {
     let mut input = LocatingSlice::new(text);
     let mut tokens = Vec::new();
-    loop {
-        let Ok(()) = blank.parse_next(&mut input) else { break };
+    while blank.parse_next(&mut input).is_ok() {
         let at = input.current_token_start();
         if at >= text.len() {
             break;
