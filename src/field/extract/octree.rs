@@ -191,7 +191,9 @@ fn judge(
         let trusted = size <= settings.resolution * if certain { 0.25 } else { 1.0 };
         (certain && intrusion <= 0.5 * settings.tolerance) || (trusted && (probed.middle > 0.0) == positive)
     } else {
-        let cell = Cell { tape: &tape, low, high, tolerance: settings.tolerance };
+        // In a narrow wedge the distance from the crease is several times the deviation from either side.
+        let tolerance = settings.tolerance * if tape.branchings() > 0 { 0.25 } else { 1.0 };
+        let cell = Cell { tape: &tape, low, high, tolerance };
         let provable = certain || size <= settings.resolution;
         let crease_may_hide = size > settings.resolution && tape.branchings() > 0;
         provable && is_simple(&cell, &points, &values, crease_may_hide, scratch)
