@@ -183,7 +183,7 @@ mod tests {
     use super::*;
 
     fn depth(tree: &Bvh2) -> usize {
-        let mut stack = vec![(0usize, 1usize)];
+        let mut stack = if tree.nodes.is_empty() { vec![] } else { vec![(0usize, 1usize)] };
         let mut deepest = 0;
         while let Some((node, depth)) = stack.pop() {
             deepest = deepest.max(depth);
