@@ -286,7 +286,7 @@ fn union(boxes: &[Aabb]) -> Aabb {
 }
 
 /// The Morton code of a point with coordinates in 0..=1023.
-pub(super) fn morton(point: Vec3A) -> u32 {
+fn morton(point: Vec3A) -> u32 {
     let spread = |x: f32| {
         let mut bits = (x as u32).min(1023);
         bits = (bits | bits << 16) & 0x0300_00ff;
