@@ -5,6 +5,7 @@ use obvhs::aabb::Aabb;
 
 use super::operands::Operands;
 use crate::Error;
+use crate::control::Reservation;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame, Occupancy, visit_pairs};
@@ -15,22 +16,37 @@ const CULL_FROM: usize = 2_000;
 /// The triangles of both operands that may meet the other, in hierarchies of boxes.
 pub(super) struct Candidates {
     trees: [BoxTree; 2],
+    _memory: Reservation,
 }
 
 impl Candidates {
     /// Rules out what a coarse grid can, and builds the hierarchies of the rest. `common` is the common part of the
     /// operands' boxes, if there is one.
-    pub(super) fn new(operands: &Operands<'_>, common: Option<Bounds>, runner: Runner<'_>) -> Self {
-        let Some(common) = common else { return Self { trees: [BoxTree::empty(), BoxTree::empty()] } };
+    ///
+    /// # Errors
+    /// Only limits.
+    pub(super) fn new(
+        operands: &Operands<'_>,
+        common: Option<Bounds>,
+        runner: Runner<'_>,
+    ) -> Result<Self, Error> {
+        runner.control.check()?;
+        let Some(common) = common else {
+            let nothing = runner.control.reserve(0)?;
+            return Ok(Self { trees: [BoxTree::empty(), BoxTree::empty()], _memory: nothing });
+        };
         let frame = Frame::of(common.low, common.high);
         let near = [operands.near(0), operands.near(1)];
         let culled = (near[0].len().min(near[1].len()) >= CULL_FROM).then(|| cull(operands, &frame, runner));
+        let items: usize =
+            (0..2).map(|side| culled.as_ref().map_or(near[side].len(), |culled| culled[side].len())).sum();
+        let memory = runner.control.reserve((items * BoxTree::BYTES_PER_ITEM) as u64)?;
         let tree = |side: usize| {
             let items = culled.as_ref().map_or(near[side], |culled| &culled[side]);
             BoxTree::new(items, |t| triangle_box(operands, &frame, side, t))
         };
         let (a, b) = runner.both(|| tree(0), || tree(1));
-        Self { trees: [a, b] }
+        Ok(Self { trees: [a, b], _memory: memory })
     }
 
     /// Calls `visit` for all pairs of a triangle of A and one of B whose boxes meet.

@@ -60,8 +60,7 @@ pub(super) fn combine(
     let operands = Operands::new(sides, if settings.swell { 1 } else { -1 }, largest, near);
     runner.control.check()?;
 
-    let candidates = Candidates::new(&operands, overlap::intersection(&bounds[0], &bounds[1]), runner);
-    runner.control.check()?;
+    let candidates = Candidates::new(&operands, overlap::intersection(&bounds[0], &bounds[1]), runner)?;
     let crossings = crossings::find(&operands, &candidates, runner)?;
     let edges = CutEdges::new(&operands, &crossings, runner)?;
     let mut faces = [0, 1].map(|side| CutFaces::new(&operands, side, &crossings, &edges));

@@ -34,6 +34,9 @@ struct Node {
 }
 
 impl BoxTree {
+    /// Memory for one item, while the tree is built.
+    pub(crate) const BYTES_PER_ITEM: usize = 3 * size_of::<Aabb>() + 2 * size_of::<u64>();
+
     /// The tree of nothing.
     pub(crate) fn empty() -> Self {
         Self::new(&[], |_| Aabb::INVALID)
