@@ -155,8 +155,8 @@ def needles():
 
 
 def fans():
-    """Two double cones: 20 000 triangles round each of the four tips, one pair of tips inside the other body."""
-    cone = shapes.double_cone(20000)
+    """Two double cones: 5000 triangles round each of the four tips."""
+    cone = shapes.double_cone(5000)
     first = placed(cone, FIRST_TURN)
     second = placed(cone, SECOND_TURN @ FIRST_TURN, at=(0.31, 0.17, 0.05))
     return Case([first, second], "pair", ("union", "difference"), limit=120.0)
@@ -221,6 +221,16 @@ def stored(name, folder, models=None):
     np.savez(partial, **arrays)
     partial.rename(path)
     return path
+
+
+def exported(path, target):
+    """The case as a plain file for `src/bin/trace.rs`: a count, the sizes, then positions and triangles of each mesh."""
+    case = restored(path)
+    with open(target, "wb") as file:
+        sizes = [(len(positions), len(triangles)) for positions, triangles in case.meshes]
+        file.write(np.array([len(sizes)], "<u8").tobytes() + np.array(sizes, "<u8").tobytes())
+        for positions, triangles in case.meshes:
+            file.write(positions.astype("<f8").tobytes() + triangles.astype("<u4").tobytes())
 
 
 def restored(path):
