@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use super::certificate::{Notes, OperandState};
 use super::pair::{self, Settings};
+use super::sheets;
 use super::{Contact, Operation, Options, Origin, Outcome};
 use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
@@ -22,6 +23,12 @@ struct Partial<'a> {
     groups: Vec<u32>,
     ties: u64,
     inverted: u64,
+}
+
+impl<'a> Partial<'a> {
+    fn new(solid: Cow<'a, Solid>, origins: Origins, groups: Vec<u32>) -> Self {
+        Self { solid, origins, groups, ties: 0, inverted: 0 }
+    }
 }
 
 /// Where triangles came from: those of an operand itself need no list.
@@ -50,12 +57,14 @@ pub(super) fn run(
     let mut partials: Vec<Partial<'_>> = operands
         .iter()
         .enumerate()
-        .map(|(i, solid)| Partial {
-            solid: Cow::Borrowed(*solid),
-            origins: Origins::Operand(i as u32),
-            groups: groups.of_operand(i, solid),
-            ties: 0,
-            inverted: 0,
+        .map(|(i, solid)| {
+            if solid.is_edge_manifold() {
+                let groups = groups.of_operand(i, solid);
+                return Partial::new(Cow::Borrowed(*solid), Origins::Operand(i as u32), groups);
+            }
+            let (solid, source) = solid.separated();
+            let groups = groups.of_operand(i, &solid);
+            Partial::new(Cow::Owned(solid), Origins::List(sheets::origins(i as u32, &source)), groups)
         })
         .collect();
     let engine = Engine { options, runner };
@@ -201,11 +210,8 @@ fn in_morton_order(partials: Vec<Partial<'_>>) -> Vec<Partial<'_>> {
                 .map_or([0.0; 3], |b| std::array::from_fn(|k| 0.5 * b.low[k] + 0.5 * b.high[k]))
         })
         .collect();
-    let codes = crate::spatial::morton_codes(&centres);
-    let mut order: Vec<(u64, usize, Partial<'_>)> =
-        partials.into_iter().enumerate().map(|(i, partial)| (codes[i], i, partial)).collect();
-    order.sort_by_key(|&(code, i, _)| (code, i));
-    order.into_iter().map(|(_, _, partial)| partial).collect()
+    let mut partials: Vec<Option<Partial<'_>>> = partials.into_iter().map(Some).collect();
+    crate::spatial::coherent_order(&centres).into_iter().filter_map(|i| partials[i as usize].take()).collect()
 }
 
 /// The groups of all operands together; equal ones become one.
