@@ -32,6 +32,7 @@ mod outcome;
 mod overlap;
 mod pair;
 mod self_crossings;
+mod sheets;
 mod tidy;
 mod walls;
 mod winding;

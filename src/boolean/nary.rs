@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use super::certificate::{Notes, OperandState};
 use super::pair::{self, Settings};
+use super::sheets;
 use super::{Contact, Operation, Options, Origin, Outcome};
 use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
@@ -22,6 +23,12 @@ struct Partial<'a> {
     groups: Vec<u32>,
     ties: u64,
     inverted: u64,
+}
+
+impl<'a> Partial<'a> {
+    fn new(solid: Cow<'a, Solid>, origins: Origins, groups: Vec<u32>) -> Self {
+        Self { solid, origins, groups, ties: 0, inverted: 0 }
+    }
 }
 
 /// Where triangles came from: those of an operand itself need no list.
@@ -50,12 +57,14 @@ pub(super) fn run(
     let mut partials: Vec<Partial<'_>> = operands
         .iter()
         .enumerate()
-        .map(|(i, solid)| Partial {
-            solid: Cow::Borrowed(*solid),
-            origins: Origins::Operand(i as u32),
-            groups: groups.of_operand(i, solid),
-            ties: 0,
-            inverted: 0,
+        .map(|(i, solid)| {
+            if solid.is_edge_manifold() {
+                let groups = groups.of_operand(i, solid);
+                return Partial::new(Cow::Borrowed(*solid), Origins::Operand(i as u32), groups);
+            }
+            let (solid, source) = solid.separated();
+            let groups = groups.of_operand(i, &solid);
+            Partial::new(Cow::Owned(solid), Origins::List(sheets::origins(i as u32, &source)), groups)
         })
         .collect();
     let engine = Engine { options, runner };

@@ -113,7 +113,6 @@ pub(super) fn combine(
     let tidy_settings = tidy::Settings {
         remove_vertices: settings.remove_vertices,
         groups: settings.groups,
-        irregular: [&[], &[]],
         // All parts of both surfaces meet in the curve: four triangles at each of its edges.
         rounding,
         always: operation == Operation::SymmetricDifference || has_slivers || !sheets.is_empty(),

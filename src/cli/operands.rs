@@ -149,6 +149,8 @@ fn operand(request: Request, using: Using, limits: &Limits, control: &Control) -
     let start = Instant::now();
     let Input { mesh, format, warnings, reserved } = read(&request, limits, control)?;
     let Usable { solid, turned, crossings } = usable(mesh, using, control)?;
+    // What touches itself in single vertices would do so in the result as well.
+    let solid = if solid.is_manifold() { solid } else { solid.separated().0 };
     let seconds = start.elapsed().as_secs_f64();
     Ok(Operand { request, solid, format, warnings, turned, crossings, seconds, _reserved: reserved })
 }

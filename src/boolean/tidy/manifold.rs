@@ -1,9 +1,8 @@
-//! Making the patch 2-manifold: where more than two triangles meet in an edge they are paired so that solid wedges close;
+//! Making a surface 2-manifold: where more than two triangles meet in an edge they are paired so that solid wedges close;
 //! then every point with several fans of triangles is split. Bodies that touch separate; nothing opens.
 
 use rustc_hash::FxHashMap;
 
-use super::patch::Patch;
 use crate::exact::{Sign, orient2d, orient3d};
 
 /// A side of a triangle: three times the triangle's index plus the corner it starts at.
@@ -11,28 +10,50 @@ type HalfEdge = u32;
 
 const NONE: HalfEdge = u32::MAX;
 
-/// Makes the patch 2-manifold. Returns the points made, with the ones they are copies of.
-pub(super) fn make_manifold(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
-    let twins = pair_half_edges(patch);
-    let copies = split_points(patch, &twins);
-    separate_parallel_edges(patch, &twins);
+/// Triangles that can be taken apart.
+pub(crate) trait Surface {
+    /// Number of triangles, the dropped ones included.
+    fn len(&self) -> usize;
+    /// The corners of a triangle; `None` if it was dropped.
+    fn corners(&self, triangle: u32) -> Option<[u32; 3]>;
+    /// Gives a triangle other corners.
+    fn set_corners(&mut self, triangle: u32, corners: [u32; 3]);
+    /// Adds a triangle that is a part of another.
+    fn add_part(&mut self, of: u32, corners: [u32; 3]);
+    /// Where a point is.
+    fn position(&self, point: u32) -> [f64; 3];
+    /// A new point.
+    fn add_point(&mut self, position: [f64; 3]) -> u32;
+    /// Whether all triangles at a point are known.
+    fn is_complete(&self, point: u32) -> bool;
+}
+
+/// Makes a surface 2-manifold. Returns the points made, with the ones they are copies of.
+pub(crate) fn make_manifold(surface: &mut impl Surface) -> Vec<(u32, u32)> {
+    let twins = pair_half_edges(surface);
+    let copies = split_points(surface, &twins);
+    separate_parallel_edges(surface, &twins);
     copies
 }
 
-fn ends(patch: &Patch<'_>, half_edge: HalfEdge) -> (u32, u32) {
-    let corners = patch.faces[half_edge as usize / 3].corners;
+fn ends(surface: &impl Surface, half_edge: HalfEdge) -> (u32, u32) {
     let k = half_edge as usize % 3;
-    (corners[k], corners[(k + 1) % 3])
+    surface.corners(half_edge / 3).map_or((0, 0), |corners| (corners[k], corners[(k + 1) % 3]))
+}
+
+/// The triangles that were not dropped, with their corners.
+fn alive(surface: &impl Surface) -> impl Iterator<Item = (u32, [u32; 3])> {
+    (0..surface.len() as u32).filter_map(|i| Some((i, surface.corners(i)?)))
 }
 
 /// For each half-edge the opposite one it is paired with; [`NONE`] at the patch's border.
-fn pair_half_edges(patch: &Patch<'_>) -> Vec<HalfEdge> {
-    let mut twins = vec![NONE; 3 * patch.faces.len()];
+fn pair_half_edges(surface: &impl Surface) -> Vec<HalfEdge> {
+    let mut twins = vec![NONE; 3 * surface.len()];
     let mut order: Vec<(u32, u32, bool, HalfEdge)> = Vec::with_capacity(twins.len());
-    for (i, face) in patch.faces.iter().enumerate().filter(|(_, face)| face.alive) {
+    for (i, corners) in alive(surface) {
         for k in 0..3 {
-            let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
-            order.push((u.min(v), u.max(v), u > v, 3 * i as u32 + k as u32));
+            let (u, v) = (corners[k], corners[(k + 1) % 3]);
+            order.push((u.min(v), u.max(v), u > v, 3 * i + k as u32));
         }
     }
     order.sort_unstable();
@@ -46,7 +67,7 @@ fn pair_half_edges(patch: &Patch<'_>) -> Vec<HalfEdge> {
             vec![(group[0].3, group[1].3)]
         } else {
             let half_edges: Vec<HalfEdge> = group.iter().map(|entry| entry.3).collect();
-            pair_by_angle(patch, group[0].0, group[0].1, &half_edges)
+            pair_by_angle(surface, group[0].0, group[0].1, &half_edges)
         };
         for (x, y) in pairs {
             twins[x as usize] = y;
@@ -61,19 +82,24 @@ fn pair_half_edges(patch: &Patch<'_>) -> Vec<HalfEdge> {
 /// Seen along the edge, the solid lies clockwise of a triangle whose half-edge runs from `u` to `v`, and counter-clockwise
 /// of one that runs back. Going round counter-clockwise, a wedge thus opens at a backward half-edge and closes at the next
 /// forward one; with nesting they match like parentheses.
-fn pair_by_angle(patch: &Patch<'_>, u: u32, v: u32, half_edges: &[HalfEdge]) -> Vec<(HalfEdge, HalfEdge)> {
+fn pair_by_angle(
+    surface: &impl Surface,
+    u: u32,
+    v: u32,
+    half_edges: &[HalfEdge],
+) -> Vec<(HalfEdge, HalfEdge)> {
     struct Spoke {
         half_edge: HalfEdge,
         opens: bool,
         apex: [f64; 3],
     }
-    let (from, to) = (*patch.position(u), *patch.position(v));
+    let (from, to) = (surface.position(u), surface.position(v));
     let mut spokes: Vec<Spoke> = half_edges
         .iter()
         .map(|&half_edge| {
-            let corners = patch.faces[half_edge as usize / 3].corners;
+            let corners = surface.corners(half_edge / 3).unwrap_or([u; 3]);
             let apex = corners[(half_edge as usize % 3 + 2) % 3];
-            Spoke { half_edge, opens: ends(patch, half_edge).0 == v, apex: *patch.position(apex) }
+            Spoke { half_edge, opens: ends(surface, half_edge).0 == v, apex: surface.position(apex) }
         })
         .collect();
     let reference = spokes[0].apex;
@@ -155,19 +181,19 @@ impl Around {
 }
 
 /// Gives every fan of triangles at a complete point a point of its own; the first fan keeps the old one.
-fn split_points(patch: &mut Patch<'_>, twins: &[HalfEdge]) -> Vec<(u32, u32)> {
-    let mut corners: Vec<(u32, HalfEdge)> = Vec::new();
-    for (i, face) in patch.faces.iter().enumerate().filter(|(_, face)| face.alive) {
+fn split_points(surface: &mut impl Surface, twins: &[HalfEdge]) -> Vec<(u32, u32)> {
+    let mut all: Vec<(u32, HalfEdge)> = Vec::new();
+    for (i, corners) in alive(surface) {
         for k in 0..3 {
-            if patch.is_complete(face.corners[k]) {
-                corners.push((face.corners[k], 3 * i as u32 + k as u32));
+            if surface.is_complete(corners[k]) {
+                all.push((corners[k], 3 * i + k as u32));
             }
         }
     }
-    corners.sort_unstable();
+    all.sort_unstable();
     let mut copies = Vec::new();
     let mut changes = Vec::new();
-    for group in corners.chunk_by(|x, y| x.0 == y.0) {
+    for group in all.chunk_by(|x, y| x.0 == y.0) {
         let point = group[0].0;
         let mut seen: FxHashMap<HalfEdge, ()> = FxHashMap::default();
         let mut first = true;
@@ -193,26 +219,27 @@ fn split_points(patch: &mut Patch<'_>, twins: &[HalfEdge]) -> Vec<(u32, u32)> {
                 first = false;
                 continue;
             }
-            let copy = patch.add_point(*patch.position(point));
+            let copy = surface.add_point(surface.position(point));
             copies.push((copy, point));
             changes.extend(fan.into_iter().map(|corner| (corner, copy)));
         }
     }
     for (corner, copy) in changes {
-        let face = &mut patch.faces[corner as usize / 3];
-        face.corners[corner as usize % 3] = copy;
-        face.untouched = false;
+        if let Some(mut corners) = surface.corners(corner / 3) {
+            corners[corner as usize % 3] = copy;
+            surface.set_corners(corner / 3, corners);
+        }
     }
     copies
 }
 
 /// Where two pairs of triangles still share both ends of an edge, one of the pairs gets a vertex in its middle.
-fn separate_parallel_edges(patch: &mut Patch<'_>, twins: &[HalfEdge]) {
+fn separate_parallel_edges(surface: &mut impl Surface, twins: &[HalfEdge]) {
     let mut forward: Vec<(u32, u32, HalfEdge)> = Vec::new();
-    for (i, face) in patch.faces.iter().enumerate().filter(|(_, face)| face.alive) {
+    for (i, corners) in alive(surface) {
         for k in 0..3 {
-            let half_edge = 3 * i as u32 + k as u32;
-            let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
+            let half_edge = 3 * i + k as u32;
+            let (u, v) = (corners[k], corners[(k + 1) % 3]);
             if u < v && twins[half_edge as usize] != NONE {
                 forward.push((u, v, half_edge));
             }
@@ -226,9 +253,9 @@ fn separate_parallel_edges(patch: &mut Patch<'_>, twins: &[HalfEdge]) {
     // A triangle may have several sides to split: collect them by triangle, then cut it up.
     let mut middle_of: FxHashMap<HalfEdge, u32> = FxHashMap::default();
     for (x, y) in splits {
-        let (u, v) = ends(patch, x);
-        let (p, q) = (*patch.position(u), *patch.position(v));
-        let middle = patch.add_point(std::array::from_fn(|k| 0.5 * p[k] + 0.5 * q[k]));
+        let (u, v) = ends(surface, x);
+        let (p, q) = (surface.position(u), surface.position(v));
+        let middle = surface.add_point(std::array::from_fn(|k| 0.5 * p[k] + 0.5 * q[k]));
         middle_of.insert(x, middle);
         middle_of.insert(y, middle);
     }
@@ -236,19 +263,18 @@ fn separate_parallel_edges(patch: &mut Patch<'_>, twins: &[HalfEdge]) {
     touched.sort_unstable();
     touched.dedup();
     for index in touched {
-        let face = patch.faces[index as usize];
+        let Some(corners) = surface.corners(index) else { continue };
         let mut outline = Vec::with_capacity(6);
         for k in 0..3 {
-            outline.push(face.corners[k]);
+            outline.push(corners[k]);
             outline.extend(middle_of.get(&(3 * index + k as u32)));
         }
         // Cut off corners between two points of the outline, starting next to a middle.
-        let start = (0..outline.len()).find(|&i| !face.corners.contains(&outline[i])).unwrap_or(0);
+        let start = (0..outline.len()).find(|&i| !corners.contains(&outline[i])).unwrap_or(0);
         outline.rotate_left(start);
-        let fan = (1..outline.len() - 1).map(|i| [outline[0], outline[i], outline[i + 1]]);
-        let new: Vec<_> =
-            fan.map(|corners| super::patch::Face { corners, untouched: false, ..face }).collect();
-        patch.faces[index as usize] = new[0];
-        patch.faces.extend_from_slice(&new[1..]);
+        surface.set_corners(index, [outline[0], outline[1], outline[2]]);
+        for i in 2..outline.len() - 1 {
+            surface.add_part(index, [outline[0], outline[i], outline[i + 1]]);
+        }
     }
 }

@@ -5,7 +5,7 @@
 //! pair (make it 2-manifold), flip, remove, collapse. They work on a patch: the pieces of cut faces and the kept triangles
 //! round their points. All else keeps its bits and its order.
 
-mod manifold;
+pub(crate) mod manifold;
 mod patch;
 mod planes;
 mod remove;
@@ -36,8 +36,6 @@ pub(super) struct Settings<'a> {
     pub(super) remove_vertices: bool,
     /// For each side the group of every triangle; faces of different groups are not merged. Empty: one group.
     pub(super) groups: [&'a [u32]; 2],
-    /// Vertices of each operand at which its own surface is not 2-manifold, ascending.
-    pub(super) irregular: [&'a [u32]; 2],
     /// The size of rounding: edges and heights up to this are not worth a triangle.
     pub(super) rounding: f64,
     /// Whether to look even where nothing points to work.
@@ -54,11 +52,8 @@ pub(super) fn tidy(
 ) -> Result<Option<Tidied>, Error> {
     let planes = planes::Planes { operands: cutter.operands, groups: settings.groups };
     let mut candidates = if settings.remove_vertices { planes.removable_nodes(cutter) } else { Vec::new() };
-    let regular = !settings.always
-        && cutter.identification.is_empty()
-        && candidates.is_empty()
-        && settings.irregular.iter().all(|list| list.is_empty())
-        && !has_repeats(cutter);
+    let regular =
+        !settings.always && cutter.identification.is_empty() && candidates.is_empty() && !has_repeats(cutter);
     if regular {
         return Ok(None);
     }
@@ -66,7 +61,7 @@ pub(super) fn tidy(
     if settings.remove_vertices {
         candidates.extend(cutter.identification.representatives());
     }
-    let mut patch = Patch::new(cutter, parts, pieces, settings.irregular);
+    let mut patch = Patch::new(cutter, parts, pieces);
     patch.cancel();
     runner.control.check()?;
     zero_area::flip_chain(&mut patch);

@@ -8,6 +8,7 @@ use super::super::cut_faces::BitSet;
 use super::super::multiplicity::Part;
 use super::super::outcome::Origin;
 use super::Tidied;
+use super::manifold::Surface;
 
 /// A triangle of the patch.
 #[derive(Clone, Copy, Debug)]
@@ -55,23 +56,13 @@ impl Flags {
 }
 
 impl<'a> Patch<'a> {
-    /// The pieces and all kept triangles round their points (or round `irregular` vertices).
-    pub(super) fn new(
-        cutter: &'a Cutter<'a>,
-        parts: &[Part],
-        pieces: &[NewTriangle],
-        irregular: [&[u32]; 2],
-    ) -> Self {
+    /// The pieces and all kept triangles round their points.
+    pub(super) fn new(cutter: &'a Cutter<'a>, parts: &[Part], pieces: &[NewTriangle]) -> Self {
         let operands = cutter.operands;
         let points = operands.vertex_count() as usize + cutter.edges.positions.len();
         let mut complete = Flags::new(points);
         for point in pieces.iter().flat_map(|piece| piece.corners) {
             complete.set(point);
-        }
-        for side in 0..2 {
-            for &vertex in irregular[side] {
-                complete.set(cutter.identification.representative(operands.first_vertex(side) + vertex));
-            }
         }
         let mut patch = Self {
             cutter,
@@ -112,12 +103,6 @@ impl<'a> Patch<'a> {
         } else {
             self.cutter.position(point)
         }
-    }
-
-    /// A new point.
-    pub(super) fn add_point(&mut self, position: [f64; 3]) -> u32 {
-        self.copies.push(position);
-        self.first_copy + self.copies.len() as u32 - 1
     }
 
     /// Calls `found` for every kept uncut triangle: part, triangle, its points, and how often it counts (negative where
@@ -312,5 +297,38 @@ impl<'a> Patch<'a> {
         }
         new.sort_by_key(|triangle| (triangle.origin.operand, triangle.origin.triangle));
         Tidied { new, replaced, copies: self.copies }
+    }
+}
+
+impl Surface for Patch<'_> {
+    fn len(&self) -> usize {
+        self.faces.len()
+    }
+
+    fn corners(&self, triangle: u32) -> Option<[u32; 3]> {
+        let face = &self.faces[triangle as usize];
+        face.alive.then_some(face.corners)
+    }
+
+    fn set_corners(&mut self, triangle: u32, corners: [u32; 3]) {
+        let face = &mut self.faces[triangle as usize];
+        *face = Face { corners, untouched: false, ..*face };
+    }
+
+    fn add_part(&mut self, of: u32, corners: [u32; 3]) {
+        self.faces.push(Face { corners, untouched: false, ..self.faces[of as usize] });
+    }
+
+    fn position(&self, point: u32) -> [f64; 3] {
+        *self.position(point)
+    }
+
+    fn add_point(&mut self, position: [f64; 3]) -> u32 {
+        self.copies.push(position);
+        self.first_copy + self.copies.len() as u32 - 1
+    }
+
+    fn is_complete(&self, point: u32) -> bool {
+        self.is_complete(point)
     }
 }

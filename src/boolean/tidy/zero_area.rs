@@ -20,7 +20,7 @@ struct Flip {
 fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
     let face = &patch.faces[index as usize];
     let [a, b, c] = face.corners.map(|point| patch.position(point));
-    face.alive && !face.untouched && collinear(a, b, c)
+    face.alive && collinear(a, b, c)
 }
 
 /// Whether a triangle is higher over its longest side than nothing, but not than `height`.
