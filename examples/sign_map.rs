@@ -12,12 +12,12 @@ use trisect::exact::{Sign, orient3d};
 use trisect::render::Picture;
 
 /// Positions along each axis, and pixels of a cell.
-const CELLS: i64 = 64;
-const CELL: i64 = 5;
+const CELLS: i64 = 40;
+const CELL: i64 = 8;
 const GAP: i64 = 16;
 
 /// A triangle in the plane x = y.
-const TRIANGLE: [[f64; 3]; 3] = [[12.0, 12.0, 3.0], [24.0, 24.0, -7.0], [17.0, 17.0, 21.0]];
+const TRIANGLE: [[f64; 3]; 3] = [[12.1, 12.1, 3.3], [24.7, 24.7, -7.7], [17.3, 17.3, 21.9]];
 /// Its normal, towards which it moves.
 const NORMAL: [i32; 3] = [-1, 1, 0];
 
@@ -38,7 +38,7 @@ fn main() -> Result<(), Error> {
             for column in 0..CELLS {
                 let sign = map(point(column, row));
                 // On this side of x = y the triangle's plane is below the point or above it.
-                let truth = column.cmp(&row) as i32;
+                let truth = row.cmp(&column) as i32;
                 wrong += i32::from(truth != 0 && sign as i32 != truth);
                 zero += i32::from(sign == Sign::Zero);
                 let left = place as i64 * (panel + GAP) + column * CELL;
