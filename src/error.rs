@@ -94,6 +94,24 @@ pub enum Error {
     /// An argument has no meaning: a radius that is not positive, too few segments, an empty list of operands.
     #[error("invalid argument: {0}")]
     InvalidArgument(String),
+    /// A field cannot be evaluated or meshed as asked: not a number, no surface where one is needed, a surface that
+    /// leaves the box.
+    #[error("{0}")]
+    Field(String),
+    /// A formula that cannot be read.
+    #[error("{0}")]
+    Formula(#[from] crate::field::FormulaError),
+    /// A model file says something that has no meaning.
+    #[error("model: {0}")]
+    Model(String),
+    /// A node of a model is at fault.
+    #[error("model, node {node}: {source}")]
+    InNode {
+        /// The node's name, if it has one, and its place in the file.
+        node: String,
+        /// What is wrong with it.
+        source: Box<Error>,
+    },
     /// The caller cancelled the operation.
     #[error("cancelled")]
     Cancelled,
@@ -138,8 +156,11 @@ impl Error {
             | Self::NotFinite { .. }
             | Self::NotClosed(_)
             | Self::InsideOut { .. }
+            | Self::Field(_)
+            | Self::Formula(_)
+            | Self::Model(_)
             | Self::SelfCrossing(_) => Failure::Unusable,
-            Self::Operand { source, .. } => source.failure(),
+            Self::Operand { source, .. } | Self::InNode { source, .. } => source.failure(),
             Self::InvalidArgument(_) => Failure::Usage,
             Self::Cancelled | Self::DeadlineExceeded | Self::MemoryLimit { .. } => Failure::Limit,
         }
@@ -153,6 +174,15 @@ impl Error {
                 self
             }
             other => Self::Operand { operand, name: name.into(), source: Box::new(other) },
+        }
+    }
+
+    /// This error, said of the node of a model called `node`.
+    #[must_use]
+    pub fn in_node(self, node: &str) -> Self {
+        match self {
+            Self::Cancelled | Self::DeadlineExceeded | Self::MemoryLimit { .. } | Self::InNode { .. } => self,
+            other => Self::InNode { node: node.to_owned(), source: Box::new(other) },
         }
     }
 }

@@ -29,6 +29,14 @@ impl<'a> Runner<'a> {
         Self::new(self.control, false)
     }
 
+    /// Whether loops may use several threads.
+    pub(crate) fn is_parallel(self) -> bool {
+        #[cfg(feature = "parallel")]
+        return self.parallel;
+        #[cfg(not(feature = "parallel"))]
+        false
+    }
+
     /// Cuts `0..count` into pieces of `grain` and returns what `piece` makes of each, in order. The limits are checked
     /// before every piece.
     pub(crate) fn pieces<T: Send>(

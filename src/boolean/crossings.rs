@@ -3,6 +3,7 @@
 //! In general position that is the only kind of event. Two triangles that intersect have exactly two crossings, which
 //! bound one segment of the intersection curve.
 
+use super::candidates::Candidates;
 use super::operands::{Corner, Operands};
 use crate::Error;
 use crate::parallel::Runner;
@@ -38,6 +39,9 @@ pub(super) struct Crossings {
     pub(super) segments: Vec<Segment>,
 }
 
+/// Memory for one intersecting pair while its crossings are numbered.
+const BYTES_PER_PAIR: u64 = (size_of::<PairCrossing>() + 2 * size_of::<(Crossing, u32)>() + 64) as u64;
+
 /// The two crossings of a pair of triangles, tail first.
 #[derive(Clone, Copy, Debug)]
 struct PairCrossing {
@@ -49,14 +53,11 @@ struct PairCrossing {
 /// Finds the crossings of all candidate pairs.
 pub(super) fn find(
     operands: &Operands<'_>,
-    pairs: &[[u32; 2]],
+    candidates: &Candidates,
     runner: Runner<'_>,
 ) -> Result<Crossings, Error> {
-    let found: Vec<PairCrossing> = runner
-        .pieces(pairs.len(), 4096, |range| {
-            pairs[range].iter().filter_map(|&pair| cross(operands, pair)).collect::<Vec<_>>()
-        })?
-        .concat();
+    let found = candidates.visit(runner, |s, t, found| found.extend(cross(operands, [s, t])))?;
+    let _tables = runner.control.reserve(found.len() as u64 * BYTES_PER_PAIR)?;
     Ok(number_nodes(&found))
 }
 

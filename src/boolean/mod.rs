@@ -6,7 +6,7 @@
 //! ([`multiplicity`]) whose boundary cancels identically; what perturbation kept apart at the same place is identified
 //! afterwards, exactly. The pipeline is [`pair::combine`], one function per step:
 //!
-//! 1. [`overlap`], [`crate::spatial`]: pairs of triangles that may meet;
+//! 1. [`overlap`], [`candidates`]: pairs of triangles that may meet;
 //! 2. [`crossings`]: which do, and where ([`cut_edges`]: in which order along each edge, correctly rounded);
 //! 3. [`winding`]: how often each operand winds round the other's vertices;
 //! 4. [`identify`], [`cut`]: coincident points become one; kept pieces of cut faces become triangles;
@@ -18,6 +18,7 @@
 //! threads. **Not guaranteed**: that rounding introduces no crossings of the size of an ulp.
 
 mod assemble;
+mod candidates;
 mod certificate;
 mod crossings;
 mod cut;

@@ -210,11 +210,8 @@ fn in_morton_order(partials: Vec<Partial<'_>>) -> Vec<Partial<'_>> {
                 .map_or([0.0; 3], |b| std::array::from_fn(|k| 0.5 * b.low[k] + 0.5 * b.high[k]))
         })
         .collect();
-    let codes = crate::spatial::morton_codes(&centres);
-    let mut order: Vec<(u64, usize, Partial<'_>)> =
-        partials.into_iter().enumerate().map(|(i, partial)| (codes[i], i, partial)).collect();
-    order.sort_by_key(|&(code, i, _)| (code, i));
-    order.into_iter().map(|(_, _, partial)| partial).collect()
+    let mut partials: Vec<Option<Partial<'_>>> = partials.into_iter().map(Some).collect();
+    crate::spatial::coherent_order(&centres).into_iter().filter_map(|i| partials[i as usize].take()).collect()
 }
 
 /// The groups of all operands together; equal ones become one.

@@ -4,7 +4,8 @@ use rustc_hash::FxHashSet;
 
 use super::Operation;
 use super::assemble::{Assembled, Ingredients, NewTriangle};
-use super::crossings::{self, Crossings};
+use super::candidates::Candidates;
+use super::crossings;
 use super::cut::Cutter;
 use super::cut_edges::CutEdges;
 use super::cut_faces::CutFaces;
@@ -18,7 +19,6 @@ use super::walls;
 use super::winding;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
-use crate::spatial::{BoxTree, Frame, overlapping_pairs};
 use crate::{Error, Solid};
 
 /// Edges and heights of new triangles up to so many units in the last place of the largest coordinate are rounding: each of
@@ -52,6 +52,7 @@ pub(super) fn combine(
     let bounds = [a, b].map(|solid| solid.bounds().unwrap_or(Bounds::NOTHING));
     let parts = multiplicity::parts(operation);
 
+    let _tables = runner.control.reserve(fixed_tables(&sides))?;
     let outcodes = [overlap::outcodes(&sides[0], &bounds[1]), overlap::outcodes(&sides[1], &bounds[0])];
     let near = [0, 1].map(|side| overlap::near_triangles(&sides[side], &outcodes[side]));
     let largest =
@@ -59,8 +60,9 @@ pub(super) fn combine(
     let operands = Operands::new(sides, if settings.swell { 1 } else { -1 }, largest, near);
     runner.control.check()?;
 
-    let pairs = candidate_pairs(&operands, &bounds, runner)?;
-    let crossings: Crossings = crossings::find(&operands, &pairs, runner)?;
+    let candidates = Candidates::new(&operands, overlap::intersection(&bounds[0], &bounds[1]), runner);
+    runner.control.check()?;
+    let crossings = crossings::find(&operands, &candidates, runner)?;
     let edges = CutEdges::new(&operands, &crossings, runner)?;
     let mut faces = [0, 1].map(|side| CutFaces::new(&operands, side, &crossings, &edges));
     let mut windings = [Vec::new(), Vec::new()];
@@ -76,8 +78,8 @@ pub(super) fn combine(
             runner,
         )?;
     }
-    let sheets = walls::touching_sheets(&operands, &pairs, &parts);
-    drop(pairs);
+    let sheets = walls::touching_sheets(&operands, &candidates, &parts, runner)?;
+    drop(candidates);
     for side in 0..2 {
         let of_side = sheets.iter().flatten().filter(|face| face.0 == side).map(|face| face.1);
         faces[side].add_uncut(of_side);
@@ -137,20 +139,13 @@ pub(super) fn combine(
     Ok(Assembled { ties: operands.ties(), inverted, ..ingredients.assemble() })
 }
 
-/// Pairs of triangles whose boxes meet.
-fn candidate_pairs(
-    operands: &Operands<'_>,
-    bounds: &[Bounds; 2],
-    runner: Runner<'_>,
-) -> Result<Vec<[u32; 2]>, Error> {
-    let Some(common) = overlap::intersection(&bounds[0], &bounds[1]) else { return Ok(Vec::new()) };
-    let frame = Frame::of(common.low, common.high);
-    let tree = |side: usize| {
-        let operand = &operands.sides[side];
-        BoxTree::new(operands.near(side), |t| {
-            frame.triangle(operand.triangles[t as usize].map(|v| &operand.positions[v as usize]))
-        })
-    };
-    let (a, b) = runner.both(|| tree(0), || tree(1));
-    overlapping_pairs(&a, &b, runner)
+/// Bytes of the tables whose size the operands give: classes and winding numbers of vertices, the near triangles, and the
+/// result if nothing were left out.
+fn fixed_tables(sides: &[Operand<'_>; 2]) -> u64 {
+    const PER_VERTEX: usize = 1 + 4 * size_of::<u32>() + size_of::<[f64; 3]>();
+    const PER_TRIANGLE: usize = size_of::<u32>() + size_of::<[u32; 3]>() + size_of::<Origin>();
+    sides
+        .iter()
+        .map(|side| (side.positions.len() * PER_VERTEX + side.triangles.len() * PER_TRIANGLE) as u64)
+        .sum()
 }

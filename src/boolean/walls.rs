@@ -9,11 +9,14 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::assemble::NewTriangle;
+use super::candidates::Candidates;
 use super::cut::{Cutter, dominant_axis};
 use super::multiplicity::Part;
 use super::operands::Operands;
 use super::outcome::Origin;
+use crate::Error;
 use crate::exact::{Sign, collinear, orient2d, orient3d};
+use crate::parallel::Runner;
 use crate::polygon;
 
 /// Faces of one plane that are added up: side and triangle.
@@ -21,10 +24,15 @@ type Sheet = Vec<(usize, u32)>;
 
 /// The sets of faces to add up: those of A at vertices without a direction, with all faces of B they touch from the
 /// opposite side.
-pub(super) fn touching_sheets(operands: &Operands<'_>, pairs: &[[u32; 2]], parts: &[Part]) -> Vec<Sheet> {
-    let Some(stuck) = operands.vertices_without_direction() else { return Vec::new() };
+pub(super) fn touching_sheets(
+    operands: &Operands<'_>,
+    candidates: &Candidates,
+    parts: &[Part],
+    runner: Runner<'_>,
+) -> Result<Vec<Sheet>, Error> {
+    let Some(stuck) = operands.vertices_without_direction() else { return Ok(Vec::new()) };
     let [Some(part_a), Some(part_b)] = [0, 1].map(|side| parts.iter().find(|part| part.side == side)) else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
     // A part turned over looks the other way.
     let opposite_means = part_a.reversed == part_b.reversed;
@@ -35,12 +43,15 @@ pub(super) fn touching_sheets(operands: &Operands<'_>, pairs: &[[u32; 2]], parts
         .filter(|&t| operands.sides[0].triangles[t as usize].iter().any(|v| stuck.contains(v)))
         .collect();
     let mut parent: FxHashMap<(usize, u32), (usize, u32)> = FxHashMap::default();
-    for &[s, t] in pairs {
+    let touching = candidates.visit(runner, |s, t, found| {
         if is_stuck.contains(&s) && touch(operands, s, t) == Some(opposite_means) {
-            let (x, y) = (find(&mut parent, (0, s)), find(&mut parent, (1, t)));
-            if x != y {
-                parent.insert(x.max(y), x.min(y));
-            }
+            found.push([s, t]);
+        }
+    })?;
+    for [s, t] in touching {
+        let (x, y) = (find(&mut parent, (0, s)), find(&mut parent, (1, t)));
+        if x != y {
+            parent.insert(x.max(y), x.min(y));
         }
     }
     let mut members: Vec<(usize, u32)> = parent.keys().copied().collect();
@@ -52,7 +63,7 @@ pub(super) fn touching_sheets(operands: &Operands<'_>, pairs: &[[u32; 2]], parts
     }
     let mut sheets: Vec<Sheet> = sheets.into_values().collect();
     sheets.sort_unstable();
-    sheets
+    Ok(sheets)
 }
 
 fn find(parent: &mut FxHashMap<(usize, u32), (usize, u32)>, mut face: (usize, u32)) -> (usize, u32) {

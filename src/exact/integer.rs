@@ -200,21 +200,37 @@ fn subtract_magnitudes(a: &[u64], b: &[u64]) -> SmallVec<[u64; INLINE_WORDS]> {
     words
 }
 
-/// `|a| / |b|` rounded down, and whether nothing was left over. The quotient must have at most 66 bits: it is found bit
-/// by bit, which is slow and simple; it runs only where double-double arithmetic could not decide a rounding.
+/// `|a| / |b|` rounded down, and whether nothing was left over. The quotient must have at most 66 bits. Some 30 bits of it
+/// are estimated from the leading words at a time, never too many.
 fn divide_magnitudes(a: &Integer, b: &Integer) -> (u128, bool) {
-    let mut remainder = a.clone();
-    remainder.negative = false;
+    let divisor = Integer { negative: false, words: b.words.clone() };
+    let mut remainder = Integer { negative: false, words: a.words.clone() };
     let mut quotient = 0u128;
-    for bit in (0..66).rev() {
-        let mut step = b.shifted_left(bit);
-        step.negative = false;
-        if compare_magnitudes(&remainder.words, &step.words) != Ordering::Less {
-            remainder = remainder.minus(&step);
-            quotient |= 1 << bit;
-        }
+    while compare_magnitudes(&remainder.words, &divisor.words) != Ordering::Less {
+        // The leading 64 bits of the remainder over the leading 32 of the divisor, rounded up.
+        let (leading, remainder_shift) = leading_bits(&remainder, 64);
+        let (divisor_leading, divisor_shift) = leading_bits(&divisor, 32);
+        let digit = leading / (divisor_leading + 1);
+        let shift = remainder_shift - divisor_shift;
+        let (digit, shift) = if shift >= 0 { (digit, shift) } else { (digit >> -shift, 0) };
+        let digit = digit.max(1);
+        // At most 33 bits.
+        let step = divisor.times(&Integer::from(digit as i64));
+        remainder = remainder.minus(&step.shifted_left(shift as u64));
+        quotient += u128::from(digit) << shift;
     }
     (quotient, remainder.is_zero())
+}
+
+/// The leading `count` bits (at most 64) of a magnitude and by how much they were shifted down (negative: up).
+fn leading_bits(value: &Integer, count: i64) -> (u64, i64) {
+    let shift = value.bits() as i64 - count;
+    let n = value.words.len();
+    let high = value.words[n - 1];
+    let low = if n >= 2 { value.words[n - 2] } else { 0 };
+    let zeros = high.leading_zeros();
+    let aligned = if zeros == 0 { high } else { high << zeros | low >> (64 - zeros) };
+    (aligned >> (64 - count), shift)
 }
 
 /// The `f64` nearest to `(quotient + rest) * 2^exponent`, where the rest is zero if `exact`, else inside (0, 1), ties to

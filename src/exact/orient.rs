@@ -101,6 +101,10 @@ fn largest<const N: usize>(points: [&[f64; 3]; N]) -> f64 {
 
 /// The exact stage of [`orient3d`].
 pub(super) fn orient3d_exact(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> Sign {
+    // All in one plane across an axis: the commonest tie.
+    if (0..3).any(|k| a[k] == d[k] && b[k] == d[k] && c[k] == d[k]) {
+        return Sign::Zero;
+    }
     let lattice = Lattice::of([a, b, c, d].into_iter().flatten());
     if lattice.is_small() {
         let row = |p: &[f64; 3]| -> [i128; 3] {
@@ -141,11 +145,19 @@ pub(super) fn determinant(u: &[Integer; 3], v: &[Integer; 3], w: &[Integer; 3]) 
 #[must_use]
 pub fn orient2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Sign {
     let (determinant, bound) = orient2d_filter(a, b, c);
-    let points = [a, b, c];
-    let high = points.iter().flatten().fold(0.0f64, |high, x| x.abs().max(high));
-    if determinant.abs() > bound && high <= FILTER_LIMIT {
+    if determinant.abs() > bound && [a, b, c].iter().flatten().all(|x| x.abs() <= FILTER_LIMIT) {
         return Sign::of_f64(determinant);
     }
+    orient2d_exact(a, b, c)
+}
+
+fn orient2d_exact(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Sign {
+    // Both products have a factor that is exactly zero.
+    if (a[0] == c[0] || b[1] == c[1]) && (a[1] == c[1] || b[0] == c[0]) {
+        return Sign::Zero;
+    }
+    let points = [a, b, c];
+    let high = points.iter().flatten().fold(0.0f64, |high, x| x.abs().max(high));
     let low = points.iter().flatten().map(|x| x.abs()).filter(|&x| x != 0.0).fold(f64::INFINITY, f64::min);
     if low > EXPANSION_LOW && high < EXPANSION_HIGH {
         let coordinate = |p: [f64; 2]| robust::Coord { x: p[0], y: p[1] };

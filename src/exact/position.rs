@@ -7,8 +7,10 @@
 //! plane, the limit for a vanishing perturbation is taken: the first coefficients of `D(T; p)` and `D(T; q)` that are not
 //! both zero take their place.
 
+use super::Integer;
 use super::double_double::DoubleDouble;
 use super::lattice::Lattice;
+use super::orient::determinant;
 use super::perturbed::{COEFFICIENTS, PerturbedPoint, coefficients};
 
 /// The crossing point of edge `(p, q)` with the plane of the triangle, if double-double arithmetic can round it with
@@ -76,13 +78,24 @@ pub fn crossing_filter(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> 
 pub fn crossing(p: &PerturbedPoint, q: &PerturbedPoint, triangle: [&PerturbedPoint; 3]) -> [f64; 3] {
     let [a, b, c] = triangle;
     let lattice = Lattice::of([p, q, a, b, c].into_iter().flat_map(|point| &point.position));
-    let height_p = coefficients([a, b, c, p], lattice);
-    let height_q = coefficients([a, b, c, q], lattice);
-    let order = (0..COEFFICIENTS)
-        .find(|&k| height_p[k] != height_q[k])
-        .expect("the ends of a crossing edge lie on different sides");
-    let (height_p, height_q) = (&height_p[order], &height_q[order]);
-    let total = height_p.minus(height_q);
+    // Nearly always the heights of the unperturbed ends tell.
+    let plain = |x: &PerturbedPoint| {
+        let [u, v, w] = [a, b, c].map(|point| -> [Integer; 3] {
+            std::array::from_fn(|k| lattice.integer(point.position[k]).minus(&lattice.integer(x.position[k])))
+        });
+        determinant(&u, &v, &w)
+    };
+    let (height_p, height_q) = (plain(p), plain(q));
+    let (height_p, height_q) = if height_p.is_zero() && height_q.is_zero() {
+        let (all_p, all_q) = (coefficients([a, b, c, p], lattice), coefficients([a, b, c, q], lattice));
+        let order = (0..COEFFICIENTS)
+            .find(|&k| all_p[k] != all_q[k])
+            .expect("the ends of a crossing edge lie on different sides");
+        (all_p[order].clone(), all_q[order].clone())
+    } else {
+        (height_p, height_q)
+    };
+    let total = height_p.minus(&height_q);
     std::array::from_fn(|k| {
         let numerator = height_p
             .times(&lattice.integer(q.position[k]))

@@ -112,6 +112,24 @@ impl FaceList {
         in_triangles.max(in_polygons).max(self.left_out)
     }
 
+    /// The first face that names a vertex beyond `vertices`, counted from 0 among the faces kept, and that vertex;
+    /// `None` for the face if it was left out.
+    pub(super) fn first_beyond(&self, vertices: usize) -> Option<(Option<usize>, u32)> {
+        let beyond = |corners: &[u32]| corners.iter().copied().find(|&corner| corner as usize >= vertices);
+        let triangle = self.triangles.iter().enumerate().find_map(|(i, corners)| Some((i, beyond(corners)?)));
+        let polygon = self.polygons.iter().enumerate().find_map(|(i, polygon)| {
+            let end = self.polygons.get(i + 1).map_or(self.corners.len(), |next| next.first as usize);
+            Some((i, beyond(&self.corners[polygon.first as usize..end])?))
+        });
+        let of_triangle = triangle.map(|(i, index)| {
+            let polygons = self.polygons.partition_point(|polygon| polygon.after as usize <= i);
+            (Some(i + polygons), index)
+        });
+        let of_polygon = polygon.map(|(i, index)| (Some(i + self.polygons[i].after as usize), index));
+        let left_out = self.left_out.filter(|&index| index as usize >= vertices).map(|index| (None, index));
+        of_triangle.into_iter().chain(of_polygon).min().or(left_out)
+    }
+
     /// The triangles, in the order of the faces, with every index in range; and for each of `places` (in order) how
     /// many triangles come before it. Triangles with a repeated corner are dropped: their edges cancel.
     pub(super) fn into_triangles(
@@ -214,6 +232,11 @@ mod tests {
         assert!(faces.push(&[5, 6, 7]));
         places.push(faces.end());
         assert_eq!(faces.largest(), Some(7));
+        // Face 1 is the pentagon, face 2 the triangle 4 5 6, face 3 the last.
+        assert_eq!(faces.first_beyond(3), Some((Some(1), 3)));
+        assert_eq!(faces.first_beyond(5), Some((Some(2), 5)));
+        assert_eq!(faces.first_beyond(7), Some((Some(3), 7)));
+        assert_eq!(faces.first_beyond(8), None);
 
         let mut notes = Notes::default();
         let (triangles, offsets) =

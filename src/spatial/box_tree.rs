@@ -7,8 +7,8 @@
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
-use crate::Error;
 use crate::parallel::Runner;
+use crate::{Control, Error};
 
 /// Items per leaf.
 const LEAF: usize = 4;
@@ -34,6 +34,11 @@ struct Node {
 }
 
 impl BoxTree {
+    /// The tree of nothing.
+    pub(crate) fn empty() -> Self {
+        Self::new(&[], |_| Aabb::INVALID)
+    }
+
     /// The tree of the given items.
     pub(crate) fn new(items: &[u32], box_of: impl Fn(u32) -> Aabb) -> Self {
         let unsorted: Vec<Aabb> = items.iter().map(|&item| box_of(item)).collect();
@@ -111,12 +116,14 @@ impl BoxTree {
     }
 }
 
-/// All pairs of an item of `a` and an item of `b` whose boxes meet, in an order that depends on the trees alone.
-pub(crate) fn overlapping_pairs(
+/// Calls `visit` for all pairs of an item of `a` and an item of `b` whose boxes meet, and returns what it appends, in an
+/// order that depends on the trees alone.
+pub(crate) fn visit_pairs<T: Send>(
     a: &BoxTree,
     b: &BoxTree,
     runner: Runner<'_>,
-) -> Result<Vec<[u32; 2]>, Error> {
+    visit: impl Fn(u32, u32, &mut Vec<T>) + Sync,
+) -> Result<Vec<T>, Error> {
     // Open the pair of roots until there are enough pairs of subtrees to share out.
     const TASKS: usize = 256;
     let (Some(root_a), Some(root_b)) = (a.root(), b.root()) else { return Ok(Vec::new()) };
@@ -139,14 +146,24 @@ pub(crate) fn overlapping_pairs(
             break;
         }
     }
-    let pieces = runner.pieces(tasks.len(), 1, |range| {
-        let mut pairs = Vec::new();
+    let grain = if runner.is_parallel() { 1 } else { tasks.len().max(1) };
+    let pieces = runner.pieces(tasks.len(), grain, |range| {
+        let mut found = Vec::new();
         for &(x, y) in &tasks[range] {
-            walk(a, b, x, y, &mut pairs);
+            walk(a, b, x, y, runner.control, |i, j| visit(i, j, &mut found))?;
         }
-        pairs
+        Ok(found)
     })?;
-    Ok(pieces.concat())
+    concatenated(pieces)
+}
+
+fn concatenated<T>(pieces: Vec<Result<Vec<T>, Error>>) -> Result<Vec<T>, Error> {
+    let mut pieces = pieces.into_iter();
+    let mut all = pieces.next().unwrap_or(Ok(Vec::new()))?;
+    for piece in pieces {
+        all.append(&mut piece?);
+    }
+    Ok(all)
 }
 
 /// All pairs of different items whose boxes meet and that `wanted` accepts, each once with the smaller item first, in an
@@ -166,19 +183,28 @@ pub(crate) fn self_overlapping_pairs(
     let pieces = runner.pieces(count as usize, 1, |range| {
         let place = range.start as u32;
         let mut pairs = Vec::new();
-        walk_within(tree, node(place), &mut pairs);
+        let mut add = |i: u32, j: u32| {
+            let pair = [i.min(j), i.max(j)];
+            if wanted(pair) {
+                pairs.push(pair);
+            }
+        };
+        walk_within(tree, node(place), runner.control, &mut add)?;
         for other in place + 1..count {
-            walk(tree, tree, node(place), node(other), &mut pairs);
+            walk(tree, tree, node(place), node(other), runner.control, &mut add)?;
         }
-        pairs.iter_mut().for_each(|pair| pair.sort_unstable());
-        pairs.retain(|&pair| wanted(pair));
-        pairs
+        Ok(pairs)
     })?;
-    Ok(pieces.concat())
+    concatenated(pieces)
 }
 
-/// Appends all pairs below one node.
-fn walk_within(tree: &BoxTree, node: Node, pairs: &mut Vec<[u32; 2]>) {
+/// Finds all pairs below one node.
+fn walk_within(
+    tree: &BoxTree,
+    node: Node,
+    control: &Control,
+    mut found: impl FnMut(u32, u32),
+) -> Result<(), Error> {
     let mut stack = vec![node];
     while let Some(node) = stack.pop() {
         if node.level == 0 {
@@ -186,7 +212,7 @@ fn walk_within(tree: &BoxTree, node: Node, pairs: &mut Vec<[u32; 2]>) {
             for i in leaf.clone() {
                 for j in i + 1..leaf.end {
                     if tree.boxes[i].intersect_aabb(&tree.boxes[j]) {
-                        pairs.push([tree.items[i], tree.items[j]]);
+                        found(tree.items[i], tree.items[j]);
                     }
                 }
             }
@@ -194,10 +220,11 @@ fn walk_within(tree: &BoxTree, node: Node, pairs: &mut Vec<[u32; 2]>) {
         }
         let children: Vec<Node> = tree.children(node).collect();
         if let [left, right] = children[..] {
-            walk(tree, tree, left, right, pairs);
+            walk(tree, tree, left, right, control, &mut found)?;
         }
         stack.extend(children);
     }
+    Ok(())
 }
 
 /// Replaces a pair of nodes by pairs with the children of the higher one.
@@ -214,9 +241,23 @@ fn open(a: &BoxTree, b: &BoxTree, x: Node, y: Node, mut emit: impl FnMut((Node, 
     }
 }
 
-fn walk(a: &BoxTree, b: &BoxTree, x: Node, y: Node, pairs: &mut Vec<[u32; 2]>) {
+/// Finds all pairs below two nodes.
+fn walk(
+    a: &BoxTree,
+    b: &BoxTree,
+    x: Node,
+    y: Node,
+    control: &Control,
+    mut found: impl FnMut(u32, u32),
+) -> Result<(), Error> {
+    const STEPS_BETWEEN_CHECKS: u32 = 1 << 16;
+    let mut steps = 0;
     let mut stack = vec![(x, y)];
     while let Some((x, y)) = stack.pop() {
+        steps += 1;
+        if steps % STEPS_BETWEEN_CHECKS == 0 {
+            control.check()?;
+        }
         if !a.node_box(x).intersect_aabb(b.node_box(y)) {
             continue;
         }
@@ -230,11 +271,12 @@ fn walk(a: &BoxTree, b: &BoxTree, x: Node, y: Node, pairs: &mut Vec<[u32; 2]>) {
             }
             for j in b.leaf(y) {
                 if a.boxes[i].intersect_aabb(&b.boxes[j]) {
-                    pairs.push([a.items[i], b.items[j]]);
+                    found(a.items[i], b.items[j]);
                 }
             }
         }
     }
+    Ok(())
 }
 
 fn union(boxes: &[Aabb]) -> Aabb {
@@ -244,7 +286,7 @@ fn union(boxes: &[Aabb]) -> Aabb {
 }
 
 /// The Morton code of a point with coordinates in 0..=1023.
-pub(super) fn morton(point: Vec3A) -> u32 {
+fn morton(point: Vec3A) -> u32 {
     let spread = |x: f32| {
         let mut bits = (x as u32).min(1023);
         bits = (bits | bits << 16) & 0x0300_00ff;
@@ -258,7 +300,6 @@ pub(super) fn morton(point: Vec3A) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Control;
     use rand::rngs::ChaCha8Rng;
     use rand::{RngExt, SeedableRng};
 
@@ -284,7 +325,8 @@ mod tests {
             let (tree_a, tree_b) = (tree(&a), tree(&b));
             let control = Control::new();
             let mut pairs =
-                overlapping_pairs(&tree_a, &tree_b, Runner::new(&control, true)).expect("no limits");
+                visit_pairs(&tree_a, &tree_b, Runner::new(&control, true), |i, j, found| found.push([i, j]))
+                    .expect("no limits");
             pairs.sort_unstable();
             let mut expected = Vec::new();
             for (i, x) in a.iter().enumerate() {

@@ -1,17 +1,38 @@
 //! Hierarchies of axis-aligned boxes over triangles, and the queries that walk them (Vyatkin 2019, step 1: AABB
 //! hierarchies; tighter volumes do not pay where overlap is expected).
+//!
+//! [`TriangleTree`] answers nearest-point queries, exact ray crossings and fast winding numbers over the triangles
+//! of a mesh. Boxes are single precision about the model's centre, always rounded outward, so that they only ever
+//! spare work; distances and signs come from the `f64` vertices. Booleans build simpler trees for one walk each.
+
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "a NaN fails every comparison, and is meant to be refused"
+)]
 
 mod box_tree;
+mod build;
+mod closest;
+mod crossing;
+mod fast_winding;
 mod frame;
+mod local_frame;
+mod morton;
+mod occupancy;
+mod triangle;
+mod triangle_tree;
+mod wide;
 
-pub(crate) use box_tree::{BoxTree, overlapping_pairs, self_overlapping_pairs};
+pub use closest::Closest;
+pub use crossing::{Crossings, Side};
+pub use fast_winding::FastWinding;
+pub use triangle::{Feature, closest_on_segment, closest_on_triangle};
+pub use triangle_tree::TriangleTree;
+
+pub(crate) use box_tree::{BoxTree, self_overlapping_pairs, visit_pairs};
+pub(crate) use build::binary_tree;
 pub(crate) use frame::Frame;
-
-/// For each point a number that sorts points which are near each other near each other.
-pub(crate) fn morton_codes(points: &[[f64; 3]]) -> Vec<u64> {
-    let low: [f64; 3] = std::array::from_fn(|k| points.iter().fold(f64::INFINITY, |low, p| low.min(p[k])));
-    let high: [f64; 3] =
-        std::array::from_fn(|k| points.iter().fold(f64::NEG_INFINITY, |high, p| high.max(p[k])));
-    let frame = Frame::of(low, high);
-    points.iter().map(|point| u64::from(box_tree::morton((frame.point(point) + 2.0) * 255.0))).collect()
-}
+pub(crate) use local_frame::{LocalFrame, SmallBox};
+pub(crate) use morton::coherent_order;
+pub(crate) use occupancy::Occupancy;
+pub(crate) use wide::{LANES, WideTree};

@@ -18,7 +18,7 @@ pub(super) struct Buffers<'a> {
     reader: &'a Reader<'a>,
     binary: Option<&'a [u8]>,
     options: &'a ReadOptions,
-    fetched: RefCell<HashMap<Source, Rc<[u8]>>>,
+    fetched: RefCell<HashMap<Source, Rc<Vec<u8>>>>,
     external: Cell<u64>,
 }
 
@@ -32,7 +32,7 @@ enum Source {
 /// The bytes of a buffer view.
 pub(super) enum Bytes<'a> {
     Chunk(&'a [u8]),
-    Shared { bytes: Rc<[u8]>, start: usize, length: usize },
+    Shared { bytes: Rc<Vec<u8>>, start: usize, length: usize },
 }
 
 impl Bytes<'_> {
@@ -92,18 +92,18 @@ impl<'a> Buffers<'a> {
     }
 
     /// The bytes behind a URI.
-    fn fetch(&self, buffer: u32, uri: &str, pointer: &str) -> Result<Rc<[u8]>, Error> {
+    fn fetch(&self, buffer: u32, uri: &str, pointer: &str) -> Result<Rc<Vec<u8>>, Error> {
         let data = uri.strip_prefix("data:");
         let source = match data {
             Some(_) => Source::Data(buffer),
-            None => Source::File(percent_decode(uri).ok_or_else(|| {
+            None => Source::File(percent_decode(uri).map(|name| without_dots(&name)).ok_or_else(|| {
                 self.reader.error(pointer, format!("the URI {:?} has a wrong percent escape", shorten(uri)))
             })?),
         };
         if let Some(bytes) = self.fetched.borrow().get(&source) {
             return Ok(Rc::clone(bytes));
         }
-        let bytes: Rc<[u8]> = match (&source, data) {
+        let bytes: Rc<Vec<u8>> = match (&source, data) {
             (Source::File(name), _) => {
                 let folder = self.options.folder.as_deref().ok_or_else(|| {
                     self.reader.error(
@@ -118,9 +118,9 @@ impl<'a> Buffers<'a> {
                     self.reader.error(pointer, format!("cannot read the file {:?}: {reason}", shorten(name)))
                 })?;
                 self.external.set(self.external.get() + bytes.len() as u64);
-                bytes.into()
+                Rc::new(bytes)
             }
-            (Source::Data(_), data) => self.decode(data.unwrap_or_default(), pointer)?.into(),
+            (Source::Data(_), data) => Rc::new(self.decode(data.unwrap_or_default(), pointer)?),
         };
         self.fetched.borrow_mut().insert(source, Rc::clone(&bytes));
         Ok(bytes)
@@ -142,6 +142,15 @@ impl<'a> Buffers<'a> {
             .decode(text.as_bytes())
             .map_err(|error| self.reader.error(pointer, format!("the data URI is not valid base64: {error}")))
     }
+}
+
+/// A relative path without the parts that stay in place, so that one file has one name.
+fn without_dots(name: &str) -> String {
+    let separator = |character| character == '/' || character == '\\';
+    let parts: Vec<&str> = name.split(separator).filter(|part| !part.is_empty() && *part != ".").collect();
+    // Absolute paths stay absolute, and are refused later.
+    let root = if name.starts_with(separator) { "/" } else { "" };
+    format!("{root}{}", parts.join("/"))
 }
 
 /// Replaces "%20" and the like; `None` if one is cut off, no number or not UTF-8.
@@ -168,6 +177,15 @@ fn shorten(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_file_has_one_name() {
+        for name in ["a/b.bin", "./a/b.bin", "a/./b.bin", "a//b.bin", "a\\b.bin", ".//a/b.bin"] {
+            assert_eq!(without_dots(name), "a/b.bin", "{name}");
+        }
+        assert_eq!(without_dots("/etc/a.bin"), "/etc/a.bin");
+        assert_eq!(without_dots("../a.bin"), "../a.bin");
+    }
 
     #[test]
     fn percent_escapes() {

@@ -256,7 +256,7 @@ impl<'a> Builder<'a> {
 
     /// The mesh.
     pub(super) fn finish(mut self) -> Mesh {
-        if self.groups.list.len() > 1 || self.groups.list.iter().any(|group| *group != FaceGroup::default()) {
+        if self.groups.list.iter().any(|group| *group != FaceGroup::default()) {
             self.mesh.groups = self.groups;
         }
         self.mesh

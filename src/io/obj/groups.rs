@@ -64,6 +64,10 @@ impl<'a> Groups<'a> {
         if names.is_empty() || self.libraries.contains(&names) {
             return;
         }
+        if self.libraries.len() == library::MOST {
+            notes.add("material library not read, there are too many", 1);
+            return;
+        }
         self.libraries.push(names);
         library::read(names, folder, &mut self.materials, notes);
     }

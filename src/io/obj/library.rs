@@ -10,6 +10,9 @@ use super::super::scan::{Scanner, decode, quote};
 /// Larger libraries are not read; a material takes about a hundred bytes.
 const LARGEST_LIBRARY: u64 = 64 << 20;
 
+/// At most this many statements, and names in one, are followed.
+pub(super) const MOST: usize = 64;
+
 /// Reads the libraries named by one `mtllib` statement: one name with blanks in it, or several names.
 pub(super) fn read(
     names: &[u8],
@@ -26,7 +29,13 @@ pub(super) fn read(
         parse(bytes, materials, notes);
         return;
     }
-    let words: Vec<&[u8]> = names.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect();
+    // The blanks may be part of one name, or part several.
+    let mut words: Vec<&[u8]> = Vec::new();
+    for word in names.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()) {
+        if words.len() < MOST && !words.contains(&word) {
+            words.push(word);
+        }
+    }
     for name in &words {
         let library = match &whole {
             Err(reason) if words.len() == 1 => Err(reason.clone()),

@@ -56,7 +56,7 @@ fn read_in_pieces(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
     }
 
     let positions = join(pieces.iter_mut().map(|piece| std::mem::take(&mut piece.positions)).collect());
-    let resolved = parallel::map(pieces, |piece| {
+    let resolved = parallel::map(pieces, |piece| -> Result<_, Error> {
         let mut notes = Notes::default();
         let places: Vec<_> = piece.changes.iter().map(|change| change.at).collect();
         let (triangles, offsets) =

@@ -45,8 +45,12 @@ fn assemble(
     notes: &mut Notes,
     options: &ReadOptions,
 ) -> Result<Mesh, Error> {
-    if let Some(largest) = faces.largest().filter(|&index| index as usize >= positions.len()) {
-        return Err(index_error(Format::Ply, "the faces", u64::from(largest), positions.len()));
+    if faces.largest().is_some_and(|index| index as usize >= positions.len())
+        && let Some((face, index)) = faces.first_beyond(positions.len())
+    {
+        let place =
+            face.map_or("a face of fewer than three corners".to_string(), |face| format!("face {face}"));
+        return Err(index_error(Format::Ply, place, u64::from(index), positions.len()));
     }
     let (triangles, _) = faces.into_triangles(&positions, &[], notes, &options.control)?;
     if triangles.len() > u32::MAX as usize {

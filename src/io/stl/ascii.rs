@@ -134,12 +134,11 @@ impl<'a> Reader<'a> {
         }
         self.expect(b"outer", "\"outer loop\"")?;
         self.expect(b"loop", "\"outer loop\"")?;
-        let mut corners = [0; 3];
-        for corner in &mut corners {
+        let mut corners = [[0.0; 3]; 3];
+        for position in &mut corners {
             self.expect(b"vertex", "\"vertex\"")?;
-            let mut position = [0.0; 3];
             let start = self.scanner.offset();
-            for coordinate in &mut position {
+            for coordinate in position {
                 self.next_word();
                 *coordinate = match self.scanner.float() {
                     // Adding zero makes negative zero positive.
@@ -148,11 +147,12 @@ impl<'a> Reader<'a> {
                     Err(_) => return Err(self.scanner.expected(Format::Stl, "a coordinate")),
                 };
             }
-            *corner = self.weld.vertex(position)?;
         }
         self.expect(b"endloop", "\"endloop\" after three vertices")?;
         self.expect(b"endfacet", "\"endfacet\"")?;
-        Ok(corners)
+        let mut triangle = [0; 3];
+        self.weld.vertices(&corners, &mut triangle)?;
+        Ok(triangle)
     }
 
     #[inline(always)]

@@ -10,11 +10,12 @@ use crate::{Control, Error, Mesh};
 const HEADER: usize = 84;
 const FACET: usize = 50;
 
-/// Facets between two looks at the limits.
-const CHECK_INTERVAL: usize = 1 << 14;
+/// Facets whose corners are looked up together.
+const BATCH: usize = 32;
 
-/// Fewer facets are not worth a thread.
-const SMALLEST_PIECE: usize = 1 << 16;
+/// Facets that are read together: their vertices have room in the processor's nearer memory, so most corners are found
+/// fast, and only the vertices of each piece are looked up among all.
+const PIECE: usize = 1 << 14;
 
 /// The length that a binary STL file with this beginning should have.
 pub(in crate::io) fn exact_length(bytes: &[u8]) -> Option<u64> {
@@ -59,11 +60,14 @@ pub(super) fn read(bytes: &[u8], notes: &mut Notes, control: &Control) -> Result
         notes.say(format!("{surplus} bytes after the last facet ignored"));
         announced as usize
     };
-    let ranges = parallel::ranges(count, parallel::pieces(count, SMALLEST_PIECE));
-    let mut pieces = parallel::map(ranges, |range| Piece::read(facets, range, control)).into_iter();
-    let mut whole = pieces.next().unwrap_or_else(|| Ok(Piece::new(0)))?;
-    for piece in pieces {
-        whole.append(&piece?)?;
+    let mut whole = Piece::new(count);
+    let starts: Vec<usize> = (0..count).step_by(PIECE).collect();
+    for wave in starts.chunks(parallel::pieces(usize::MAX, 1)) {
+        control.check()?;
+        let read = |start: usize| Piece::read(facets, start..(start + PIECE).min(count));
+        for piece in parallel::map(wave.to_vec(), read) {
+            whole.append(&piece?)?;
+        }
     }
     notes.add("facet with two equal corners dropped", whole.degenerate);
     Ok(Mesh::new(whole.weld.into_positions(), whole.triangles))
@@ -81,35 +85,48 @@ impl Piece {
         Self { weld: Weld::new(facets), triangles: Vec::with_capacity(facets), degenerate: 0 }
     }
 
-    fn read(facets: &[[u8; FACET]], range: Range<usize>, control: &Control) -> Result<Self, Error> {
+    fn read(facets: &[[u8; FACET]], range: Range<usize>) -> Result<Self, Error> {
         let mut piece = Self::new(range.len());
-        for i in range.clone() {
-            if (i - range.start).is_multiple_of(CHECK_INTERVAL) {
-                control.check()?;
-            }
-            let corners = corners(&facets[i]);
-            if !corners.as_flattened().iter().all(|coordinate| coordinate.is_finite()) {
-                return Err(malformed(
-                    Format::Stl,
-                    format!("byte {}", HEADER + i * FACET),
-                    format!("facet {i} has a coordinate that is not a finite number"),
-                ));
-            }
-            let [a, b, c] = corners;
-            let triangle = [piece.weld.vertex(a)?, piece.weld.vertex(b)?, piece.weld.vertex(c)?];
-            if triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0] {
-                piece.degenerate += 1;
-            } else {
-                piece.triangles.push(triangle);
-            }
+        let (batches, rest) = facets[range.clone()].as_chunks::<BATCH>();
+        for (i, batch) in batches.iter().enumerate() {
+            piece.add(batch, range.start + i * BATCH)?;
+        }
+        for (i, facet) in rest.iter().enumerate() {
+            piece.add(&[*facet], range.end - rest.len() + i)?;
         }
         Ok(piece)
     }
 
+    /// Adds facets, the first of which is number `first` of the file.
+    fn add<const N: usize>(&mut self, facets: &[[u8; FACET]; N], first: usize) -> Result<(), Error> {
+        let mut numbers = [[[0.0; 3]; 3]; N];
+        for (i, facet) in facets.iter().enumerate() {
+            numbers[i] = corners(facet);
+            if !numbers[i].as_flattened().iter().all(|coordinate| coordinate.is_finite()) {
+                return Err(malformed(
+                    Format::Stl,
+                    format!("byte {}", HEADER + (first + i) * FACET),
+                    format!("facet {} has a coordinate that is not a finite number", first + i),
+                ));
+            }
+        }
+        // Corner by corner, in the order of the file.
+        let mut triangles = [[0; 3]; N];
+        self.weld.vertices(numbers.as_flattened(), triangles.as_flattened_mut())?;
+        for triangle in triangles {
+            if triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0] {
+                self.degenerate += 1;
+            } else {
+                self.triangles.push(triangle);
+            }
+        }
+        Ok(())
+    }
+
     /// Adds the facets that follow: their vertices are looked up once each, and numbered as if read in one run.
     fn append(&mut self, later: &Self) -> Result<(), Error> {
-        let numbers: Vec<u32> =
-            later.weld.corners().iter().map(|&corner| self.weld.vertex(corner)).collect::<Result<_, _>>()?;
+        let mut numbers = vec![0; later.weld.corners().len()];
+        self.weld.vertices(later.weld.corners(), &mut numbers)?;
         self.triangles
             .extend(later.triangles.iter().map(|triangle| triangle.map(|corner| numbers[corner as usize])));
         self.degenerate += later.degenerate;

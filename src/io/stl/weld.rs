@@ -6,10 +6,17 @@ use super::super::Format;
 use super::super::faces::too_large;
 use crate::Error;
 
-const EMPTY: u32 = u32::MAX;
+/// A place of the table without a vertex.
+const EMPTY: u64 = u64::MAX;
+
+/// The part of a hash that a place keeps.
+const TAG: u64 = 0xffff_ffff_0000_0000;
+
+/// Corners that are looked up together.
+const BATCH: usize = 96;
 
 /// Coordinates that can be vertices: equal bits, equal vertex.
-pub(super) trait Corner: Copy + Default + PartialEq {
+pub(super) trait Corner: Copy + PartialEq {
     /// The bits, as two words to hash.
     fn words(self) -> [u64; 2];
     /// As written to the mesh.
@@ -46,15 +53,10 @@ impl Corner for [f64; 3] {
 #[derive(Debug)]
 pub(super) struct Weld<C> {
     corners: Vec<C>,
-    /// Indices into `corners` by hash, a power of two of them.
-    slots: Vec<u32>,
-    /// The vertices asked for last, by hash: most corners are found here, in the nearest memory.
-    recent: Vec<(C, u32)>,
+    /// Places by hash, a power of two of them: the upper half of the hash, and an index into `corners`.
+    slots: Vec<u64>,
     seed: u64,
 }
-
-/// At most this many vertices are kept near, a power of two.
-const RECENT: usize = 1 << 14;
 
 impl<C: Corner> Weld<C> {
     /// With room for the vertices of about this many triangles.
@@ -63,46 +65,56 @@ impl<C: Corner> Weld<C> {
         let slots = triangles.max(8).next_power_of_two();
         // The seed differs from run to run, so that no file can be made whose corners all collide.
         let seed = RandomState::new().hash_one(0_u8);
-        Self {
-            corners: Vec::with_capacity(triangles / 2 + 4),
-            slots: vec![EMPTY; slots],
-            recent: vec![(C::default(), EMPTY); slots.min(RECENT)],
-            seed,
-        }
+        Self { corners: Vec::with_capacity(triangles / 2 + 4), slots: vec![EMPTY; slots], seed }
     }
 
-    /// The vertex with these coordinates. Zeros must be positive, and no coordinate NaN.
+    /// Puts the vertices with these coordinates into `vertices`, a list of the same length. Zeros must be positive,
+    /// and no coordinate NaN.
     #[inline(always)]
-    pub(super) fn vertex(&mut self, corner: C) -> Result<u32, Error> {
-        let hash = self.hash(corner);
-        let recent = (hash >> 40) as usize & (self.recent.len() - 1);
-        let (known, index) = self.recent[recent];
-        if known == corner && index != EMPTY {
-            return Ok(index);
+    pub(super) fn vertices(&mut self, corners: &[C], vertices: &mut [u32]) -> Result<(), Error> {
+        let mut hashes = [0; BATCH];
+        let mut slots = [EMPTY; BATCH];
+        for (corners, vertices) in corners.chunks(BATCH).zip(vertices.chunks_mut(BATCH)) {
+            // Reading all places of the table before using any lets the processor wait for them at once. Corners are
+            // looked at only where the hash is right: they lie far apart in memory.
+            let mask = self.slots.len() - 1;
+            for (i, &corner) in corners.iter().enumerate() {
+                hashes[i] = self.hash(corner);
+                slots[i] = self.slots[hashes[i] as usize & mask];
+            }
+            for (i, &corner) in corners.iter().enumerate() {
+                let index = slots[i] as u32;
+                let found =
+                    (slots[i] ^ hashes[i]) >> 32 == 0 && self.corners.get(index as usize) == Some(&corner);
+                vertices[i] = if found { index } else { EMPTY as u32 };
+            }
+            for (i, vertex) in vertices.iter_mut().enumerate() {
+                if *vertex == EMPTY as u32 {
+                    *vertex = self.find_or_add(corners[i], hashes[i])?;
+                }
+            }
         }
-        let index = self.find_or_add(corner, hash)?;
-        self.recent[recent] = (corner, index);
-        Ok(index)
+        Ok(())
     }
 
     fn find_or_add(&mut self, corner: C, hash: u64) -> Result<u32, Error> {
         let mask = self.slots.len() - 1;
         let mut slot = hash as usize & mask;
         loop {
-            let index = self.slots[slot];
-            if index == EMPTY {
+            let entry = self.slots[slot];
+            if entry == EMPTY {
                 break;
             }
-            if self.corners[index as usize] == corner {
-                return Ok(index);
+            if (entry ^ hash) >> 32 == 0 && self.corners[entry as u32 as usize] == corner {
+                return Ok(entry as u32);
             }
             slot = (slot + 1) & mask;
         }
         let index = self.corners.len();
-        if index >= EMPTY as usize {
+        if index >= u32::MAX as usize {
             return Err(too_large(Format::Stl, "vertices"));
         }
-        self.slots[slot] = index as u32;
+        self.slots[slot] = hash & TAG | index as u64;
         self.corners.push(corner);
         if self.corners.len() * 4 > self.slots.len() * 3 {
             self.grow();
@@ -124,11 +136,12 @@ impl<C: Corner> Weld<C> {
         self.slots.clear();
         self.slots.resize(mask + 1, EMPTY);
         for index in 0..self.corners.len() {
-            let mut slot = self.hash(self.corners[index]) as usize & mask;
+            let hash = self.hash(self.corners[index]);
+            let mut slot = hash as usize & mask;
             while self.slots[slot] != EMPTY {
                 slot = (slot + 1) & mask;
             }
-            self.slots[slot] = index as u32;
+            self.slots[slot] = hash & TAG | index as u64;
         }
     }
 
@@ -154,7 +167,9 @@ mod tests {
         let corner = |i: u32| [i as f32, (i % 7) as f32, 1.0];
         for round in 0..2 {
             for i in 0..10_000 {
-                assert_eq!(weld.vertex(corner(i)).unwrap(), i, "round {round}");
+                let mut vertex = [0];
+                weld.vertices(&[corner(i)], &mut vertex).unwrap();
+                assert_eq!(vertex, [i], "round {round}");
             }
         }
         assert_eq!(weld.into_positions()[9_999], [9_999.0, 3.0, 1.0]);

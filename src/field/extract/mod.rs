@@ -1,0 +1,201 @@
+//! From a field back to a mesh: the boundary of where it is positive, as a closed surface.
+//!
+//! # How
+//! Space is divided into cubes (an octree) until each is certainly empty, by interval arithmetic, or holds a piece of
+//! surface that one small patch follows to within the tolerance. On every face of the cubes the surface's cut is a
+//! line between crossings of lattice edges, with a kink where a crease passes; the lines round a cube form a loop, and
+//! the loop is filled with triangles, from a point on the crease or corner inside the cube if there is one. This is
+//! cubical marching squares (Ho, Wu, Chen, Chuang, Ouhyoung 2005: features on faces and in cells, no cracks between
+//! cells of different size), with the positions of features from Newton's method on the branches of minima and maxima
+//! that meet there instead of from fitted planes. Cubes that hold several pieces, or whose faces are cut by several
+//! lines, at the finest level, are divided into tetrahedra instead, where neither can happen.
+//!
+//! # What is promised
+//! - **Closed and 2-manifold, always**: every face of a cube has one line, seen alike from both sides; every cube
+//!   fills its loop with a disc.
+//! - **No self-crossings**, up to the rounding of coordinates: each patch stays in its cube, and patches in one cube do
+//!   not cross.
+//! - Deterministic: the same bytes for any number of threads.
+//!
+//! What is *not* promised: parts of the solid thinner than [`Extraction::resolution`] may be missed or joined, and the
+//! tolerance is checked at sample points (the largest deviation found is in the report), not proven.
+
+mod contour;
+mod faces;
+mod lattice;
+mod loops;
+mod octree;
+mod patch;
+mod solve;
+mod surface;
+mod tables;
+mod tetrahedra;
+
+use glam::DVec3;
+
+use super::Expression;
+use crate::{Control, Error, Mesh};
+pub use contour::ContourExtraction;
+use lattice::{DEEPEST, Lattice};
+
+/// How often cells are divided again after their neighbours are known.
+const ROUNDS: usize = 6;
+
+/// Settings of an extraction.
+#[derive(Clone, Debug)]
+pub struct Extraction {
+    low: [f64; 3],
+    high: [f64; 3],
+    tolerance: f64,
+    resolution: Option<f64>,
+    smallest: Option<f64>,
+    clip: bool,
+    control: Control,
+}
+
+/// A surface extracted from a field.
+#[derive(Clone, Debug)]
+pub struct Extracted {
+    /// The surface, facing where the field is negative. Empty if the field is positive nowhere in the box.
+    pub mesh: Mesh,
+    /// Cubes that the surface was sought in.
+    pub cells: usize,
+    /// Cubes at the finest level that were divided into tetrahedra: places where the surface has several pieces
+    /// closer together than the smallest cube.
+    pub divided_cells: usize,
+    /// Side of the smallest cube used.
+    pub smallest_cell: f64,
+    /// The largest deviation from the field's zero found at the middles of the triangles, to first order (the
+    /// value over the length of the gradient).
+    pub deviation: f64,
+}
+
+impl Extraction {
+    /// An extraction in the box `low..high`, which must contain the solid, to within `tolerance`.
+    #[must_use]
+    pub fn new(low: [f64; 3], high: [f64; 3], tolerance: f64) -> Self {
+        Self {
+            low,
+            high,
+            tolerance,
+            resolution: None,
+            smallest: None,
+            clip: false,
+            control: Control::default(),
+        }
+    }
+
+    /// Parts of the solid at least this thick are found for certain where the field is given by formulas. Default: a
+    /// 64th of the longest side of the box.
+    #[must_use]
+    pub fn resolution(mut self, resolution: f64) -> Self {
+        self.resolution = Some(resolution);
+        self
+    }
+
+    /// Side of the smallest cubes, which are reached where features meet and along edges that cannot be told by
+    /// branches. Default: the tolerance. Rounded down to a halving of the whole box.
+    #[must_use]
+    pub fn smallest(mut self, smallest: f64) -> Self {
+        self.smallest = Some(smallest);
+        self
+    }
+
+    /// Whether to cut the solid off at the box, instead of failing if it does not end inside.
+    #[must_use]
+    pub fn clip(mut self, clip: bool) -> Self {
+        self.clip = clip;
+        self
+    }
+
+    /// Limits and progress.
+    #[must_use]
+    pub fn control(mut self, control: Control) -> Self {
+        self.control = control;
+        self
+    }
+
+    /// Extracts the surface of where `field` is positive.
+    ///
+    /// # Errors
+    /// - [`Error::InvalidArgument`] for an empty box or a tolerance that is not positive, or finer than the box
+    ///   divided 2^19 times;
+    /// - [`Error::Field`] if the solid does not end inside the box, or the field is not a number somewhere near the
+    ///   surface;
+    /// - the limits of the control.
+    pub fn run(&self, field: &Expression) -> Result<Extracted, Error> {
+        let (low, high) = (DVec3::from_array(self.low), DVec3::from_array(self.high));
+        if !(low.is_finite() && high.is_finite() && low.cmplt(high).all()) {
+            let what = format!("the box from {:?} to {:?} is empty or not finite", self.low, self.high);
+            return Err(Error::InvalidArgument(what));
+        }
+        let positive = |value: f64, name: &str| {
+            if value > 0.0 && value.is_finite() {
+                Ok(value)
+            } else {
+                Err(Error::InvalidArgument(format!("the {name} must be positive, not {value}")))
+            }
+        };
+        let tolerance = positive(self.tolerance, "tolerance")?;
+        let extent = (high - low).max_element();
+        let smallest = positive(self.smallest.unwrap_or(tolerance), "smallest cell")?;
+        let depth = (extent / smallest).log2().ceil().max(3.0);
+        if depth > f64::from(DEEPEST) {
+            let what = format!(
+                "cells of {smallest:e} in a box of {extent:e} need {depth} halvings; at most {DEEPEST} are possible"
+            );
+            return Err(Error::InvalidArgument(what));
+        }
+        let lattice = Lattice::around(low, high, depth as u32);
+        let resolution = positive(self.resolution.unwrap_or(extent / 64.0), "resolution")?;
+        let field = if self.clip { self.clipped(field) } else { field.clone() }.sign_form();
+        let settings = octree::Settings { lattice, tolerance, resolution, control: &self.control };
+        let mut leaves = octree::subdivide(field.tape(), &settings)?;
+        for round in 0.. {
+            if let Some(leaf) = leaves.iter().find(|leaf| leaf.inside && at_edge(&lattice, leaf.cube)) {
+                let place = leaf.cube.points().into_iter().find(|&point| lattice.on_boundary(point));
+                return Err(tables::unbounded(lattice.place(place.unwrap_or(leaf.cube.corner)).to_array()));
+            }
+            let tables = tables::Tables::new(&leaves, lattice, tolerance, &self.control)?;
+            let (mesh, deviations) = surface::assemble(&tables, &self.control)?;
+            let (cells, divided) = (tables.cells.len(), tables.divided.clone());
+            let finest = tables.cells.iter().map(|leaf| leaf.cube.size).min().unwrap_or(lattice.count);
+            // Finer neighbours may have shown what a cell's own corners did not.
+            let mut coarse =
+                divided.iter().zip(&deviations).map(|(&divided, &error)| divided || error > tolerance);
+            let wanted: Vec<bool> =
+                leaves.iter().map(|leaf| leaf.tape.is_some() && coarse.next().unwrap_or(false)).collect();
+            if round < ROUNDS && octree::refine(&mut leaves, |leaf| wanted[leaf], &settings)? {
+                continue;
+            }
+            return Ok(Extracted {
+                mesh,
+                cells,
+                divided_cells: divided.iter().filter(|&&divided| divided).count(),
+                smallest_cell: f64::from(finest) * lattice.step(),
+                deviation: deviations.iter().copied().fold(0.0, f64::max),
+            });
+        }
+        Err(Error::Field("the extraction did not settle".into()))
+    }
+
+    /// The field, cut off at the box.
+    fn clipped(&self, field: &Expression) -> Expression {
+        let (graph, root) = field.graph();
+        let mut graph = graph.clone();
+        let axes = graph.axes();
+        let mut all = graph.sign_form(root);
+        for axis in 0..3 {
+            let (low, high) = (graph.constant(self.low[axis]), graph.constant(self.high[axis]));
+            let above = graph.sub(axes[axis], low);
+            let below = graph.sub(high, axes[axis]);
+            all = graph.min(all, above);
+            all = graph.min(all, below);
+        }
+        Expression::new(graph, all)
+    }
+}
+
+fn at_edge(lattice: &Lattice, cube: lattice::Cube) -> bool {
+    cube.corner.iter().any(|&x| x == 0 || x + cube.size == lattice.count)
+}

@@ -1,0 +1,36 @@
+//! Solids given by functions: signed distance of meshes, R-functions, formulas, and the way back to a closed mesh.
+//!
+//! Everything here is **positive inside**, zero on the boundary and negative outside, as in Choporov 2017 and 2010.
+
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "a NaN fails every comparison, and is meant to be refused"
+)]
+
+mod bounds;
+mod contour_distance;
+mod distance;
+mod expression;
+mod extract;
+mod extrude;
+mod formula;
+mod grid;
+mod interval;
+mod leaf;
+mod number;
+mod picture;
+mod pseudonormal;
+mod rfunction;
+mod work;
+
+pub use contour_distance::{ContourDistance, Contours};
+pub use distance::{SignRule, SignedDistance, SignedDistanceAt};
+pub use expression::{Expression, Graph, Leaf, NodeId};
+pub use extract::{ContourExtraction, Extracted, Extraction};
+pub use extrude::extrude;
+pub(crate) use formula::named_system;
+pub use formula::{Formula, FormulaError};
+pub use grid::{Grid, GridFormat};
+pub use interval::Interval;
+pub use picture::{Section, SectionPicture};
+pub use rfunction::System;

@@ -1,0 +1,159 @@
+//! Model files: solids composed of meshes, primitives, formulas and contours, as JSON.
+//!
+//! `docs/models.md` describes the file. A [`Model`] is read and checked as a whole, then evaluated: operations marked
+//! `exact` run on meshes, those marked `field` on R-functions, with one extraction at the end.
+//!
+//! ```
+//! use trisect::model::{Evaluation, Model};
+//! let model = Model::parse(
+//!     r#"{ "kind": "difference", "evaluate": "field", "operands": [
+//!         { "kind": "box", "size": [2, 2, 1] },
+//!         { "kind": "cylinder", "radius": 0.5, "height": 2 } ] }"#,
+//!     ".".as_ref(),
+//! )?;
+//! let found = Evaluation::new().tolerance(0.02).run(&model)?;
+//! assert!(found.mesh.triangles.len() > 100);
+//! # Ok::<(), trisect::Error>(())
+//! ```
+
+#![allow(
+    clippy::neg_cmp_op_on_partial_ord,
+    reason = "a NaN fails every comparison, and is meant to be refused"
+)]
+
+mod contour;
+mod evaluate;
+mod load;
+mod parse;
+mod primitive;
+mod transform;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+pub use evaluate::{Evaluated, Evaluation, ExtractionReport, LeafKind};
+
+use crate::Error;
+use crate::boolean::Operation;
+use crate::field::{Contours, Formula, System};
+use glam::DAffine3;
+use primitive::Primitive;
+
+/// A model: named and unnamed nodes, one of which is the result.
+#[derive(Clone, Debug)]
+pub struct Model {
+    nodes: Vec<Node>,
+    names: BTreeMap<String, usize>,
+    result: usize,
+    /// Where relative file names start.
+    folder: PathBuf,
+    defaults: Defaults,
+}
+
+/// Settings of the whole model.
+#[derive(Clone, Debug, Default)]
+struct Defaults {
+    tolerance: Option<f64>,
+    bounds: Option<[[f64; 3]; 2]>,
+    system: Option<System>,
+    parameters: Vec<(String, f64)>,
+}
+
+/// How an operation is carried out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Mode {
+    /// On meshes, exactly.
+    Exact,
+    /// On functions.
+    Field,
+}
+
+#[derive(Clone, Debug)]
+struct Node {
+    /// What errors call the node: its name, if any, and its place in the file.
+    label: String,
+    kind: Kind,
+    extrude: Option<[f64; 2]>,
+    transform: DAffine3,
+    mode: Option<Mode>,
+    system: Option<System>,
+    tolerance: Option<f64>,
+    bounds: Option<[[f64; 3]; 2]>,
+    clip: bool,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    Operation(Operation, Vec<usize>),
+    Complement(usize),
+    /// Another node, by name, and its position once names are resolved.
+    Reference(String, usize),
+    Mesh(PathBuf),
+    Primitive(Primitive),
+    Formula {
+        formula: Box<Formula>,
+        parameters: Vec<(String, f64)>,
+        /// Nodes the formula uses by name.
+        uses: Vec<(String, usize)>,
+    },
+    Contour(Contours),
+    /// A leaf that something outside this module evaluates.
+    Custom {
+        kind: String,
+        value: serde_json::Value,
+    },
+}
+
+impl Model {
+    /// Reads a model file.
+    ///
+    /// # Errors
+    /// [`Error::File`] if it cannot be read; else as [`parse`](Self::parse).
+    pub fn load(path: &Path) -> Result<Self, Error> {
+        let text = std::fs::read_to_string(path).map_err(|source| Error::File {
+            action: "read",
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(&text, path.parent().unwrap_or(Path::new(".")))
+    }
+
+    /// Reads a model; relative file names in it start at `folder`.
+    ///
+    /// # Errors
+    /// [`Error::Model`], in [`Error::InNode`] where a node is at fault: not JSON, unknown or missing keys, values out of
+    /// range, unknown names, cyclic references. [`Error::Formula`] for formulas.
+    pub fn parse(text: &str, folder: &Path) -> Result<Self, Error> {
+        parse::model(text, folder)
+    }
+
+    /// The names of the named nodes, in order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.keys().map(String::as_str)
+    }
+
+    /// The mesh files the model needs.
+    #[must_use]
+    pub fn files(&self) -> Vec<PathBuf> {
+        let mut files: Vec<PathBuf> = Vec::new();
+        for node in &self.nodes {
+            if let Kind::Mesh(file) = &node.kind {
+                let file = self.folder.join(file);
+                if !files.contains(&file) {
+                    files.push(file);
+                }
+            }
+        }
+        files
+    }
+
+    /// The nodes a node is made of.
+    fn operands(&self, node: usize) -> Vec<usize> {
+        match &self.nodes[node].kind {
+            Kind::Operation(_, operands) => operands.clone(),
+            Kind::Complement(operand) | Kind::Reference(_, operand) => vec![*operand],
+            Kind::Formula { uses, .. } => uses.iter().map(|used| used.1).collect(),
+            Kind::Mesh(_) | Kind::Primitive(_) | Kind::Contour(_) | Kind::Custom { .. } => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,425 @@
+//! From JSON to a checked model.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+
+use super::{Defaults, Kind, Mode, Model, Node, contour, primitive, transform};
+use crate::Error;
+use crate::boolean::Operation;
+use crate::field::{Formula, System, named_system};
+
+/// Longest chain of nodes in nodes.
+const DEEPEST: usize = 400;
+/// Kinds that are evaluated by a [`LeafKind`](super::LeafKind).
+pub(super) const CUSTOM: [&str; 1] = ["patches"];
+const KINDS: &str = "union, intersection, difference, xor, complement, mesh, box, sphere, cylinder, cone, torus, \
+                     formula, contour, patches";
+
+struct Reading {
+    nodes: Vec<Node>,
+    names: BTreeMap<String, usize>,
+}
+
+fn fault(what: impl Into<String>) -> Error {
+    Error::Model(what.into())
+}
+
+fn within(label: &str) -> impl Fn(Error) -> Error + '_ {
+    move |error| error.in_node(label)
+}
+
+fn take<T: DeserializeOwned>(object: &mut Map<String, Value>, key: &str) -> Result<Option<T>, Error> {
+    match object.remove(key) {
+        None | Some(Value::Null) => Ok(None),
+        Some(value) => {
+            serde_json::from_value(value).map(Some).map_err(|error| fault(format!("`{key}`: {error}")))
+        }
+    }
+}
+
+pub(super) fn model(text: &str, folder: &Path) -> Result<Model, Error> {
+    let value: Value = serde_json::from_str(text).map_err(|error| fault(format!("not JSON: {error}")))?;
+    let Value::Object(mut object) = value else {
+        return Err(fault("a model is an object: a node, or { \"nodes\": {...}, \"result\": ... }"));
+    };
+    let mut reading = Reading { nodes: Vec::new(), names: BTreeMap::new() };
+    let mut defaults = Defaults::default();
+    let result = if object.contains_key("result") || object.contains_key("nodes") {
+        defaults = defaults_of(&mut object)?;
+        let named: Map<String, Value> = take(&mut object, "nodes")?.unwrap_or_default();
+        // Names first, so that nodes may refer to later ones.
+        let mut pending = Vec::new();
+        for (name, value) in named {
+            let label = format!("`{name}` (/nodes/{name})");
+            let index = reading.placeholder(&label);
+            reading.names.insert(name, index);
+            pending.push((index, label, value));
+        }
+        let result =
+            object.remove("result").ok_or_else(|| fault("`result` is missing: the node to evaluate"))?;
+        if let Some(key) = object.keys().next() {
+            return Err(fault(format!(
+                "unknown key `{key}`; known: nodes, result, tolerance, bounds, system, parameters, about"
+            )));
+        }
+        for (index, label, value) in pending {
+            let node = reading.node(value, &label, &format!("/nodes/{}", name_of(&label)))?;
+            reading.nodes[index] = node;
+        }
+        reading.add(result, "/result")?
+    } else {
+        reading.add(Value::Object(object), "/")?
+    };
+    let mut model =
+        Model { nodes: reading.nodes, names: reading.names, result, folder: folder.to_owned(), defaults };
+    resolve(&mut model)?;
+    check_order(&model)?;
+    Ok(model)
+}
+
+/// The name in a label made of one.
+fn name_of(label: &str) -> &str {
+    label.split('`').nth(1).unwrap_or("")
+}
+
+fn defaults_of(object: &mut Map<String, Value>) -> Result<Defaults, Error> {
+    let _: Option<Value> = take(object, "about")?;
+    let tolerance = take(object, "tolerance")?;
+    let bounds = take(object, "bounds")?;
+    let system: Option<String> = take(object, "system")?;
+    let parameters: BTreeMap<String, f64> = take(object, "parameters")?.unwrap_or_default();
+    checked_tolerance(tolerance)?;
+    checked_bounds(bounds)?;
+    Ok(Defaults {
+        tolerance,
+        bounds,
+        system: system.map(|name| system_of(&name)).transpose()?,
+        parameters: parameters.into_iter().collect(),
+    })
+}
+
+fn checked_tolerance(tolerance: Option<f64>) -> Result<(), Error> {
+    match tolerance {
+        Some(value) if !(value > 0.0 && value.is_finite()) => Err(fault("`tolerance` must be positive")),
+        _ => Ok(()),
+    }
+}
+
+fn checked_bounds(bounds: Option<[[f64; 3]; 2]>) -> Result<(), Error> {
+    match bounds {
+        Some([low, high]) if !(0..3).all(|k| low[k] < high[k] && (high[k] - low[k]).is_finite()) => {
+            Err(fault("`bounds` must be two corners, the first below the second in every coordinate"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A system by its name, such as `R0` or `R0m(2)`.
+fn system_of(text: &str) -> Result<System, Error> {
+    let (name, number) = match text.split_once('(') {
+        None => (text, None),
+        Some((name, rest)) => {
+            let number = rest.strip_suffix(')').and_then(|digits| digits.trim().parse().ok());
+            (name, Some(number.ok_or_else(|| fault(format!("`system`: cannot read `{text}`")))?))
+        }
+    };
+    named_system(name.trim(), number).map_err(|what| fault(format!("`system`: {what}")))
+}
+
+fn operation_of(name: &str) -> Option<Operation> {
+    Some(match name {
+        "union" => Operation::Union,
+        "intersection" => Operation::Intersection,
+        "difference" => Operation::Difference,
+        "xor" => Operation::SymmetricDifference,
+        _ => return None,
+    })
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Height {
+    Upward(f64),
+    Between([f64; 2]),
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Text {
+    Line(String),
+    Lines(Vec<String>),
+}
+
+impl Reading {
+    fn placeholder(&mut self, label: &str) -> usize {
+        self.nodes.push(Node::new(label.to_owned(), Kind::Reference(String::new(), usize::MAX)));
+        self.nodes.len() - 1
+    }
+
+    /// Adds the node and returns its position.
+    fn add(&mut self, value: Value, path: &str) -> Result<usize, Error> {
+        let name = value.get("name").and_then(Value::as_str);
+        let label = name.map_or_else(|| path.to_owned(), |name| format!("`{name}` ({path})"));
+        let node = self.node(value, &label, path)?;
+        self.nodes.push(node);
+        Ok(self.nodes.len() - 1)
+    }
+
+    fn node(&mut self, value: Value, label: &str, path: &str) -> Result<Node, Error> {
+        match value {
+            Value::String(text) => {
+                let kind = if self.names.contains_key(&text) || !looks_like_file(&text) {
+                    Kind::Reference(text, usize::MAX)
+                } else {
+                    Kind::Mesh(text.into())
+                };
+                Ok(Node::new(label.to_owned(), kind))
+            }
+            Value::Object(object) => self.object(object, label, path),
+            _ => Err(fault("a node is an object, the name of a node, or the name of a mesh file"))
+                .map_err(within(label)),
+        }
+    }
+
+    fn object(&mut self, mut object: Map<String, Value>, label: &str, path: &str) -> Result<Node, Error> {
+        let common = |object: &mut Map<String, Value>| -> Result<Node, Error> {
+            let _: (Option<String>, Option<Value>) = (take(object, "name")?, take(object, "about")?);
+            let mode: Option<String> = take(object, "evaluate")?;
+            let mode = match mode.as_deref() {
+                None => None,
+                Some("exact") => Some(Mode::Exact),
+                Some("field") => Some(Mode::Field),
+                Some(other) => return Err(fault(format!("`evaluate` is `exact` or `field`, not `{other}`"))),
+            };
+            let extrude = match take(object, "extrude")? {
+                None => None,
+                Some(Height::Upward(height)) => Some([0.0, height]),
+                Some(Height::Between(between)) => Some(between),
+            };
+            if extrude.is_some_and(|[low, high]| !(low < high && (high - low).is_finite())) {
+                return Err(fault("`extrude` needs a positive height, or two heights, the lower first"));
+            }
+            let steps: Vec<transform::Step> = take(object, "transform")?.unwrap_or_default();
+            let system: Option<String> = take(object, "system")?;
+            let node = Node {
+                label: label.to_owned(),
+                kind: Kind::Reference(String::new(), usize::MAX),
+                extrude,
+                transform: transform::of(&steps).map_err(fault)?,
+                mode,
+                system: system.map(|name| system_of(&name)).transpose()?,
+                tolerance: take(object, "tolerance")?,
+                bounds: take(object, "bounds")?,
+                clip: take(object, "clip")?.unwrap_or(false),
+            };
+            checked_tolerance(node.tolerance)?;
+            checked_bounds(node.bounds)?;
+            Ok(node)
+        };
+        // A contour has a tolerance of its own.
+        let contour_tolerance = if object.get("kind").and_then(Value::as_str) == Some("contour") {
+            object.remove("tolerance")
+        } else {
+            None
+        };
+        let mut node = common(&mut object).map_err(within(label))?;
+        let kind: Option<String> = take(&mut object, "kind").map_err(within(label))?;
+        let operation: Option<String> = take(&mut object, "operation").map_err(within(label))?;
+        let name = match (kind, operation) {
+            (Some(kind), None) => kind,
+            (None, Some(operation)) if operation_of(&operation).is_some() || operation == "complement" => {
+                operation
+            }
+            (None, Some(operation)) => {
+                let what = format!(
+                    "unknown operation `{operation}`; known: union, intersection, difference, xor, complement"
+                );
+                return Err(fault(what).in_node(label));
+            }
+            (None, None) => {
+                return Err(fault(format!("`kind` is missing; known kinds: {KINDS}")).in_node(label));
+            }
+            (Some(_), Some(_)) => {
+                return Err(fault("a node has a `kind` or an `operation`, not both").in_node(label));
+            }
+        };
+        if let Some(tolerance) = contour_tolerance {
+            object.insert("tolerance".to_owned(), tolerance);
+        }
+        node.kind = self.kind(&name, object, label, path)?;
+        Ok(node)
+    }
+
+    fn kind(
+        &mut self,
+        name: &str,
+        mut object: Map<String, Value>,
+        label: &str,
+        path: &str,
+    ) -> Result<Kind, Error> {
+        if operation_of(name).is_some() || name == "complement" {
+            return self.operation(name, object, label, path);
+        }
+        if let Some(primitive) = primitive::parse(name, Value::Object(object.clone())) {
+            return primitive.map(Kind::Primitive).map_err(|what| fault(what).in_node(label));
+        }
+        let kind = match name {
+            "mesh" => {
+                let file: Option<String> = take(&mut object, "file").map_err(within(label))?;
+                let file = file.ok_or_else(|| fault("`file` is missing").in_node(label))?;
+                Kind::Mesh(file.into())
+            }
+            "formula" => {
+                let text: Option<Text> = take(&mut object, "formula").map_err(within(label))?;
+                let text = match text.ok_or_else(|| fault("`formula` is missing").in_node(label))? {
+                    Text::Line(line) => line,
+                    Text::Lines(lines) => lines.join("\n"),
+                };
+                let parameters: BTreeMap<String, f64> =
+                    take(&mut object, "parameters").map_err(within(label))?.unwrap_or_default();
+                let formula = Formula::parse(&text).map_err(|error| Error::from(error).in_node(label))?;
+                let parameters = parameters.into_iter().collect();
+                Kind::Formula { formula: Box::new(formula), parameters, uses: Vec::new() }
+            }
+            "contour" => {
+                let fields = Value::Object(std::mem::take(&mut object));
+                Kind::Contour(contour::parse(fields).map_err(|what| fault(what).in_node(label))?)
+            }
+            kind if CUSTOM.contains(&kind) => {
+                let value = Value::Object(std::mem::take(&mut object));
+                Kind::Custom { kind: kind.to_owned(), value }
+            }
+            _ => return Err(fault(format!("unknown kind `{name}`; known: {KINDS}")).in_node(label)),
+        };
+        match object.keys().next() {
+            Some(key) => Err(fault(format!("unknown key `{key}` for the kind `{name}`")).in_node(label)),
+            None => Ok(kind),
+        }
+    }
+
+    fn operation(
+        &mut self,
+        name: &str,
+        mut object: Map<String, Value>,
+        label: &str,
+        path: &str,
+    ) -> Result<Kind, Error> {
+        let mut operands: Vec<(String, Value)> = Vec::new();
+        match object.remove("operands") {
+            Some(Value::Array(list)) => {
+                operands
+                    .extend(list.into_iter().enumerate().map(|(k, value)| (format!("operands/{k}"), value)));
+            }
+            Some(_) => return Err(fault("`operands` is a list of nodes").in_node(label)),
+            None => {
+                for side in ["left", "right"] {
+                    operands.extend(object.remove(side).map(|value| (side.to_owned(), value)));
+                }
+            }
+        }
+        if let Some(key) = object.keys().next() {
+            let what = format!(
+                "unknown key `{key}` for the operation `{name}`: it takes `operands`, or `left` and `right`"
+            );
+            return Err(fault(what).in_node(label));
+        }
+        let wanted = if name == "complement" { 1..=1 } else { 1..=usize::MAX };
+        if !wanted.contains(&operands.len()) {
+            let wanted = if name == "complement" { "exactly one operand" } else { "at least one operand" };
+            return Err(fault(format!("`{name}` needs {wanted}, but has {}", operands.len())).in_node(label));
+        }
+        let path = path.trim_end_matches('/');
+        let operands = operands
+            .into_iter()
+            .map(|(place, value)| self.add(value, &format!("{path}/{place}")))
+            .collect::<Result<Vec<usize>, Error>>()?;
+        Ok(match operation_of(name) {
+            Some(operation) => Kind::Operation(operation, operands),
+            None => Kind::Complement(operands[0]),
+        })
+    }
+}
+
+impl Node {
+    fn new(label: String, kind: Kind) -> Self {
+        Self {
+            label,
+            kind,
+            extrude: None,
+            transform: glam::DAffine3::IDENTITY,
+            mode: None,
+            system: None,
+            tolerance: None,
+            bounds: None,
+            clip: false,
+        }
+    }
+}
+
+fn looks_like_file(text: &str) -> bool {
+    let extension = Path::new(text).extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
+    matches!(extension.as_deref(), Some("obj" | "gltf" | "glb" | "stl" | "ply" | "off"))
+}
+
+/// Looks up all names.
+fn resolve(model: &mut Model) -> Result<(), Error> {
+    let names = model.names.clone();
+    for node in &mut model.nodes {
+        match &mut node.kind {
+            Kind::Reference(name, target) => match names.get(name) {
+                Some(&index) => *target = index,
+                None => {
+                    let what =
+                        format!("there is no node named `{name}`, and it is not the name of a mesh file");
+                    return Err(fault(what).in_node(&node.label));
+                }
+            },
+            Kind::Formula { formula, uses, .. } => {
+                for name in formula.free_names() {
+                    if let Some(&index) = names.get(&name) {
+                        uses.push((name, index));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Refuses cycles and chains too long to follow.
+fn check_order(model: &Model) -> Result<(), Error> {
+    let mut finished = vec![false; model.nodes.len()];
+    for start in 0..model.nodes.len() {
+        let mut path: Vec<(usize, Vec<usize>)> = Vec::new();
+        if !finished[start] {
+            path.push((start, model.operands(start)));
+        }
+        while let Some((node, pending)) = path.last_mut() {
+            let node = *node;
+            let Some(next) = pending.pop() else {
+                finished[node] = true;
+                path.pop();
+                continue;
+            };
+            if let Some(from) = path.iter().position(|entry| entry.0 == next) {
+                let round: Vec<&str> =
+                    path[from..].iter().map(|entry| model.nodes[entry.0].label.as_str()).collect();
+                let what = format!("cyclic reference: {} -> {}", round.join(" -> "), round[0]);
+                return Err(fault(what).in_node(&model.nodes[next].label));
+            }
+            if path.len() >= DEEPEST {
+                let what = format!("nodes are nested more than {DEEPEST} deep");
+                return Err(fault(what).in_node(&model.nodes[next].label));
+            }
+            if !finished[next] {
+                path.push((next, model.operands(next)));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,128 @@
+//! The hierarchy over a mesh's triangles.
+
+use glam::DVec3;
+
+use super::triangle::is_needle;
+use super::{LocalFrame, SmallBox, WideTree, binary_tree};
+use crate::Mesh;
+
+/// A hierarchy over the triangles of a mesh, for nearest points, exact ray crossings and winding numbers.
+///
+/// Building takes O(n log n) for any input; the tree's depth is logarithmic on ordinary meshes and bounded on all.
+/// Memory: about 125 bytes a triangle.
+#[derive(Clone, Debug)]
+pub struct TriangleTree {
+    pub(super) tree: WideTree,
+    pub(super) frame: LocalFrame,
+    /// The triangles in leaf order.
+    pub(super) leaves: Vec<Leaf>,
+    /// For every triangle of the mesh its position in `leaves`.
+    pub(super) leaf_of_triangle: Vec<u32>,
+    pub(super) low: DVec3,
+    pub(super) high: DVec3,
+    /// A power of two that brings coordinates near 1, so that products in the exact predicates neither overflow nor
+    /// underflow.
+    pub(super) unit: f64,
+}
+
+/// A triangle as stored in a leaf.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Leaf {
+    pub(super) corners: [DVec3; 3],
+    /// Index in the mesh.
+    pub(super) triangle: u32,
+    pub(super) needle: bool,
+}
+
+impl TriangleTree {
+    /// A hierarchy over the triangles of `mesh`. Triangles that name a missing vertex or one that is not finite are
+    /// left out; a [`Solid`](crate::Solid) has none.
+    #[must_use]
+    pub fn new(mesh: &Mesh) -> Self {
+        let mut triangles = Vec::with_capacity(mesh.triangles.len());
+        let mut low = DVec3::INFINITY;
+        let mut high = DVec3::NEG_INFINITY;
+        for (index, corners) in mesh.triangles.iter().enumerate() {
+            let corner = |k: usize| mesh.positions.get(corners[k] as usize).map(|&p| DVec3::from_array(p));
+            if let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2))
+                && a.is_finite()
+                && b.is_finite()
+                && c.is_finite()
+            {
+                low = low.min(a).min(b).min(c);
+                high = high.max(a).max(b).max(c);
+                let corners = [a, b, c];
+                triangles.push(Leaf { corners, triangle: index as u32, needle: is_needle(&corners) });
+            }
+        }
+        let frame = if triangles.is_empty() {
+            LocalFrame::of(DVec3::ZERO, DVec3::ZERO)
+        } else {
+            LocalFrame::of(low, high)
+        };
+        let boxes: Vec<SmallBox> = triangles
+            .iter()
+            .map(|leaf| {
+                let [a, b, c] = leaf.corners.map(|corner| frame.around(corner));
+                a.joined(&b).joined(&c)
+            })
+            .collect();
+        let binary = binary_tree(&boxes);
+        let tree = WideTree::from_binary(&binary);
+        let leaves: Vec<Leaf> = binary.primitive_indices.iter().map(|&i| triangles[i as usize]).collect();
+        let mut leaf_of_triangle = vec![u32::MAX; mesh.triangles.len()];
+        for (position, leaf) in leaves.iter().enumerate() {
+            leaf_of_triangle[leaf.triangle as usize] = position as u32;
+        }
+        let largest = low.abs().max_element().max(high.abs().max_element());
+        let unit = if largest > 0.0 && largest.is_finite() {
+            2f64.powi(-(largest.log2().ceil().clamp(-1000.0, 1000.0) as i32))
+        } else {
+            1.0
+        };
+        Self { tree, frame, leaves, leaf_of_triangle, low, high, unit }
+    }
+
+    /// Whether there are no triangles.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.leaves.is_empty()
+    }
+
+    /// Number of triangles.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.leaves.len()
+    }
+
+    /// The corners of the box round all triangles; nothing for an empty tree.
+    #[must_use]
+    pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
+        (!self.is_empty()).then(|| [self.low.to_array(), self.high.to_array()])
+    }
+
+    /// Bytes held.
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.tree.nodes.capacity() * size_of::<super::wide::WideNode>()
+            + self.leaves.capacity() * size_of::<Leaf>()
+            + self.leaf_of_triangle.capacity() * size_of::<u32>()
+    }
+
+    /// Corners of a triangle of the mesh.
+    pub(crate) fn corners(&self, triangle: u32) -> Option<[DVec3; 3]> {
+        let leaf = *self.leaf_of_triangle.get(triangle as usize)?;
+        self.leaves.get(leaf as usize).map(|leaf| leaf.corners)
+    }
+
+    /// Calls `visit` with the mesh index of every triangle whose box meets the ball, and perhaps a few more.
+    pub(crate) fn triangles_near(&self, centre: DVec3, radius: f64, mut visit: impl FnMut(u32)) {
+        let query = self.frame.around(centre);
+        let radius = (radius * self.frame.scale()) as f32;
+        let bound = (radius * radius).next_up() * (1.0 + 1e-5);
+        self.tree.visit(
+            |node, lane| node.squared_distances(&query.low, &query.high)[lane] <= bound,
+            |leaf| visit(self.leaves[leaf as usize].triangle),
+        );
+    }
+}
