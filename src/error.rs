@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::io::Format;
-use crate::mesh::{Diagnosis, SelfCrossings};
+use crate::mesh::{Diagnosis, Fault, SelfCrossings};
 
 /// Everything that can go wrong. Each variant carries what was found and where; the text says how to mend it.
 #[derive(Debug, thiserror::Error)]
@@ -78,6 +78,12 @@ pub enum Error {
         /// The signed volume, negative.
         volume: f64,
     },
+    /// Some shells face the wrong way: inwards without lying inside another, or outwards inside another.
+    #[error(
+        "{} of its shells face the wrong way (outwards inside another, or inwards by themselves){}; turn them (--orient \
+         does it), or unite bodies that lie inside others one by one", .0.count, first_place(.0)
+    )]
+    InsideOutShells(Box<Fault>),
     /// The surface crosses itself.
     #[error("the surface crosses itself: {0}; unite its parts one by one, or repair it")]
     SelfCrossing(Box<SelfCrossings>),
@@ -128,6 +134,11 @@ pub enum Error {
     },
 }
 
+/// The first place of a fault, after a comma.
+fn first_place(fault: &Fault) -> String {
+    fault.places.first().map_or_else(String::new, |place| format!(", the first at {place}"))
+}
+
 /// The kinds of failure a program tells apart (and the program's exit codes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -156,6 +167,7 @@ impl Error {
             | Self::NotFinite { .. }
             | Self::NotClosed(_)
             | Self::InsideOut { .. }
+            | Self::InsideOutShells(_)
             | Self::Field(_)
             | Self::Formula(_)
             | Self::Model(_)

@@ -10,6 +10,8 @@
 //! # Ok::<(), trisect::Error>(())
 //! ```
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 pub mod boolean;
 pub mod control;
 mod error;

@@ -184,6 +184,12 @@ pub(crate) struct Convert {
     /// Turn surfaces whose faces point inwards
     #[arg(long, help_heading = "Inputs")]
     pub(crate) orient: bool,
+    /// Join vertices on open edges that are no further apart than this
+    #[arg(
+        long, value_name = "DISTANCE", value_parser = values::distance, help_heading = "Inputs",
+        allow_hyphen_values = true
+    )]
+    pub(crate) weld: Option<f64>,
     #[command(flatten)]
     pub(crate) writing: Writing,
     #[command(flatten)]
@@ -226,6 +232,12 @@ pub(crate) struct Using {
     /// Turn inputs whose faces point inwards
     #[arg(long, help_heading = "Inputs")]
     pub(crate) orient: bool,
+    /// Join vertices on open edges that are no further apart than this
+    #[arg(
+        long, value_name = "DISTANCE", value_parser = values::distance, help_heading = "Inputs",
+        allow_hyphen_values = true
+    )]
+    pub(crate) weld: Option<f64>,
     /// Do not look for places where an input crosses itself
     #[arg(long, help_heading = "Inputs")]
     pub(crate) assume_clean: bool,
@@ -262,9 +274,9 @@ pub(crate) struct Drawing {
     /// Where to look from: x,y,z or front, back, left, right, top, bottom [default: 1,-1.2,0.8]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub(crate) view: Option<[f64; 3]>,
-    /// Which axis points upwards in the picture
-    #[arg(long, value_enum, default_value = "z")]
-    pub(crate) png_up: Up,
+    /// Which axis points upwards in the picture [default: y if the first input is glTF, else z]
+    #[arg(long, value_enum)]
+    pub(crate) png_up: Option<Up>,
     /// What the colours show [default: operand for a boolean, material otherwise]
     #[arg(long, value_enum, alias = "png-colour")]
     pub(crate) png_color: Option<Colours>,

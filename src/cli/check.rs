@@ -63,7 +63,8 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     object.insert("format".into(), format.extension().into());
     object.insert("warnings".into(), json!(warnings));
     object.insert("diagnosis".into(), diagnosis.to_json());
-    let Usable { solid, turned, crossings } = match operands::usable(mesh, arguments.using, &control) {
+    let Usable { solid, turned, welded, crossings } = match operands::usable(mesh, arguments.using, &control)
+    {
         Ok(usable) => usable,
         Err(error) => {
             if let Error::SelfCrossing(found) = &error {
@@ -83,10 +84,11 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
         "file": name,
         "usable": true,
         "turned": turned,
+        "welded": welded,
         "cleaning": cleaned,
         "self_crossings": crossings.as_ref().map(|crossings| &crossings.object),
     })));
-    let mut text = format!("{name}: usable: {}\n", measures.line());
+    let mut text = format!("{name}: usable: {}{}\n", measures.line(), report::welded(welded));
     if turned {
         text.push_str("  faces pointed inwards; --orient turns them\n");
     }
@@ -110,7 +112,9 @@ fn refused(name: &str, error: Error, diagnosis: Option<&Diagnosis>) -> Result<Ve
     // The places are listed below, so the first line does without them.
     let (reason, diagnosis) = match &error {
         Error::NotClosed(found) => ("the mesh is not a closed surface".into(), Some(&**found)),
-        Error::SelfCrossing(_) => ("the surface crosses itself".into(), diagnosis),
+        Error::SelfCrossing(_) => {
+            ("the surface crosses itself; unite its parts one by one, or repair it".into(), diagnosis)
+        }
         other => (fault::one_line(&other.to_string()), diagnosis),
     };
     let mut text = format!("{name}: {answer}: {reason}\n");

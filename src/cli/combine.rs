@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::Value;
+use trisect::io::Format;
 use trisect::{Operation, Options, Outcome, Solid};
 
 use super::arguments::{Colours, Combine};
@@ -52,7 +53,8 @@ pub(crate) fn run(
     let mut result = measures.to_json();
     result.insert("certificate".into(), outcome.certificate().to_json());
     session.note("result", result);
-    write(arguments, &targets, &outcome, session)?;
+    let format = operands.first().map(|operand| operand.format);
+    write(arguments, &targets, &outcome, format, session)?;
     let names: Vec<String> = targets.iter().map(Target::name).collect();
     let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
     session.console.say(&format!("result: {} ({}){arrow}", measures.line(), report::time(seconds)));
@@ -105,6 +107,7 @@ fn write(
     arguments: &Combine,
     targets: &[Target],
     outcome: &Outcome,
+    format: Option<Format>,
     session: &mut Session<'_>,
 ) -> Result<(), Fault> {
     let start = Instant::now();
@@ -114,7 +117,7 @@ fn write(
     let picture = || {
         let operands = outcome.origins().iter().map(|origin| origin.operand as usize);
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), mesh, operands);
-        trisect::render::mesh(mesh, &output::view(drawing), colours.as_deref())
+        trisect::render::mesh(mesh, &output::view(drawing, format), colours.as_deref())
     };
     let options = output::write_options(&arguments.writing, &session.limits);
     let product = Product { mesh, options, picture: &picture };

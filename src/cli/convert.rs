@@ -37,6 +37,7 @@ pub(crate) fn run(
     session.console.stage(&format!("reading {}", request.name()), 0.0);
     let Input { mesh, format, warnings, reserved: _reserved } =
         operands::read(&request, &session.limits, &control).map_err(of_input)?;
+    let (mesh, welded) = operands::welded(mesh, arguments.weld).map_err(of_input)?;
     let (mesh, turned) = if arguments.orient { operands::oriented(mesh) } else { (mesh, false) };
     let seconds = session.took("read", start);
     for warning in &warnings {
@@ -50,6 +51,7 @@ pub(crate) fn run(
         "file": request.name(),
         "format": format.extension(),
         "turned": turned,
+        "welded": welded,
         "transforms": request.transforms.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "warnings": warnings,
         "seconds": seconds,
@@ -58,9 +60,10 @@ pub(crate) fn run(
 
     let names: Vec<String> = targets.iter().map(Target::name).collect();
     let what = format!(
-        "{} ({format}): {}{} ({})",
+        "{} ({format}): {}{}{} ({})",
         request.name(),
         report::counted(mesh.triangles.len(), "triangle"),
+        report::welded(welded),
         if turned { ", turned outwards" } else { "" },
         report::time(seconds)
     );
@@ -75,7 +78,7 @@ pub(crate) fn run(
     let picture = || {
         let operands = mesh.triangles.iter().map(|_| 0);
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), &mesh, operands);
-        trisect::render::mesh(&mesh, &output::view(drawing), colours.as_deref())
+        trisect::render::mesh(&mesh, &output::view(drawing, Some(format)), colours.as_deref())
     };
     let options = output::write_options(&writing, &session.limits);
     let product = Product { mesh: &mesh, options, picture: &picture };

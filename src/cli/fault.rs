@@ -107,6 +107,9 @@ impl Fault {
                 Error::NotClosed(diagnosis) => {
                     object.insert("diagnosis".into(), diagnosis.to_json());
                 }
+                Error::InsideOutShells(shells) => {
+                    object.insert("inside_out_shells".into(), shells.to_json());
+                }
                 Error::SelfCrossing(crossings) => {
                     object.insert("self_crossings".into(), crossings.to_json());
                 }

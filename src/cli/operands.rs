@@ -33,6 +33,7 @@ pub(crate) struct Operand {
     pub(crate) format: Format,
     pub(crate) warnings: Vec<String>,
     pub(crate) turned: bool,
+    pub(crate) welded: usize,
     pub(crate) crossings: Option<Crossings>,
     pub(crate) seconds: f64,
     _reserved: Reservation,
@@ -88,6 +89,8 @@ pub(crate) struct Usable {
     pub(crate) solid: Solid,
     /// Whether `--orient` had to turn it.
     pub(crate) turned: bool,
+    /// How many vertices `--weld` made one with others.
+    pub(crate) welded: usize,
     /// The answer of the self-crossing check; `None` under `--assume-clean`.
     pub(crate) crossings: Option<Crossings>,
 }
@@ -102,6 +105,7 @@ pub(crate) struct Crossings {
 
 /// Makes a mesh an operand, or says why it cannot be one.
 pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usable, Error> {
+    let (mesh, welded) = welded(mesh, using.weld)?;
     let (mesh, turned) = if using.orient { oriented(mesh) } else { (mesh, false) };
     let solid = Solid::try_from(mesh)?;
     let crossings = match using.assume_clean {
@@ -111,10 +115,23 @@ pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usab
             if !found.is_clean() {
                 return Err(Error::SelfCrossing(Box::new(found.clone())));
             }
+            let misplaced = solid.inside_out_shells();
+            if !misplaced.is_none() {
+                return Err(Error::InsideOutShells(Box::new(misplaced)));
+            }
             Some(Crossings { tolerated: found.tolerated, object: found.to_json() })
         }
     };
-    Ok(Usable { solid, turned, crossings })
+    Ok(Usable { solid, turned, welded, crossings })
+}
+
+/// The mesh with its open edges welded within a distance, and how many vertices that removed.
+pub(crate) fn welded(mesh: Mesh, distance: Option<f64>) -> Result<(Mesh, usize), Error> {
+    let Some(distance) = distance else { return Ok((mesh, 0)) };
+    let before = mesh.positions.len();
+    let mesh = mesh.welded(distance)?;
+    let removed = before - mesh.positions.len();
+    Ok((mesh, removed))
 }
 
 /// The mesh with its faces outwards, and whether that changed it.
@@ -148,9 +165,9 @@ pub(crate) fn operands(
 fn operand(request: Request, using: Using, limits: &Limits, control: &Control) -> Result<Operand, Error> {
     let start = Instant::now();
     let Input { mesh, format, warnings, reserved } = read(&request, limits, control)?;
-    let Usable { solid, turned, crossings } = usable(mesh, using, control)?;
+    let Usable { solid, turned, welded, crossings } = usable(mesh, using, control)?;
     // What touches itself in single vertices would do so in the result as well.
     let solid = if solid.is_manifold() { solid } else { solid.separated().0 };
     let seconds = start.elapsed().as_secs_f64();
-    Ok(Operand { request, solid, format, warnings, turned, crossings, seconds, _reserved: reserved })
+    Ok(Operand { request, solid, format, warnings, turned, welded, crossings, seconds, _reserved: reserved })
 }

@@ -245,12 +245,13 @@ fn file_error(path: &Path, source: std_io::Error) -> Error {
     Error::File { action: "write", path: path.to_path_buf(), source }
 }
 
-/// How the picture is taken.
-pub(crate) fn view(drawing: &Drawing) -> render::View {
+/// How the picture of something that was read as `format` is taken.
+pub(crate) fn view(drawing: &Drawing, format: Option<Format>) -> render::View {
     let mut view = render::View::default();
     [view.width, view.height] = drawing.png_size;
     view.perspective = !drawing.png_parallel;
-    if drawing.png_up == Up::Y {
+    let usual = if matches!(format, Some(Format::Gltf | Format::Glb)) { Up::Y } else { Up::Z };
+    if drawing.png_up.unwrap_or(usual) == Up::Y {
         let [x, y, z] = view.direction;
         (view.direction, view.up) = ([x, z, -y], [0.0, 1.0, 0.0]);
     }

@@ -141,6 +141,7 @@ pub(crate) fn operand_json(operand: &Operand, index: usize, measures: &Measures)
         "format": operand.format.extension(),
         "transforms": transforms,
         "turned": operand.turned,
+        "welded": operand.welded,
         "cleaning": cleaning(&operand.solid).1,
         "self_crossings": operand.crossings.as_ref().map(|crossings| &crossings.object),
         "warnings": operand.warnings,
@@ -152,6 +153,7 @@ pub(crate) fn operand_json(operand: &Operand, index: usize, measures: &Measures)
 /// The summary line of an operand.
 pub(crate) fn operand_line(operand: &Operand, measures: &Measures) -> String {
     let mut line = format!("{}: {}", operand.request.name(), measures.line());
+    line.push_str(&welded(operand.welded));
     if operand.turned {
         line.push_str(", turned outwards");
     }
@@ -163,6 +165,15 @@ pub(crate) fn operand_line(operand: &Operand, measures: &Measures) -> String {
         }
     }
     format!("{line} ({})", time(operand.seconds))
+}
+
+/// What a summary line says of `--weld`.
+pub(crate) fn welded(vertices: usize) -> String {
+    match vertices {
+        0 => String::new(),
+        1 => ", 1 vertex welded".into(),
+        several => format!(", {several} vertices welded"),
+    }
 }
 
 /// The keys of a JSON object.

@@ -26,6 +26,15 @@ pub(crate) fn vector(text: &str) -> Result<[f64; 3], String> {
     numbers(text)
 }
 
+/// A length that is not negative.
+pub(crate) fn distance(text: &str) -> Result<f64, String> {
+    match numbers::<1>(text) {
+        Ok([distance]) if distance >= 0.0 => Ok(distance),
+        Ok(_) => Err("a distance is not negative".into()),
+        Err(error) => Err(error.replace("1 numbers separated by commas", "one number")),
+    }
+}
+
 /// `s` or `x,y,z`, none of them zero.
 pub(crate) fn scale(text: &str) -> Result<[f64; 3], String> {
     let factors = match numbers::<1>(text) {

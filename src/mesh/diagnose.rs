@@ -3,12 +3,12 @@
 use robust::{Coord, orient2d};
 
 use super::clean::{self, Cleaned, Weld};
-use super::diagnosis::{Diagnosis, Place};
+use super::diagnosis::{Diagnosis, Fault, Place};
 use super::edges::{Edge, EdgeTable};
 use super::orient::Facing;
 use super::patches::Patches;
 use super::topology::Topology;
-use super::{Bounds, Mesh, chain, duplicates, measure, scale, weld};
+use super::{Bounds, Mesh, Solid, chain, duplicates, measure, scale, weld};
 
 /// Examines any mesh, however broken, and says what is wrong with it. O(n log n).
 ///
@@ -138,11 +138,55 @@ fn surface(spots: &Spots<'_>, cleaned: &Cleaned, diagnosis: &mut Diagnosis) {
     for (vertex, _) in topology.pinched {
         diagnosis.pinched_vertices.add(|| spots.vertices(&[vertex]));
     }
-    let patches = Patches::new(&table, cleaned.triangles.len());
-    let facing = Facing::new(positions, &cleaned.triangles, &patches);
-    for patch in (0..patches.closed.len()).filter(|&patch| facing.wrong[patch] && !patches.is_mixed(patch)) {
-        let first = patches.triangles.get(patch)[0];
-        diagnosis.inside_out_shells.add(|| spots.triangles(&[cleaned.source[first as usize]]));
+    diagnosis.inside_out_shells = inside_out_shells(spots, &table, &cleaned.triangles, &cleaned.source);
+}
+
+/// Closed shells that certainly face the wrong way, each placed at its first triangle.
+fn inside_out_shells(
+    spots: &Spots<'_>,
+    table: &EdgeTable<'_>,
+    triangles: &[[u32; 3]],
+    source: &[u32],
+) -> Fault {
+    let patches = Patches::new(table, triangles.len());
+    let facing = Facing::new(&spots.mesh.positions, triangles, &patches);
+    let mut fault = Fault::default();
+    for patch in 0..patches.closed.len() {
+        if facing.wrong[patch] && !facing.unclear[patch] && !patches.is_mixed(patch) {
+            let first = patches.triangles.get(patch)[0];
+            fault.add(|| spots.triangles(&[source[first as usize]]));
+        }
+    }
+    fault
+}
+
+impl Solid {
+    /// Shells that face the wrong way: inwards without lying inside another, or outwards inside another (which then
+    /// counts twice). A solid whose volume is positive on the whole may have such shells, and booleans then count
+    /// regions as often as they are enclosed. Shells that cross others are not judged; see
+    /// [`self_crossings`](Self::self_crossings). Triangles are named by their index in [`mesh`](Self::mesh). O(n log n).
+    ///
+    /// ```
+    /// use trisect::{Mesh, Solid, primitives};
+    ///
+    /// let outer = primitives::cuboid([0.0; 3], [3.0; 3])?;
+    /// let inner = primitives::cuboid([1.0; 3], [2.0; 3])?;
+    /// let hollow = Solid::try_from(Mesh::merged([&outer, &inner.clone().reversed()])?)?;
+    /// assert!(hollow.inside_out_shells().is_none());
+    /// let doubled = Solid::try_from(Mesh::merged([&outer, &inner])?)?;
+    /// assert_eq!(doubled.inside_out_shells().count, 1);
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
+    #[must_use]
+    pub fn inside_out_shells(&self) -> Fault {
+        let mesh = self.mesh();
+        if self.components() < 2 {
+            // The total volume is not negative.
+            return Fault::default();
+        }
+        let table = EdgeTable::new(&mesh.triangles, mesh.positions.len());
+        let own: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+        inside_out_shells(&Spots { mesh }, &table, &mesh.triangles, &own)
     }
 }
 

@@ -54,7 +54,8 @@ pub struct Diagnosis {
     /// Number of shells: pieces of the surface connected by edges.
     pub shells: usize,
     /// Closed shells that face inwards without lying inside another, or outwards inside another. (Told of the
-    /// pieces between edges with more than two triangles: bodies that touch in an edge are judged each for itself.)
+    /// pieces between edges with more than two triangles: bodies that touch in an edge are judged each for itself.
+    /// Shells that cross others are not judged.)
     pub inside_out_shells: Fault,
     /// Pairs of triangles that cross or overlap each other; `None` if that has not been looked for.
     pub self_crossings: Option<Fault>,
@@ -111,6 +112,13 @@ impl Fault {
     pub fn is_none(&self) -> bool {
         self.count == 0
     }
+
+    /// The faults as a JSON object: `{"count", "places"}`, places as `{"triangles", "vertices", "position"}`.
+    #[must_use]
+    pub fn to_json(&self) -> Value {
+        let place = |place: &Place| json!({"triangles": place.triangles, "vertices": place.vertices, "position": place.position});
+        json!({"count": self.count, "places": self.places.iter().map(place).collect::<Vec<_>>()})
+    }
 }
 
 impl Diagnosis {
@@ -163,12 +171,23 @@ impl Diagnosis {
         ]
     }
 
+    /// How to mend a surface that no welding closes.
+    fn advice(&self) -> Option<&'static str> {
+        let (open, turned) = (!self.open_edges.is_none(), !self.misoriented_edges.is_none());
+        match (open, turned) {
+            (true, false) => Some("its holes must be filled first"),
+            (false, true) if self.unbalanced_edges.is_none() => {
+                Some("triangles that face the wrong way can be turned (--orient), if they are not many")
+            }
+            _ => None,
+        }
+    }
+
     /// The diagnosis as a JSON object: a key for each field, faults as `{"count", "places"}`, places as
     /// `{"triangles", "vertices", "position"}`, numbers that are not finite as null. Keys are only ever added.
     #[must_use]
     pub fn to_json(&self) -> Value {
-        let place = |place: &Place| json!({"triangles": place.triangles, "vertices": place.vertices, "position": place.position});
-        let fault = |fault: &Fault| json!({"count": fault.count, "places": fault.places.iter().map(place).collect::<Vec<_>>()});
+        let fault = Fault::to_json;
         let mut object = json!({
             "vertices": self.vertices,
             "triangles": self.triangles,
@@ -214,7 +233,10 @@ impl fmt::Display for Diagnosis {
         }
         if let Some(distance) = self.closing_distance {
             separate(f)?;
-            write!(f, "welding vertices within {distance:e} would close it")?;
+            write!(f, "welding vertices within {distance:e} would close it (--weld {distance:e})")?;
+        } else if let Some(advice) = self.advice() {
+            separate(f)?;
+            f.write_str(advice)?;
         }
         if first { f.write_str("no faults") } else { Ok(()) }
     }
@@ -239,7 +261,7 @@ impl fmt::Display for Place {
 }
 
 /// The number with seven digits at most.
-fn short(x: f64) -> String {
+pub(super) fn short(x: f64) -> String {
     let rounded = format!("{x:.6e}").parse().unwrap_or(x);
     if rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) {
         format!("{rounded}")
@@ -273,7 +295,7 @@ mod tests {
         let expected = "7 open edges: triangle 0 vertices 0-1 at (0, -1e-9, 0), \
             triangle 1 vertices 1-2 at (0.3333333, -1e-9, 0), ...; \
             1 zero-area triangle: triangle 0 vertices 0-1 at (0, -1e-9, 0); \
-            welding vertices within 1e-7 would close it";
+            welding vertices within 1e-7 would close it (--weld 1e-7)";
         assert_eq!(diagnosis.to_string(), expected);
         assert_eq!(format!("{diagnosis:#}").lines().count(), 3);
         assert_eq!(format!("{diagnosis:#}").matches(" at ").count(), 6);

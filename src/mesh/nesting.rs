@@ -12,9 +12,12 @@ use rustc_hash::FxHashMap;
 use super::Bounds;
 use super::patches::Patches;
 
-/// At most this many rays a patch: from the vertices farthest along the axes and the diagonals of space, which are
-/// the first to stick out where a patch is not wholly inside, and hardly all on the surface of another.
-const RAYS: usize = 14;
+/// Vertices farthest along the axes and the diagonals of space: the first to stick out where a patch is not wholly
+/// inside.
+const EXTREMES: usize = 14;
+/// At most this many rays a patch: from its extremes, and last from the middle of its largest triangle, for patches all
+/// of whose extremes lie on the surface of another (an octahedron in a cube).
+const RAYS: usize = EXTREMES + 1;
 
 /// The start of a ray.
 struct Start {
@@ -31,17 +34,21 @@ struct Crossings {
     touching: bool,
 }
 
-/// For each closed patch whether it lies inside an odd number of other closed patches, so that its triangles
-/// should face inwards. A patch that crosses another, or touches it at all its extreme vertices, does not count as
-/// inside it. False for patches that are not closed. `positions` should be near one in size.
-pub(super) fn inside_oddly_many(
-    positions: &[[f64; 3]],
-    triangles: &[[u32; 3]],
-    patches: &Patches,
-) -> Vec<bool> {
+/// Where a closed patch lies with respect to the others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Nesting {
+    /// Inside an odd number of other closed patches, so that its triangles should face inwards.
+    pub(super) inside: bool,
+    /// It crosses another, or touches it wherever it was looked at: then it does not count as inside that one.
+    pub(super) unclear: bool,
+}
+
+/// The nesting of each patch. Neither inside nor unclear for patches that are not closed. `positions` should be near
+/// one in size.
+pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &Patches) -> Vec<Nesting> {
     let count = patches.closed.len();
     if patches.closed.iter().filter(|&&closed| closed).count() < 2 {
-        return vec![false; count];
+        return vec![Nesting::default(); count];
     }
     let corners = |patch: usize| {
         let members = patches.triangles.get(patch).iter();
@@ -52,7 +59,10 @@ pub(super) fn inside_oddly_many(
     let mut rays = vec![0; count];
     for patch in (0..count).filter(|&patch| patches.closed[patch]) {
         corners(patch).for_each(|corner| boxes[patch].include(&corner));
-        let places = extremes(corners(patch));
+        let mut places = extremes(corners(patch));
+        let members = patches.triangles.get(patch).iter();
+        let shapes = members.map(|&triangle| triangles[triangle as usize].map(|v| positions[v as usize]));
+        places.extend(middle_of_largest(shapes));
         rays[patch] = places.len();
         let start = |(slot, &place): (usize, &[f64; 3])| Start { patch: patch as u32, slot, place };
         starts.extend(places.iter().enumerate().map(start));
@@ -83,13 +93,20 @@ pub(super) fn inside_oddly_many(
             crossings.touching |= extent.low[2] <= z && above(&corners, start.place) == Ordering::Equal;
         });
     }
-    let mut odd = vec![false; count];
+    let mut nesting = vec![Nesting::default(); count];
     for (&(inner, _), crossings) in &met {
-        let crossings = &crossings[..rays[inner as usize]];
-        let mut telling = crossings.iter().filter(|crossings| !crossings.touching).peekable();
-        odd[inner as usize] ^= telling.peek().is_some() && telling.all(|crossings| crossings.odd);
+        let (middle, extremes) =
+            crossings[..rays[inner as usize]].split_last().unwrap_or((&crossings[0], &[]));
+        let mut telling: Vec<bool> = extremes.iter().filter(|ray| !ray.touching).map(|ray| ray.odd).collect();
+        if telling.is_empty() && !middle.touching {
+            telling.push(middle.odd);
+        }
+        let inside = !telling.is_empty() && telling.iter().all(|&odd| odd);
+        let nesting = &mut nesting[inner as usize];
+        nesting.inside ^= inside;
+        nesting.unclear |= !inside && (telling.is_empty() || telling.contains(&true));
     }
-    odd
+    nesting
 }
 
 /// The first of the places that are farthest in each direction, without repetition.
@@ -98,7 +115,7 @@ fn extremes(places: impl Iterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
     let to_faces_and_corners =
         directions.filter(|direction| matches!(direction.map(i32::abs).iter().sum(), 1 | 3));
     let directions: Vec<[f64; 3]> = to_faces_and_corners.map(|direction| direction.map(f64::from)).collect();
-    let mut farthest = vec![(f64::NEG_INFINITY, [0.0; 3]); RAYS];
+    let mut farthest = vec![(f64::NEG_INFINITY, [0.0; 3]); EXTREMES];
     for place in places {
         for (direction, farthest) in directions.iter().zip(&mut farthest) {
             let reach = direction[0] * place[0] + direction[1] * place[1] + direction[2] * place[2];
@@ -114,6 +131,19 @@ fn extremes(places: impl Iterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
         }
     }
     distinct
+}
+
+/// The middle of the triangle with the largest area, the first of equal ones.
+fn middle_of_largest(triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> Option<[f64; 3]> {
+    let extent = |[a, b, c]: &[[f64; 3]; 3]| {
+        let cross = |i: usize, j: usize| (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
+        cross(0, 1).powi(2) + cross(1, 2).powi(2) + cross(2, 0).powi(2)
+    };
+    let largest = triangles
+        .map(|corners| (extent(&corners), corners))
+        .reduce(|largest, next| if next.0 > largest.0 { next } else { largest })?;
+    let [a, b, c] = largest.1;
+    Some([0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0))
 }
 
 fn plane(p: [f64; 3]) -> Coord<f64> {
@@ -204,7 +234,8 @@ mod tests {
     fn nested(shells: &[Mesh]) -> Vec<bool> {
         let mesh = Mesh::merged(shells).unwrap();
         let table = EdgeTable::new(&mesh.triangles, mesh.positions.len());
-        inside_oddly_many(&mesh.positions, &mesh.triangles, &Patches::new(&table, mesh.triangles.len()))
+        let patches = Patches::new(&table, mesh.triangles.len());
+        nesting(&mesh.positions, &mesh.triangles, &patches).iter().map(|nesting| nesting.inside).collect()
     }
 
     fn cube(center: [f64; 3], half: f64) -> Mesh {
@@ -225,6 +256,13 @@ mod tests {
             let offset = [place % 3, place / 3 % 3, place / 9].map(|x| f64::from(x) - 1.0);
             assert_eq!(nested(&[cube([0.0; 3], 2.0), cube(offset, 1.0)]), [false, true], "{offset:?}");
         }
+    }
+
+    #[test]
+    fn inscribed_bodies_are_inside() {
+        let inner = primitives::octahedron(1.0).unwrap();
+        assert_eq!(nested(&[cube([0.0; 3], 1.0), inner.clone()]), [false, true]);
+        assert_eq!(nested(&[inner.clone(), cube([0.0; 3], 1.0)]), [true, false]);
     }
 
     #[test]

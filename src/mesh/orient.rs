@@ -12,12 +12,14 @@ use super::{Bounds, Mesh, measure, nesting};
 pub(super) struct Facing {
     /// Whether each patch is closed and its faces point into what it encloses, or out of the cavity it encloses.
     pub(super) wrong: Vec<bool>,
+    /// Whether that cannot be told, because the patch crosses another.
+    pub(super) unclear: Vec<bool>,
 }
 
 impl Facing {
     pub(super) fn new(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &Patches) -> Self {
         let positions = near_one(positions);
-        let inward = nesting::inside_oddly_many(&positions, triangles, patches);
+        let nesting = nesting::nesting(&positions, triangles, patches);
         let wrong = (0..patches.closed.len()).map(|patch| {
             let members: Vec<[u32; 3]> = patches
                 .triangles
@@ -29,11 +31,11 @@ impl Facing {
             let bounds = Bounds::of(corners).filter(|_| patches.closed[patch]);
             bounds.is_some_and(|bounds| {
                 let volume = measure::signed_volume(&positions, &members, &bounds);
-                let outward = if inward[patch] { Ordering::Less } else { Ordering::Greater };
+                let outward = if nesting[patch].inside { Ordering::Less } else { Ordering::Greater };
                 volume.sign == outward.reverse()
             })
         });
-        Self { wrong: wrong.collect() }
+        Self { wrong: wrong.collect(), unclear: nesting.iter().map(|nesting| nesting.unclear).collect() }
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde_json::{Value, json};
 
-use super::diagnosis::{Fault, Place};
+use super::diagnosis::{Fault, Place, short};
 
 /// A pair of triangles of one surface that cross.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,7 +71,7 @@ impl fmt::Display for SelfCrossings {
         write!(f, "{} pairs of triangles cross each other", self.count)?;
         for (i, crossing) in self.places.iter().enumerate().take(2) {
             let [s, t] = crossing.triangles;
-            let [x, y, z] = crossing.place;
+            let [x, y, z] = crossing.place.map(short);
             write!(f, "{} triangles {s} and {t} at ({x}, {y}, {z})", if i == 0 { "," } else { ";" })?;
             write!(f, ", {:.2e} deep", crossing.depth)?;
         }

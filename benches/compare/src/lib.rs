@@ -15,7 +15,8 @@ fn or_null<T>(result: Result<T, Error>) -> *mut T {
     match result {
         Ok(value) => Box::into_raw(Box::new(value)),
         Err(error) => {
-            MESSAGE.with(|message| *message.borrow_mut() = CString::new(error.to_string()).unwrap_or_default());
+            MESSAGE
+                .with(|message| *message.borrow_mut() = CString::new(error.to_string()).unwrap_or_default());
             std::ptr::null_mut()
         }
     }
@@ -60,12 +61,9 @@ pub unsafe extern "C" fn trisect_boolean(
 ) -> *mut Solid {
     let operands: Vec<&Solid> =
         unsafe { std::slice::from_raw_parts(operands, count).iter().map(|&solid| &*solid).collect() };
-    let operation = [
-        Operation::Union,
-        Operation::Intersection,
-        Operation::Difference,
-        Operation::SymmetricDifference,
-    ][operation as usize % 4];
+    let operation =
+        [Operation::Union, Operation::Intersection, Operation::Difference, Operation::SymmetricDifference]
+            [operation as usize % 4];
     let options = if threads == 0 { Options::new() } else { Options::new().threads(threads) };
     or_null(options.run(operation, &operands).map(trisect::Outcome::into_solid))
 }
@@ -85,7 +83,11 @@ pub unsafe extern "C" fn trisect_count(solid: *const Solid, what: u32) -> usize 
 /// # Safety
 /// `solid` must be live and the arrays as long as its counts.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn trisect_copy(solid: *const Solid, positions: *mut [f64; 3], triangles: *mut [u32; 3]) {
+pub unsafe extern "C" fn trisect_copy(
+    solid: *const Solid,
+    positions: *mut [f64; 3],
+    triangles: *mut [u32; 3],
+) {
     unsafe {
         let mesh = (*solid).mesh();
         std::ptr::copy_nonoverlapping(mesh.positions.as_ptr(), positions, mesh.positions.len());

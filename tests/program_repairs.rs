@@ -1,0 +1,111 @@
+//! The program on inputs that are nearly usable: what it advises, and that the advice holds.
+
+#![cfg(feature = "cli")]
+
+#[path = "common/program.rs"]
+mod program;
+
+use program::{Folder, bytes, cube, inside_out, opened, unit_cube, volume};
+
+/// Two surfaces in one file.
+fn together(first: &str, second: &str) -> String {
+    let vertices = first.lines().filter(|line| line.starts_with("v ")).count();
+    let shifted = second.lines().map(|line| match line.strip_prefix("f ") {
+        None => format!("{line}\n"),
+        Some(corners) => {
+            let shift = |corner: &str| (corner.parse::<usize>().expect("an index") + vertices).to_string();
+            format!("f {}\n", corners.split(' ').map(shift).collect::<Vec<_>>().join(" "))
+        }
+    });
+    first.to_string() + &shifted.collect::<String>()
+}
+
+#[test]
+fn a_cracked_surface_can_be_welded_by_the_distance_that_is_advised() {
+    let folder = Folder::new();
+    // The last three faces have a corner of their own, a hair off.
+    let (mut text, mut faces) = (String::new(), 0);
+    for line in unit_cube().lines() {
+        let is_face = line.starts_with("f ");
+        if is_face && faces == 0 {
+            text.push_str("v 1.000000001 1 1\n");
+        }
+        faces += usize::from(is_face);
+        let cracked = if faces > 9 { line.replace('8', "9") } else { line.to_string() };
+        text.push_str(&format!("{cracked}\n"));
+    }
+    folder.write("cracked.obj", text);
+    let ran = folder.run("check cracked.obj").exits(3);
+    let (_, advice) = ran.out.split_once("--weld ").expect("a distance is advised");
+    let distance = advice.trim_end_matches(|c: char| !c.is_ascii_digit());
+    folder.run("union cracked.obj -o refused.obj").exits(3).says(&format!("--weld {distance}"));
+    let object = folder.run(&format!("union cracked.obj --weld {distance} -o w.obj --json")).exits(0).json();
+    assert_eq!(object["operands"][0]["welded"], 1);
+    assert!((volume(&folder.read("w.obj")) - 1.0).abs() < 1e-8);
+    folder.run(&format!("check cracked.obj --weld {distance}")).exits(0);
+    folder.run(&format!("convert cracked.obj --weld {distance} c.obj")).exits(0).says("1 vertex welded");
+    folder.run("check c.obj").exits(0);
+    folder.run("check cracked.obj --weld -1").exits(1);
+    folder.run("check cracked.obj --weld x").exits(1);
+}
+
+#[test]
+fn an_open_surface_that_no_welding_closes_is_told_so() {
+    let folder = Folder::new();
+    folder.write("open.obj", opened(&unit_cube()));
+    folder.run("union open.obj -o c.obj").exits(3).says("holes must be filled");
+}
+
+#[test]
+fn bodies_inside_bodies_are_refused_unless_they_are_cavities() {
+    let folder = Folder::new();
+    let (outer, inner) = (cube([0.0; 3], [3.0; 3]), cube([1.0; 3], [2.0; 3]));
+    folder.write("doubled.obj", together(&outer, &inner));
+    folder.write("hollow.obj", together(&outer, &inside_out(&inner)));
+    folder.run("union hollow.obj -o c.obj").exits(0).says("volume 26");
+    folder.run("check doubled.obj").exits(3);
+    let ran = folder.run("union doubled.obj -o c.obj --json").exits(3).says("wrong way").says("--orient");
+    let shells = &ran.json()["error"]["inside_out_shells"];
+    assert_eq!(shells["count"], 1);
+    assert_eq!(shells["places"][0]["triangles"][0], 12);
+    folder.run("union doubled.obj --orient -o c.obj").exits(0).says("volume 26");
+    folder.run("union doubled.obj --assume-clean -o c.obj").exits(0).says("volume 28");
+}
+
+#[test]
+fn a_shell_that_faces_inwards_by_itself_is_refused() {
+    let folder = Folder::new();
+    let beside = inside_out(&cube([5.0; 3], [6.0; 3]));
+    folder.write("beside.obj", together(&cube([0.0; 3], [3.0; 3]), &beside));
+    folder.run("union beside.obj -o c.obj").exits(3).says("wrong way");
+    folder.run("union beside.obj --orient -o c.obj").exits(0).says("volume 28");
+}
+
+#[test]
+fn a_cavity_that_touches_the_outside_everywhere_it_can_is_one() {
+    let folder = Folder::new();
+    folder.write("cube.obj", cube([-1.0; 3], [1.0; 3]));
+    // An octahedron whose corners lie in the middles of the cube's faces.
+    let octahedron = "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n\
+                      f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
+    folder.write("octahedron.obj", octahedron);
+    folder.run("difference cube.obj octahedron.obj -o hollow.obj").exits(0).says("2 shells");
+    folder.run("union hollow.obj octahedron.obj -o whole.obj").exits(0).says("volume 8");
+}
+
+#[test]
+fn pictures_of_gltf_have_y_upwards() {
+    let folder = Folder::new();
+    folder.write("a.obj", cube([0.0; 3], [1.0, 2.0, 4.0]));
+    folder.run("convert a.obj a.glb").exits(0);
+    let picture = |line: &str| {
+        folder.run(&format!("{line} --png p.png --png-size 64x48 --png-color none")).exits(0);
+        bytes(&folder.path("p.png"))
+    };
+    let (up_y, up_z) = (picture("convert a.obj --png-up y"), picture("convert a.obj --png-up z"));
+    assert_ne!(up_y, up_z);
+    assert_eq!(picture("convert a.obj"), up_z);
+    assert_eq!(picture("convert a.glb"), up_y);
+    assert_eq!(picture("union a.glb"), up_y);
+    assert_eq!(picture("convert a.glb --png-up z"), up_z);
+}
