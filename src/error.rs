@@ -94,6 +94,10 @@ pub enum Error {
     /// An argument has no meaning: a radius that is not positive, too few segments, an empty list of operands.
     #[error("invalid argument: {0}")]
     InvalidArgument(String),
+    /// A curve, region or patch, or its file, is at fault.
+    #[cfg(feature = "parametric")]
+    #[error(transparent)]
+    Geometry(#[from] crate::parametric::GeometryError),
     /// The caller cancelled the operation.
     #[error("cancelled")]
     Cancelled,
@@ -139,6 +143,10 @@ impl Error {
             | Self::NotClosed(_)
             | Self::InsideOut { .. }
             | Self::SelfCrossing(_) => Failure::Unusable,
+            #[cfg(feature = "parametric")]
+            Self::Geometry(fault) if fault.is_unreadable() => Failure::Unreadable,
+            #[cfg(feature = "parametric")]
+            Self::Geometry(_) => Failure::Unusable,
             Self::Operand { source, .. } => source.failure(),
             Self::InvalidArgument(_) => Failure::Usage,
             Self::Cancelled | Self::DeadlineExceeded | Self::MemoryLimit { .. } => Failure::Limit,

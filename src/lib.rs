@@ -16,6 +16,8 @@ mod error;
 pub mod exact;
 pub mod io;
 pub mod mesh;
+#[cfg(feature = "parametric")]
+pub mod parametric;
 pub mod primitives;
 #[cfg(feature = "render")]
 pub mod render;
