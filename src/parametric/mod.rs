@@ -8,6 +8,7 @@ mod cubic_spline;
 mod curve;
 mod discretise;
 mod error;
+mod extrude;
 mod gauss;
 mod hermite;
 mod knots;
@@ -21,6 +22,8 @@ mod parameters;
 mod polygons;
 mod polyline;
 mod region;
+mod revolve;
+mod sweep;
 mod triangulate;
 mod vector;
 
@@ -31,6 +34,7 @@ pub use cubic_spline::{CubicSpline, SplineEnds};
 pub use curve::{Curve, Reversed, SharedCurve};
 pub use discretise::{CurveMesh, CurveMeshing, Refinement};
 pub use error::GeometryError;
+pub use extrude::Extrusion;
 pub use hermite::{HermiteSpline, TangentRule};
 pub use lagrange::LagrangeCurve;
 pub use line::Segment;
@@ -41,6 +45,8 @@ pub use parameters::Spacing;
 pub use polygons::Polygons;
 pub use polyline::Polyline;
 pub use region::Region;
+pub use revolve::Revolution;
+pub use sweep::Sweep;
 pub use triangulate::PlaneMesh;
 
 /// placeholder

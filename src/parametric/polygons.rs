@@ -144,9 +144,17 @@ impl Polygons {
         triangulate::fill(self)
     }
 
-    /// The contours' points moved by `map`, which must not change the direction of turning.
-    pub(crate) fn mapped(&self, map: impl Fn(Point<2>) -> Point<2>) -> Self {
-        let contour = |c: &Vec<Point<2>>| c.iter().map(|p| map(*p)).collect();
+    /// Every edge cut into as many equal parts as `parts` says.
+    pub(crate) fn refined(&self, parts: impl Fn(Point<2>, Point<2>) -> usize) -> Self {
+        let contour = |c: &Vec<Point<2>>| {
+            let mut refined = Vec::new();
+            for (i, &a) in c.iter().enumerate() {
+                let b = c[(i + 1) % c.len()];
+                let count = parts(a, b).max(1);
+                refined.extend((0..count).map(|k| vector::lerp(a, b, k as f64 / count as f64)));
+            }
+            refined
+        };
         Self { shapes: self.shapes.iter().map(|shape| shape.iter().map(contour).collect()).collect() }
     }
 }

@@ -200,3 +200,14 @@ pub(crate) fn assert_closed(mesh: &Mesh) {
     bits.sort_unstable();
     assert!(bits.windows(2).all(|pair| pair[0] != pair[1]), "two vertices in one place");
 }
+
+/// Distance of `p` to a triangle (Ericson, "Real-Time Collision Detection", 5.1.5).
+pub(crate) fn to_triangle(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> f64 {
+    let [p, va, vb, vc] = [p, a, b, c].map(glam::DVec3::from);
+    let normal = (vb - va).cross(vc - va);
+    let edges =
+        || to_segment::<3>(p.into(), a, b).min(to_segment(p.into(), b, c)).min(to_segment(p.into(), c, a));
+    let inside = [(va, vb), (vb, vc), (vc, va)].iter().all(|(u, v)| normal.cross(*v - *u).dot(p - *u) >= 0.0);
+    let along = normal.length();
+    if inside && along > 0.0 { ((p - va).dot(normal) / along).abs() } else { edges() }
+}
