@@ -6,19 +6,30 @@ mod bezier;
 mod composite;
 mod cubic_spline;
 mod curve;
+mod density;
+mod deviation;
 mod discretise;
 mod error;
 mod extrude;
+mod face_mesh;
+mod flat_triangle;
 mod gauss;
 mod hermite;
+mod joints;
 mod knots;
 mod lagrange;
 mod line;
 mod membership;
+mod needles;
 mod nurbs;
 mod nurbs_tools;
+mod orientation;
 mod overlay;
 mod parameters;
+mod patch;
+mod patch_mesh;
+mod patch_pieces;
+mod patch_shapes;
 mod polygons;
 mod polyline;
 mod region;
@@ -36,24 +47,18 @@ pub use discretise::{CurveMesh, CurveMeshing, Refinement};
 pub use error::GeometryError;
 pub use extrude::Extrusion;
 pub use hermite::{HermiteSpline, TangentRule};
+pub use joints::Gap;
 pub use lagrange::LagrangeCurve;
 pub use line::Segment;
 pub use membership::Membership;
 pub use nurbs::NurbsCurve;
 pub use overlay::{FillRule, RegionOperation};
 pub use parameters::Spacing;
+pub use patch::{Patch, Side};
+pub use patch_mesh::{PatchMesh, PatchMeshing, PatchTriangle};
 pub use polygons::Polygons;
 pub use polyline::Polyline;
 pub use region::Region;
 pub use revolve::Revolution;
 pub use sweep::Sweep;
 pub use triangulate::PlaneMesh;
-
-/// placeholder
-#[derive(Clone, Debug, PartialEq)]
-pub struct Gap {}
-impl std::fmt::Display for Gap {
-    fn fmt(&self, _: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        Ok(())
-    }
-}

@@ -176,7 +176,7 @@ impl<const D: usize> NurbsCurve<D> {
 }
 
 /// One knot inserted into homogeneous control points.
-fn insert<const D: usize>(
+pub(crate) fn insert<const D: usize>(
     p: usize,
     knots: &[f64],
     control: &[(Point<D>, f64)],

@@ -209,5 +209,7 @@ pub(crate) fn to_triangle(p: [f64; 3], [a, b, c]: [[f64; 3]; 3]) -> f64 {
         || to_segment::<3>(p.into(), a, b).min(to_segment(p.into(), b, c)).min(to_segment(p.into(), c, a));
     let inside = [(va, vb), (vb, vc), (vc, va)].iter().all(|(u, v)| normal.cross(*v - *u).dot(p - *u) >= 0.0);
     let along = normal.length();
-    if inside && along > 0.0 { ((p - va).dot(normal) / along).abs() } else { edges() }
+    // A triangle without area is its edges.
+    let longest = (vb - va).length_squared().max((vc - vb).length_squared()).max((va - vc).length_squared());
+    if inside && along > 1e-12 * longest { ((p - va).dot(normal) / along).abs() } else { edges() }
 }
