@@ -80,6 +80,18 @@ impl<const D: usize> EllipticArc<D> {
         Ok(Self { centre, a, b, start, sweep })
     }
 
+    /// The centre, and the two half diameters that carry the cosine and the sine.
+    #[must_use]
+    pub fn axes(&self) -> [[f64; D]; 3] {
+        [self.centre, self.a, self.b]
+    }
+
+    /// Angle of the start, and the signed angle to the end, in radians.
+    #[must_use]
+    pub fn angles(&self) -> [f64; 2] {
+        [self.start, self.sweep]
+    }
+
     /// Cosine and sine at parameter `t`, exact at quarter turns.
     fn cos_sin(&self, t: f64) -> [f64; 2] {
         let t = clamped(t, self.domain());
@@ -162,5 +174,9 @@ impl<const D: usize> Curve<D> for EllipticArc<D> {
         }
         knots.extend([self.sweep.abs(); 3]);
         NurbsCurve::trusted(2, knots, points, Some(weights))
+    }
+
+    fn as_arc(&self) -> Option<&Self> {
+        Some(self)
     }
 }

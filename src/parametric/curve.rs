@@ -3,6 +3,7 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use super::arc::EllipticArc;
 use super::composite::Composite;
 use super::nurbs::NurbsCurve;
 use super::vector::{self, Point};
@@ -62,6 +63,11 @@ pub trait Curve<const D: usize>: Debug + Send + Sync {
 
     /// This curve as a composite, if it is one; composites of composites are spliced flat by this.
     fn as_composite(&self) -> Option<&Composite<D>> {
+        None
+    }
+
+    /// This curve as an elliptic arc, if it is one; files that know arcs keep them exactly by this.
+    fn as_arc(&self) -> Option<&EllipticArc<D>> {
         None
     }
 }

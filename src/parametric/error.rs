@@ -186,6 +186,14 @@ pub enum GeometryError {
         /// Their names; without any one of them the rest can hold.
         constraints: Vec<String>,
     },
+    /// A fault in something that a file describes, with its place in the file.
+    #[error("{}: {fault}", if place.is_empty() { "document" } else { place })]
+    At {
+        /// JSON pointer to the description: "/regions/0".
+        place: String,
+        /// What is wrong with it.
+        fault: Box<GeometryError>,
+    },
     /// A JSON document that is not of the documented shape.
     #[error("{}: {what}", if place.is_empty() { "document" } else { place })]
     Json {
