@@ -1,4 +1,5 @@
 //! Surface patches: derivatives, shapes, meshes within a tolerance, closed solids.
+#![allow(clippy::print_stdout, reason = "measurements, shown with --nocapture")]
 
 #[path = "common/parametric.rs"]
 mod common;
@@ -56,7 +57,7 @@ fn random_patch(rng: &mut ChaCha8Rng) -> Patch {
             return (0..n + p + 1).map(|i| i as f64).collect();
         }
         let mut knots = vec![0.0; p + 1];
-        knots.extend((1..n - p).map(|i| if p > 1 { ((i + 1) / 2) as f64 } else { i as f64 }));
+        knots.extend((1..n - p).map(|i| if p > 1 { i.div_ceil(2) as f64 } else { i as f64 }));
         knots.extend(vec![n as f64; p + 1]);
         knots
     });

@@ -1,4 +1,5 @@
 //! Regions: membership, booleans, triangles, and the solids made of them.
+#![allow(clippy::print_stdout, reason = "measurements, shown with --nocapture")]
 
 #[path = "common/parametric.rs"]
 mod common;
@@ -193,10 +194,10 @@ fn coinciding_edges_are_resolved_exactly() {
     assert_closed(&solid);
     assert_eq!(volume(&solid), 8.0);
     let bow_tie = vec![[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]];
-    assert_eq!(Polygons::new(&[bow_tie.clone()], FillRule::EvenOdd).unwrap().area(), 2.0);
+    assert_eq!(Polygons::new(std::slice::from_ref(&bow_tie), FillRule::EvenOdd).unwrap().area(), 2.0);
     let twice =
         vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    assert!(Polygons::new(&[twice.clone()], FillRule::EvenOdd).unwrap().is_empty());
+    assert!(Polygons::new(std::slice::from_ref(&twice), FillRule::EvenOdd).unwrap().is_empty());
     assert_eq!(Polygons::new(&[twice], FillRule::NonZero).unwrap().area(), 1.0);
 }
 

@@ -329,15 +329,15 @@ impl<const D: usize> Problem<'_, D> {
         if let Some(operand) = self.settings.keep {
             let k = index(operand);
             let name = format!("{} kept whole", letter(operand));
-            constraints.add(name, splits[k].clone(), points[k].clone());
+            constraints.add(name, splits[k], &points[k]);
         }
         if self.settings.fixed_ends {
             let row =
                 |k: usize, i: usize| (splits[k].rows(i, 1).into_owned(), points[k].rows(i, 1).into_owned());
             let (rows, right) = row(0, 0);
-            constraints.add("start of P fixed".into(), rows, right);
+            constraints.add("start of P fixed".into(), &rows, &right);
             let (rows, right) = row(1, points[1].nrows() - 1);
-            constraints.add("end of Q fixed".into(), rows, right);
+            constraints.add("end of Q fixed".into(), &rows, &right);
         }
         for &(operand, parameter, order) in &self.settings.kept_at {
             let k = index(operand);
@@ -351,7 +351,7 @@ impl<const D: usize> Problem<'_, D> {
                 }
                 let what = if r == 0 { "position".into() } else { format!("derivative {r}") };
                 let name = format!("{what} of {} at {parameter}", letter(operand));
-                constraints.add(name, &row * splits[k], &row * &points[k]);
+                constraints.add(name, &(&row * splits[k]), &(&row * &points[k]));
             }
         }
         constraints

@@ -32,7 +32,7 @@ pub(super) struct Independent {
 
 impl Constraints {
     /// Adds rows under one name. Rows of zeros, which say nothing, are left out.
-    pub(super) fn add(&mut self, name: String, rows: DMatrix<f64>, right: DMatrix<f64>) {
+    pub(super) fn add(&mut self, name: String, rows: &DMatrix<f64>, right: &DMatrix<f64>) {
         let index = self.names.len();
         self.names.push(name);
         for i in 0..rows.nrows() {

@@ -103,11 +103,13 @@ impl Density {
 
     fn fill(&self, block: &Block, nodes: &mut Vec<[f64; 2]>) {
         let count = |block: &Block| self.lines(block).iter().product::<f64>();
-        if let Some(quarters) = block.quarters().filter(|_| count(block) > 4.0) {
-            if quarters.iter().map(count).sum::<f64>() < (1.0 - WORTHWHILE_SAVING) * count(block) {
-                quarters.iter().for_each(|quarter| self.fill(quarter, nodes));
-                return;
-            }
+        let saves = |quarters: &[Block; 4]| {
+            let whole = count(block);
+            whole > 4.0 && quarters.iter().map(count).sum::<f64>() < (1.0 - WORTHWHILE_SAVING) * whole
+        };
+        if let Some(quarters) = block.quarters().filter(saves) {
+            quarters.iter().for_each(|quarter| self.fill(quarter, nodes));
+            return;
         }
         let columns = [-0.25, 0.25].map(|shift| self.places(block, 0, shift));
         for (row, &v) in self.places(block, 1, 0.0).iter().enumerate() {

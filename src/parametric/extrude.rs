@@ -85,7 +85,7 @@ impl Extrusion {
             };
             rings.push(section.points.iter().map(place).collect());
         }
-        Ok(loft(&section, rings, Closing::Caps))
+        Ok(loft(&section, &rings, Closing::Caps))
     }
 
     /// The region with edges short enough, and the number of layers, for the tolerance of a twist.
@@ -108,7 +108,7 @@ impl Extrusion {
         let longest = 2.0 * self.tolerance * layers / (shrink + turn * scale);
         let count = |a: Point<2>, b: Point<2>| (vector::distance(a, b) / longest).ceil().max(1.0);
         let edges: f64 = region.edges().map(|[a, b]| count(a, b)).sum();
-        if !(layers * edges <= MOST) {
+        if layers * edges > MOST || !(layers * edges).is_finite() {
             return Err(GeometryError::TooManyNodes { what: "extrusion", limit: MOST as usize });
         }
         let refined = region.refined(|a, b| count(a, b) as usize);
@@ -128,7 +128,7 @@ pub(crate) enum Closing {
 /// The closed mesh between rings of the same plane mesh: `rings[k][i]` is the place of its point `i` on ring `k`.
 /// Seen against the direction of travel the section's triangles turn against the clock. Points of consecutive
 /// rings that coincide bit for bit become one vertex.
-pub(crate) fn loft(section: &PlaneMesh, rings: Vec<Vec<Point<3>>>, closing: Closing) -> Mesh {
+pub(crate) fn loft(section: &PlaneMesh, rings: &[Vec<Point<3>>], closing: Closing) -> Mesh {
     let count = section.points.len();
     let mut vertices = VertexTable::default();
     let ids: Vec<Vec<u32>> =

@@ -114,7 +114,7 @@ pub(crate) fn basis_derivatives(
             let mut sum = 0.0;
             for j in 0..=k {
                 // a[k][j] of the book, built from row k - 1; terms whose basis function lies outside vanish.
-                let low = if j <= k - 1 { rows[previous][j] } else { 0.0 };
+                let low = if j < k { rows[previous][j] } else { 0.0 };
                 let high = if j >= 1 { rows[previous][j - 1] } else { 0.0 };
                 let index = r as isize - k as isize + j as isize;
                 let value = if index < 0 || index as usize > p - k {

@@ -133,7 +133,7 @@ impl<const D: usize> NurbsCurve<D> {
             return Err(GeometryError::BadKnots { index: place, reason });
         }
         let (knots, homogeneous) = insert(self.degree, &self.knots, &self.homogeneous(), knot);
-        let (points, weights) = self.from_homogeneous(&homogeneous);
+        let (points, weights) = self.projected(&homogeneous);
         Ok(Self::trusted(self.degree, knots, points, weights))
     }
 
@@ -144,7 +144,7 @@ impl<const D: usize> NurbsCurve<D> {
             .collect()
     }
 
-    fn from_homogeneous(&self, homogeneous: &[(Point<D>, f64)]) -> (Vec<Point<D>>, Option<Vec<f64>>) {
+    fn projected(&self, homogeneous: &[(Point<D>, f64)]) -> (Vec<Point<D>>, Option<Vec<f64>>) {
         if self.weights.is_none() {
             return (homogeneous.iter().map(|h| h.0).collect(), None);
         }

@@ -196,15 +196,13 @@ impl Patch {
             let at = [u + step * (0.5 * (u0 + u1) - u), v + step * (0.5 * (v0 + v1) - v)];
             let d = self.derivatives(at[0], at[1], 1);
             let (du, dv) = (DVec3::from(d[1][0]) * width, DVec3::from(d[0][1]) * height);
-            let cross = du.cross(dv);
             let longest = du.length().max(dv.length());
-            // At a pole one of the derivatives is as small as the step; its direction still counts.
-            if cross.length() > 1e-12 * longest * longest && step == 0.0 {
-                return Some(cross.normalize().to_array());
-            }
-            if let (Some(du), Some(dv), true) = (du.try_normalize(), dv.try_normalize(), step > 0.0) {
-                if let Some(normal) = du.cross(dv).try_normalize().filter(|_| du.cross(dv).length() > 1e-6) {
-                    return Some(normal.to_array());
+            let shortest = du.length().min(dv.length());
+            // At a pole one of the derivatives vanishes; a step away it is as small as the step, but has a direction.
+            if shortest > 1e-12 * longest || (step > 0.0 && shortest > 0.0) {
+                let normal = du.normalize().cross(dv.normalize());
+                if normal.length() > 1e-6 {
+                    return Some(normal.normalize().to_array());
                 }
             }
         }

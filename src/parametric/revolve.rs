@@ -82,7 +82,7 @@ impl Revolution {
             section.points.iter().map(|p| [p[0] * cos, p[0] * sin, p[1]]).collect()
         };
         let rings: Vec<_> = (0..rings).rev().map(ring).collect();
-        Ok(loft(&section, rings, if full { Closing::Ring } else { Closing::Caps }))
+        Ok(loft(&section, &rings, if full { Closing::Ring } else { Closing::Caps }))
     }
 
     /// Steps whose sagitta at the greatest radius is within the tolerance.
@@ -91,7 +91,7 @@ impl Revolution {
         let widest =
             if self.tolerance < radius { 2.0 * (1.0 - self.tolerance / radius).acos() } else { FRAC_PI_2 };
         let needed = (self.angle / widest).ceil();
-        if !(needed <= MOST) {
+        if needed > MOST {
             return Err(GeometryError::TooManyNodes { what: "solid of revolution", limit: MOST as usize });
         }
         let least = if full { self.least_steps.max(3) } else { 1 };

@@ -60,7 +60,7 @@ impl Sweep {
         if closed {
             rings.pop();
         }
-        Ok(loft(&section, rings, if closed { Closing::Ring } else { Closing::Caps }))
+        Ok(loft(&section, &rings, if closed { Closing::Ring } else { Closing::Caps }))
     }
 
     /// Places on the path with their frames, near enough to one another for the tolerance.
