@@ -1,4 +1,5 @@
 //! Joining two curves into one (Ganchuk 2024).
+#![cfg(feature = "parametric")]
 #![allow(clippy::print_stdout, reason = "measurements, shown with --nocapture")]
 
 #[path = "common/parametric.rs"]

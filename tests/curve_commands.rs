@@ -1,4 +1,5 @@
 //! The program's `curve` verbs as functions.
+#![cfg(feature = "parametric")]
 
 #[path = "../src/cli/curve.rs"]
 mod curve;

@@ -1,4 +1,5 @@
 //! Curves: evaluation, interpolation, continuity, bounds, meshes within a tolerance.
+#![cfg(feature = "parametric")]
 #![allow(clippy::print_stdout, reason = "measurements, shown with --nocapture")]
 
 #[path = "common/parametric.rs"]

@@ -1,4 +1,5 @@
 //! Curves, regions, patches and solids as JSON and SVG.
+#![cfg(feature = "parametric")]
 
 #[path = "common/parametric.rs"]
 mod common;

@@ -1,4 +1,5 @@
 //! Surface patches: derivatives, shapes, meshes within a tolerance, closed solids.
+#![cfg(feature = "parametric")]
 #![allow(clippy::print_stdout, reason = "measurements, shown with --nocapture")]
 
 #[path = "common/parametric.rs"]

@@ -1,4 +1,5 @@
 //! Regions: membership, booleans, triangles, and the solids made of them.
+#![cfg(feature = "parametric")]
 #![allow(clippy::print_stdout, reason = "measurements, shown with --nocapture")]
 
 #[path = "common/parametric.rs"]

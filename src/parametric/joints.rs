@@ -109,15 +109,24 @@ pub(crate) fn join(faces: &[Patch], owner: &[usize], tolerance: f64) -> Result<J
     let mut placeholder: Vec<[FaceSide; 4]> = vec![std::array::from_fn(|_| FaceSide::Collapsed); faces.len()];
     let mut edges: Vec<Edge> = Vec::new();
     let mut edge_of: Vec<Option<(usize, Course)>> = vec![None; boundaries.len()];
+    // Boundaries that run along each other have near ends, whatever their direction.
+    let least = |b: &Boundary| b.ends[0][0].min(b.ends[1][0]);
+    let mut by_place: Vec<(f64, usize)> = boundaries.iter().map(least).zip(0..).collect();
+    by_place.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let near_by = |x: f64| {
+        let from = by_place.partition_point(|(key, _)| *key < x - tolerance);
+        by_place[from..].iter().take_while(move |(key, _)| *key <= x + tolerance).map(|(_, index)| *index)
+    };
     for i in 0..boundaries.len() {
         if edge_of[i].is_some() {
             continue;
         }
         let first = &boundaries[i];
-        let mates: Vec<(usize, Course)> = (i + 1..boundaries.len())
-            .filter(|&j| edge_of[j].is_none())
+        let mut mates: Vec<(usize, Course)> = near_by(least(first))
+            .filter(|&j| j > i && edge_of[j].is_none())
             .filter_map(|j| course(first, &boundaries[j], tolerance).map(|course| (j, course)))
             .collect();
+        mates.sort_by_key(|mate| mate.0);
         if mates.len() > 1 {
             let patches = [i].into_iter().chain(mates.iter().map(|m| m.0)).map(|b| owner[boundaries[b].face]);
             return Err(GeometryError::BoundaryShared {
@@ -277,19 +286,27 @@ fn find_gaps(edges: &[Edge], boundaries: &[Boundary], owner: &[usize]) -> Vec<Ga
         .iter()
         .map(|edge| (0..=SAMPLES).map(|k| edge.curve.point(f64::from(k) / f64::from(SAMPLES))).collect())
         .collect();
-    let to_polyline = |p: Point<3>, line: &[Point<3>]| {
-        line.windows(2).map(|e| vector::distance_to_segment(p, e[0], e[1])).fold(f64::INFINITY, f64::min)
+    let boxes: Vec<[Point<3>; 2]> = polylines
+        .iter()
+        .map(|line| vector::bounding_box(line.iter().copied()).unwrap_or([[0.0; 3]; 2]))
+        .collect();
+    let to_box = |p: Point<3>, [low, high]: [Point<3>; 2]| {
+        vector::norm(std::array::from_fn::<f64, 3, _>(|k| (low[k] - p[k]).max(p[k] - high[k]).max(0.0)))
+    };
+    // Distance to the nearest polyline but the given one.
+    let to_others = |p: Point<3>, own: usize| {
+        (0..polylines.len()).filter(|&j| j != own).fold(f64::INFINITY, |best, j| {
+            if to_box(p, boxes[j]) >= best {
+                return best;
+            }
+            let edges = polylines[j].windows(2);
+            edges.map(|e| vector::distance_to_segment(p, e[0], e[1])).fold(best, f64::min)
+        })
     };
     let mut gaps = Vec::new();
     for (i, edge) in open.iter().enumerate() {
         let (face, side) = edge.uses[0];
-        let widest = polylines[i]
-            .iter()
-            .map(|&p| {
-                let others = polylines.iter().enumerate().filter(|(j, _)| *j != i);
-                (others.map(|(_, line)| to_polyline(p, line)).fold(f64::INFINITY, f64::min), p)
-            })
-            .max_by(|a, b| a.0.total_cmp(&b.0));
+        let widest = polylines[i].iter().map(|&p| (to_others(p, i), p)).max_by(|a, b| a.0.total_cmp(&b.0));
         let ends =
             boundaries.iter().find(|b| (b.face, b.side) == (face, side)).map_or([[0.0; 3]; 2], |b| b.ends);
         let width = widest.filter(|(width, _)| width.is_finite());
