@@ -17,7 +17,7 @@ use super::vector::{self, Point};
 pub(crate) type Parameters = [[f64; 2]; 3];
 
 /// How often a part is split before an undecided triangle counts as too far.
-const DECISION_DEPTH: u32 = 4;
+const DECISION_DEPTH: u32 = 3;
 
 /// Decides about triangles of one patch.
 #[derive(Clone, Debug)]

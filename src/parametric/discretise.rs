@@ -196,7 +196,7 @@ impl<const D: usize> Refiner<'_, D> {
                 nodes.push(pair[1]);
                 continue;
             }
-            let probe = self.halved(pair, self.tolerance / 16.0)?;
+            let probe = self.halved(pair, self.tolerance / 4.0)?;
             let mut worth = vec![0.0];
             for edge in probe.windows(2) {
                 let part = (self.sampled_deviation(edge[0], edge[1]) / self.tolerance).sqrt();

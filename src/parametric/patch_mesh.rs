@@ -71,7 +71,7 @@ const EDGE_SHARE: [f64; 2] = [0.95, 0.7];
 
 impl PatchMeshing {
     /// A mesh that deviates from the patches by no more than `tolerance`: every point of a patch is that near to the
-    /// triangle over its parameters.
+    /// triangle over its parameters. (Along boundaries that were joined over a gap, the gap's width comes on top.)
     #[must_use]
     pub fn new(tolerance: f64) -> Self {
         Self {
