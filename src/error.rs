@@ -118,6 +118,10 @@ pub enum Error {
         /// What is wrong with it.
         source: Box<Error>,
     },
+    /// A curve, region or patch, or its file, is at fault.
+    #[cfg(feature = "parametric")]
+    #[error(transparent)]
+    Geometry(#[from] crate::parametric::GeometryError),
     /// The caller cancelled the operation.
     #[error("cancelled")]
     Cancelled,
@@ -172,6 +176,10 @@ impl Error {
             | Self::Formula(_)
             | Self::Model(_)
             | Self::SelfCrossing(_) => Failure::Unusable,
+            #[cfg(feature = "parametric")]
+            Self::Geometry(fault) if fault.is_unreadable() => Failure::Unreadable,
+            #[cfg(feature = "parametric")]
+            Self::Geometry(_) => Failure::Unusable,
             Self::Operand { source, .. } | Self::InNode { source, .. } => source.failure(),
             Self::InvalidArgument(_) => Failure::Usage,
             Self::Cancelled | Self::DeadlineExceeded | Self::MemoryLimit { .. } => Failure::Limit,

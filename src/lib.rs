@@ -22,6 +22,8 @@ pub mod mesh;
 pub mod model;
 mod parallel;
 mod polygon;
+#[cfg(feature = "parametric")]
+pub mod parametric;
 pub mod primitives;
 #[cfg(feature = "render")]
 pub mod render;
