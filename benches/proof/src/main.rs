@@ -1,0 +1,75 @@
+//! Random booleans by seed, run by trisect and judged by the oracle of the tests, and handed on for comparison.
+//!
+//! ```text
+//! trisect-proof emit FIRST COUNT [POINTS]    cases and results as binary records on standard output (see record.rs)
+//! trisect-proof show SEED...                 what is known of each case, in words
+//! trisect-proof save SEED FOLDER             the operands and the result of a case as OBJ files
+//! trisect-proof minimise SEED FOLDER         the smallest pair found that fails like the case, as OBJ files
+//! ```
+
+#[path = "../../../tests/proof/judge/mod.rs"]
+#[allow(dead_code, reason = "shared with the tests")]
+mod judge;
+mod record;
+mod run;
+
+use std::io::{BufWriter, Write};
+use std::process::ExitCode;
+
+use judge::cases::Case;
+use trisect::Mesh;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match command(&words) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn command(words: &[&str]) -> Result<(), String> {
+    let models = judge::cases::models(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/solids"));
+    match words {
+        ["emit", first, count, points @ ..] => {
+            let points = points.first().map_or(Ok(48), |word| number(word))?;
+            emit(number(first)?, number(count)?, points as usize, &models).map_err(|error| error.to_string())
+        }
+        ["show", seeds @ ..] => seeds.iter().try_for_each(|word| {
+            let seed = number(word)?;
+            run::show(seed, &Case::new(seed, &models));
+            Ok(())
+        }),
+        ["save", seed, folder] => {
+            let case = Case::new(number(seed)?, &models);
+            let (outcome, _) = run::attempt(&case);
+            save(&case.a, folder, "a")?;
+            save(&case.b, folder, "b")?;
+            outcome.map_or(Ok(()), |mesh| save(&mesh, folder, "result"))
+        }
+        _ => Err("usage: trisect-proof emit FIRST COUNT [POINTS] | show SEED... | save SEED FOLDER".into()),
+    }
+}
+
+fn number(word: &str) -> Result<u64, String> {
+    word.parse().map_err(|_| format!("not a number: {word}"))
+}
+
+fn save(mesh: &Mesh, folder: &str, name: &str) -> Result<(), String> {
+    mesh.save(format!("{folder}/{name}.obj")).map_err(|error| error.to_string())
+}
+
+fn emit(first: u64, count: u64, points: usize, models: &[Mesh]) -> std::io::Result<()> {
+    // A panic is a finding, not noise.
+    std::panic::set_hook(Box::new(|_| {}));
+    let mut out = BufWriter::new(std::io::stdout().lock());
+    for seed in first..first + count {
+        let case = Case::new(seed, models);
+        let found = run::examine(seed, &case, points);
+        record::write(&mut out, seed, &case, &found)?;
+    }
+    out.flush()
+}

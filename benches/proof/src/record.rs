@@ -1,0 +1,47 @@
+//! The records that the comparison reads: little-endian, one after the other, no padding.
+//!
+//! ```text
+//! u64 seed; u8 family, operation, faults, 0
+//! twice (A, B): u32 vertices, triangles; f64[3] each vertex; u32[3] each triangle
+//! f64 volume, area; i64 Euler characteristic; u32 components, triangles, points judged, mistakes
+//! f64 error of the volume identity, relative to the box; f64 farthest point within rounding, in ulps
+//! ```
+
+use std::io::{self, Write};
+
+use crate::judge::cases::{Case, Family, OPERATIONS};
+use crate::run::Found;
+use trisect::Mesh;
+
+pub(crate) fn write(out: &mut impl Write, seed: u64, case: &Case, found: &Found) -> io::Result<()> {
+    let family = Family::ALL.iter().position(|&family| family == case.family).unwrap_or(0);
+    let operation = OPERATIONS.iter().position(|&operation| operation == case.operation).unwrap_or(0);
+    out.write_all(&seed.to_le_bytes())?;
+    out.write_all(&[family as u8, operation as u8, found.faults, 0])?;
+    mesh(out, &case.a)?;
+    mesh(out, &case.b)?;
+    for value in [found.volume, found.area] {
+        out.write_all(&value.to_le_bytes())?;
+    }
+    out.write_all(&found.euler.to_le_bytes())?;
+    for count in [found.components, found.triangles, found.judged, found.mistakes] {
+        out.write_all(&(count as u32).to_le_bytes())?;
+    }
+    for value in [found.identity_error, found.farthest_rounded] {
+        out.write_all(&value.to_le_bytes())?;
+    }
+    Ok(())
+}
+
+fn mesh(out: &mut impl Write, mesh: &Mesh) -> io::Result<()> {
+    for count in [mesh.positions.len(), mesh.triangles.len()] {
+        out.write_all(&(count as u32).to_le_bytes())?;
+    }
+    for x in mesh.positions.iter().flatten() {
+        out.write_all(&x.to_le_bytes())?;
+    }
+    for v in mesh.triangles.iter().flatten() {
+        out.write_all(&v.to_le_bytes())?;
+    }
+    Ok(())
+}

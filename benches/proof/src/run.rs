@@ -1,0 +1,152 @@
+//! One case, run and judged.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::judge::cases::Case;
+use crate::judge::oracle;
+use crate::judge::surface::Properties;
+use crate::judge::vector::extent;
+use trisect::{Control, Mesh, Operation, Options, Solid};
+
+pub(crate) const PANIC: u8 = 1;
+pub(crate) const OPEN: u8 = 2;
+pub(crate) const NOT_MANIFOLD: u8 = 4;
+pub(crate) const ZERO_AREA: u8 = 8;
+pub(crate) const IDENTITY: u8 = 16;
+pub(crate) const CERTIFICATE: u8 = 32;
+pub(crate) const OPERAND: u8 = 64;
+pub(crate) const CROSSES_ITSELF: u8 = 128;
+
+/// What was found of a result.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Found {
+    pub(crate) faults: u8,
+    pub(crate) volume: f64,
+    pub(crate) area: f64,
+    pub(crate) euler: i64,
+    pub(crate) components: usize,
+    pub(crate) triangles: usize,
+    pub(crate) judged: usize,
+    pub(crate) mistakes: usize,
+    pub(crate) identity_error: f64,
+    pub(crate) farthest_rounded: f64,
+}
+
+/// The result, or nothing after a panic; and whether the certificate agrees with it.
+pub(crate) fn attempt(case: &Case) -> (Option<Mesh>, bool) {
+    let run = || {
+        let solids = [&case.a, &case.b].map(|mesh| Solid::try_from(mesh.clone()).expect("closed operands"));
+        Options::new().threads(1).run(case.operation, &[&solids[0], &solids[1]]).expect("no limits")
+    };
+    let Ok(outcome) = catch_unwind(AssertUnwindSafe(run)) else { return (None, true) };
+    let certificate = outcome.certificate();
+    let found = Properties::of(outcome.solid().mesh());
+    let close = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs()) + 1e-12;
+    let agrees = certificate.closed == found.closed
+        && certificate.manifold == found.manifold
+        && certificate.components == found.components
+        && certificate.zero_area == found.zero_area
+        && close(certificate.area, found.area);
+    (Some(outcome.into_solid().into_mesh()), agrees)
+}
+
+/// Whether a mesh crosses itself by more than rounding.
+fn crosses_itself(mesh: &Mesh) -> bool {
+    Solid::try_from(mesh.clone())
+        .ok()
+        .and_then(|solid| solid.self_crossings(&Control::new()).map(|found| !found.is_clean()).ok())
+        .unwrap_or(true)
+}
+
+/// The volume of the result of another operation on the same operands; not a number after a panic.
+fn volume_of(operation: Operation, case: &Case) -> f64 {
+    let other = Case { operation, ..case.clone() };
+    attempt(&other).0.map_or(f64::NAN, |mesh| crate::judge::surface::volume(&mesh))
+}
+
+/// How far the volumes of this result and another are from what they should be together, relative to the volume of the box
+/// round both operands.
+fn identity_error(case: &Case, volume: f64) -> f64 {
+    let [va, vb] = [&case.a, &case.b].map(crate::judge::surface::volume);
+    let (all, either) = (va + vb, Operation::Intersection);
+    let error = match case.operation {
+        Operation::Union => volume + volume_of(either, case) - all,
+        Operation::Intersection => volume + volume_of(Operation::Difference, case) - va,
+        Operation::Difference => volume + volume_of(either, case) - va,
+        Operation::SymmetricDifference => volume + 2.0 * volume_of(either, case) - all,
+    };
+    let [low, high] = extent(case.a.positions.iter().chain(&case.b.positions));
+    error / (0..3).map(|k| high[k] - low[k]).product::<f64>()
+}
+
+/// The smallest relative error of a volume that is a fault: rounding of coordinates far from the origin counts.
+pub(crate) fn identity_tolerance(case: &Case) -> f64 {
+    let [low, high] = extent(case.a.positions.iter().chain(&case.b.positions));
+    let size = (0..3).map(|k| high[k] - low[k]).fold(f64::INFINITY, f64::min);
+    let largest = low.iter().chain(&high).fold(0.0f64, |most, x| most.max(x.abs()));
+    1e-12 + 64.0 * f64::EPSILON * largest / size
+}
+
+pub(crate) fn examine(seed: u64, case: &Case, points: usize) -> Found {
+    let mut found = Found::default();
+    if crosses_itself(&case.a) || crosses_itself(&case.b) {
+        found.faults |= OPERAND;
+    }
+    let (outcome, agrees) = attempt(case);
+    let Some(mesh) = outcome else {
+        found.faults |= PANIC;
+        return found;
+    };
+    let properties = Properties::of(&mesh);
+    for (fault, is_so) in [
+        (CERTIFICATE, !agrees),
+        (OPEN, !properties.closed),
+        (NOT_MANIFOLD, !properties.manifold),
+        (ZERO_AREA, properties.zero_area > 0),
+        (CROSSES_ITSELF, crosses_itself(&mesh)),
+    ] {
+        if is_so {
+            found.faults |= fault;
+        }
+    }
+    let verdict = oracle::judge(case.operation, &[&case.a, &case.b], &mesh, points, seed);
+    found.identity_error = identity_error(case, properties.volume);
+    // Not "greater": a panic of the other operation leaves no number.
+    if !(found.identity_error.abs() <= identity_tolerance(case)) {
+        found.faults |= IDENTITY;
+    }
+    Found {
+        volume: properties.volume,
+        area: properties.area,
+        euler: properties.euler,
+        components: properties.components,
+        triangles: mesh.triangles.len(),
+        judged: verdict.judged,
+        mistakes: verdict.mistakes.len(),
+        farthest_rounded: verdict.farthest_rounded,
+        ..found
+    }
+}
+
+/// Prints all that is known of a case.
+pub(crate) fn show(seed: u64, case: &Case) {
+    println!(
+        "seed {seed}: {:?} {:?}, {} and {} triangles",
+        case.family,
+        case.operation,
+        case.a.triangles.len(),
+        case.b.triangles.len()
+    );
+    println!("  A {:?}\n  B {:?}", Properties::of(&case.a), Properties::of(&case.b));
+    let found = examine(seed, case, 2_000);
+    let names = ["panic", "open", "not manifold", "zero area", "identity", "certificate", "operand", "crosses itself"];
+    let faults: Vec<&str> = (0..8).filter(|bit| found.faults >> bit & 1 == 1).map(|bit| names[bit]).collect();
+    println!("  faults {faults:?} (identity tolerance {:e})\n  {found:?}", identity_tolerance(case));
+    if let (Some(mesh), _) = attempt(case) {
+        println!("  result {:?}", Properties::of(&mesh));
+        let verdict = oracle::judge(case.operation, &[&case.a, &case.b], &mesh, 2_000, seed);
+        for mistake in verdict.mistakes.iter().take(3) {
+            println!("  {mistake:?}");
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! All coincidences on small integer grids.
+
+mod boxes;
+mod cells;
+mod convex;
+mod lattice;

@@ -1,0 +1,17 @@
+//! Judges of results that share nothing with the engine but the types of a mesh, and random cases to judge.
+//!
+//! - [`winding`]: how often a surface winds round a point, exactly, by counting crossings of a ray;
+//! - [`oracle`]: whether a result winds as its operands and the operation say, at points where mistakes would show;
+//! - [`surface`]: closedness, manifoldness, components, Euler characteristic, volume, area of a mesh, by definition;
+//! - [`shapes`], [`placement`], [`cases`]: pairs of solids and an operation from a seed.
+
+pub(crate) mod cases;
+pub(crate) mod cells;
+pub(crate) mod exact;
+pub(crate) mod oracle;
+pub(crate) mod placement;
+pub(crate) mod samples;
+pub(crate) mod shapes;
+pub(crate) mod surface;
+pub(crate) mod vector;
+pub(crate) mod winding;
