@@ -4,12 +4,14 @@
 //! trisect-proof emit FIRST COUNT [POINTS]    cases and results as binary records on standard output (see record.rs)
 //! trisect-proof show SEED...                 what is known of each case, in words
 //! trisect-proof save SEED FOLDER             the operands and the result of a case as OBJ files
+//! trisect-proof judge                        trisect's and another engine's results at the same points (see arbiter.rs)
 //! trisect-proof minimise SEED FOLDER         the smallest pair found that fails like the case, as OBJ files
 //! ```
 
 #[path = "../../../tests/proof/judge/mod.rs"]
 #[allow(dead_code, reason = "shared with the tests")]
 mod judge;
+mod arbiter;
 mod record;
 mod run;
 
@@ -37,6 +39,10 @@ fn command(words: &[&str]) -> Result<(), String> {
         ["emit", first, count, points @ ..] => {
             let points = points.first().map_or(Ok(48), |word| number(word))?;
             emit(number(first)?, number(count)?, points as usize, &models).map_err(|error| error.to_string())
+        }
+        ["judge"] => {
+            let (input, out) = (std::io::stdin().lock(), std::io::stdout().lock());
+            arbiter::serve(&mut { input }, &mut { out }, &models).map_err(|error| error.to_string())
         }
         ["show", seeds @ ..] => seeds.iter().try_for_each(|word| {
             let seed = number(word)?;
