@@ -5,7 +5,7 @@
 //! trisect-proof show SEED...                 what is known of each case, in words
 //! trisect-proof save SEED FOLDER             the operands and the result of a case as OBJ files
 //! trisect-proof judge                        trisect's and another engine's results at the same points (see arbiter.rs)
-//! trisect-proof minimise SEED FOLDER         the smallest pair found that fails like the case, as OBJ files
+//! trisect-proof minimise SEED FOLDER NAME    the smallest pair found that fails like the case, as NAME-a.obj and NAME-b.obj
 //! ```
 
 #[path = "../../../tests/proof/judge/mod.rs"]
@@ -56,7 +56,23 @@ fn command(words: &[&str]) -> Result<(), String> {
             save(&case.b, folder, "b")?;
             outcome.map_or(Ok(()), |mesh| save(&mesh, folder, "result"))
         }
-        _ => Err("usage: trisect-proof emit FIRST COUNT [POINTS] | show SEED... | save SEED FOLDER".into()),
+        ["minimise", seed, folder, name] => {
+            let seed = number(seed)?;
+            let case = Case::new(seed, &models);
+            let faults = |pair: &[Mesh; 2]| run::faults_of(&Case { a: pair[0].clone(), b: pair[1].clone(), ..case.clone() });
+            let pair = [case.a.clone(), case.b.clone()];
+            let fault = faults(&pair);
+            if fault == 0 {
+                return Err(format!("seed {seed} does not fail"));
+            }
+            std::panic::set_hook(Box::new(|_| {}));
+            let small = judge::minimise::minimised(&pair, |pair| faults(pair) & fault != 0);
+            println!("{:?}: {} and {} triangles", case.operation, small[0].triangles.len(), small[1].triangles.len());
+            small.iter().zip(["a", "b"]).try_for_each(|(mesh, which)| save(mesh, folder, &format!("{name}-{which}")))
+        }
+        _ => Err("usage: trisect-proof emit FIRST COUNT [POINTS] | judge | show SEED... | save SEED FOLDER | \
+                  minimise SEED FOLDER NAME"
+            .into()),
     }
 }
 

@@ -154,6 +154,14 @@ pub(crate) fn examine(seed: u64, case: &Case, points: usize) -> Found {
     }
 }
 
+/// What is wrong with a case, as bits; a mistake that the oracle sees counts as a fault of the volume. Nothing is wrong with
+/// an operand that crosses itself: such a pair is no case.
+pub(crate) fn faults_of(case: &Case) -> u16 {
+    let found = examine(1, case, 200);
+    let faults = if found.mistakes > 0 { found.faults | IDENTITY } else { found.faults };
+    if faults & OPERAND != 0 { 0 } else { faults }
+}
+
 /// Prints all that is known of a case.
 pub(crate) fn show(seed: u64, case: &Case) {
     println!(
