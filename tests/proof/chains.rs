@@ -58,7 +58,8 @@ fn stacking_bricks() {
     let mut heap = Solid::empty();
     let mut top = 0;
     for step in 0..steps {
-        let (x, y, across) = (random.random_range(0..9i64), random.random_range(0..9i64), random.random::<bool>());
+        let (x, y, across) =
+            (random.random_range(0..9i64), random.random_range(0..9i64), random.random::<bool>());
         let (width, depth) = if across { (2, 1) } else { (1, 2) };
         let brick_at = |z: i64| Cells::new([x, y, z], [x + width, y + depth, z + 1], |_| true);
         // It falls onto what is there.
@@ -127,7 +128,11 @@ fn carving_with_tools_that_do_not_meet() {
     let verdict = oracle::judge(Difference, &operands, left.mesh(), 400, 5);
     assert!(verdict.mistakes.is_empty(), "{:?}", verdict.mistakes);
     // Each tool adds its own triangles and what its curve cuts.
-    assert!(left.mesh().triangles.len() < block.mesh().triangles.len() + 60 * steps, "{}", left.mesh().triangles.len());
+    assert!(
+        left.mesh().triangles.len() < block.mesh().triangles.len() + 60 * steps,
+        "{}",
+        left.mesh().triangles.len()
+    );
 }
 
 #[test]
@@ -163,6 +168,11 @@ fn milling_along_a_path() {
     // The same all at once.
     let all: Vec<&Solid> = [&block].into_iter().chain(&tools).collect();
     let at_once = run(Difference, &all);
-    assert!((volume(at_once.mesh()) - found.volume).abs() < 1e-10, "{} {}", volume(at_once.mesh()), found.volume);
+    assert!(
+        (volume(at_once.mesh()) - found.volume).abs() < 1e-10,
+        "{} {}",
+        volume(at_once.mesh()),
+        found.volume
+    );
     assert!(most < 100 * steps, "{most} triangles");
 }

@@ -9,7 +9,12 @@ type Engine = fn(Operation, &Pair) -> Mesh;
 
 fn right(operation: Operation, pair: &Pair) -> Mesh {
     let solids = pair.each_ref().map(|mesh| Solid::try_from(mesh.clone()).expect("closed"));
-    Options::new().threads(1).run(operation, &[&solids[0], &solids[1]]).expect("no limits").into_solid().into_mesh()
+    Options::new()
+        .threads(1)
+        .run(operation, &[&solids[0], &solids[1]])
+        .expect("no limits")
+        .into_solid()
+        .into_mesh()
 }
 
 /// Forgets the second operand wherever it has a vertex higher than every vertex of the first.

@@ -180,7 +180,8 @@ fn the_same_cut_repeated() {
     }
 }
 
-// mikedh/trimesh, test_multiple.
+// mikedh/trimesh, test_multiple. Its test states 8.617306056726884 and 2.2322826509159985, which are right to seven digits for
+// the balls that trimesh 5.2.0 makes today; of those manifold3d 3.5.4 makes these volumes.
 
 #[test]
 fn three_balls_in_a_row() {
@@ -189,8 +190,8 @@ fn three_balls_in_a_row() {
     let operands: Vec<&Solid> = balls.iter().collect();
     let (_, united) = result(Union, &operands);
     let (_, left) = result(Difference, &operands);
-    let close = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-9;
-    assert!(close(united.volume, 8.617306056726884), "{united:?}");
-    assert!(close(left.volume, 2.2322826509159985), "{left:?}");
+    let close = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-12;
+    assert!(close(united.volume, 8.617306170479672), "{united:?}");
+    assert!(close(left.volume, 2.232282676693307), "{left:?}");
     assert_eq!(united.components, 1);
 }

@@ -42,12 +42,15 @@ impl Recipe {
             Kind::Star(radii, height) => {
                 const DIRECTIONS: [[f64; 2]; 8] =
                     [[1., 0.], [1., 1.], [0., 1.], [-1., 1.], [-1., 0.], [-1., -1.], [0., -1.], [1., -1.]];
-                let corner = |(direction, &radius): (&[f64; 2], &u8)| direction.map(|x| x * f64::from(radius));
+                let corner =
+                    |(direction, &radius): (&[f64; 2], &u8)| direction.map(|x| x * f64::from(radius));
                 let polygon: Vec<[f64; 2]> = DIRECTIONS.iter().zip(radii).map(corner).collect();
                 primitives::extrusion(&polygon, &[], f64::from(*height))
             }
             Kind::Ball(frequency) => primitives::geodesic_sphere(1.5, u32::from(*frequency)),
-            Kind::Torus(around, across) => primitives::torus(1.5, 0.6, u32::from(*around), u32::from(*across)),
+            Kind::Torus(around, across) => {
+                primitives::torus(1.5, 0.6, u32::from(*around), u32::from(*across))
+            }
         };
         let by = self.by.map(f64::from);
         let turn = |p: [f64; 3]| self.turn.map_or(p, |q| turned(q.map(f64::from), p));
@@ -107,7 +110,12 @@ fn check(
     let seed = std::env::var("TRISECT_PROOF_SEED").map_or(1, |seed| seed.parse::<u64>().expect("a number"));
     let mut bytes = [0; 32];
     bytes[..8].copy_from_slice(&seed.to_le_bytes());
-    let config = Config { cases: cases as u32, failure_persistence: None, max_shrink_iters: 20_000, ..Config::default() };
+    let config = Config {
+        cases: cases as u32,
+        failure_persistence: None,
+        max_shrink_iters: 20_000,
+        ..Config::default()
+    };
     let mut runner = TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &bytes));
     runner.run(&pair(), |[a, b]| {
         let (Some(of_a), Some(of_b)) = (a.mesh(), b.mesh()) else { return Ok(()) };
@@ -116,10 +124,7 @@ fn check(
 }
 
 /// Panics with the smallest failing pair.
-fn assert_holds(
-    cases: usize,
-    property: impl Fn(&Recipe, &Recipe, [&Solid; 2]) -> Result<(), TestCaseError>,
-) {
+fn assert_holds(cases: usize, property: impl Fn(&Recipe, &Recipe, [&Solid; 2]) -> Result<(), TestCaseError>) {
     if let Err(error) = check(cases * 8 / one_in(8), property) {
         panic!("{error}");
     }
@@ -149,7 +154,12 @@ fn results_are_sound() {
         for operation in OPERATIONS {
             let result = engine(operation, solids);
             let found = Properties::of(result.mesh());
-            prop_assert!(found.closed && found.manifold && found.zero_area == 0, "{:?}: {:?}", operation, found);
+            prop_assert!(
+                found.closed && found.manifold && found.zero_area == 0,
+                "{:?}: {:?}",
+                operation,
+                found
+            );
             // On the grid all contacts are exact: touching material is apart.
             if a.turn.is_none() && b.turn.is_none() {
                 let parted = parted(result.mesh(), 1e-9).map(|parted| parted.topology);
@@ -184,18 +194,28 @@ fn laws_of_sets() {
     // A box round everything, off the grid.
     let all = cuboid([-12.3; 3], [12.7; 3]);
     assert_holds(300, |_, _, [a, b]| {
-        let same = |x: &Solid, y: &Solid| (volume(x.mesh()) - volume(y.mesh())).abs() <= 1e-11 * volume(all.mesh());
+        let same =
+            |x: &Solid, y: &Solid| (volume(x.mesh()) - volume(y.mesh())).abs() <= 1e-11 * volume(all.mesh());
         let not = |x: &Solid| engine(Difference, [&all, x]);
         // De Morgan.
-        prop_assert!(same(&not(&engine(Union, [a, b])), &engine(Intersection, [&not(a), &not(b)])), "not (A or B)");
-        prop_assert!(same(&not(&engine(Intersection, [a, b])), &engine(Union, [&not(a), &not(b)])), "not (A and B)");
+        prop_assert!(
+            same(&not(&engine(Union, [a, b])), &engine(Intersection, [&not(a), &not(b)])),
+            "not (A or B)"
+        );
+        prop_assert!(
+            same(&not(&engine(Intersection, [a, b])), &engine(Union, [&not(a), &not(b)])),
+            "not (A and B)"
+        );
         // Absorption, and parts put together again.
         prop_assert!(same(&engine(Intersection, [a, &engine(Union, [a, b])]), a), "A and (A or B)");
         prop_assert!(same(&engine(Union, [a, &engine(Intersection, [a, b])]), a), "A or (A and B)");
         let parts = engine(Union, [&engine(Difference, [a, b]), &engine(Intersection, [a, b])]);
         prop_assert!(same(&parts, a), "(A - B) or (A and B)");
         prop_assert!(engine(Difference, [a, a]).is_empty(), "A - A");
-        prop_assert!(same(&engine(Difference, [&engine(Union, [a, b]), b]), &engine(Difference, [a, b])), "(A or B) - B");
+        prop_assert!(
+            same(&engine(Difference, [&engine(Union, [a, b]), b]), &engine(Difference, [a, b])),
+            "(A or B) - B"
+        );
         Ok(())
     });
 }
@@ -209,14 +229,28 @@ fn results_move_with_their_operands() {
         // Axes exchanged and moved by whole numbers: everything is exact still.
         let place = |p: [f64; 3]| [p[1] + 5.0, p[2] - 3.0, p[0] + 2.0];
         let moved = |x: &Solid| {
-            solid(Mesh::new(x.mesh().positions.iter().map(|&p| place(p)).collect(), x.mesh().triangles.clone()))
+            solid(Mesh::new(
+                x.mesh().positions.iter().map(|&p| place(p)).collect(),
+                x.mesh().triangles.clone(),
+            ))
         };
         for operation in OPERATIONS {
             let here = Properties::of(engine(operation, solids).mesh());
             let there = Properties::of(engine(operation, [&moved(solids[0]), &moved(solids[1])]).mesh());
-            prop_assert!((here.volume - there.volume).abs() < 1e-11, "{:?}: {:?} {:?}", operation, here, there);
+            prop_assert!(
+                (here.volume - there.volume).abs() < 1e-11,
+                "{:?}: {:?} {:?}",
+                operation,
+                here,
+                there
+            );
             prop_assert!((here.area - there.area).abs() < 1e-10, "{:?}: {:?} {:?}", operation, here, there);
-            prop_assert_eq!((here.components, here.euler), (there.components, there.euler), "{:?}", operation);
+            prop_assert_eq!(
+                (here.components, here.euler),
+                (there.components, there.euler),
+                "{:?}",
+                operation
+            );
         }
         Ok(())
     });
@@ -229,7 +263,9 @@ fn a_wrong_engine_is_found_and_shrunk() {
         let shared = volume(engine(Intersection, solids).mesh());
         if shared > 1.0 { solids[0].clone() } else { engine(operation, solids) }
     };
-    let Err(TestError::Fail(_, [a, b])) = check(400, |_, _, solids| agrees_with_the_oracle(wrong, solids, 120)) else {
+    let Err(TestError::Fail(_, [a, b])) =
+        check(400, |_, _, solids| agrees_with_the_oracle(wrong, solids, 120))
+    else {
         panic!("the oracle sees nothing");
     };
     // Two solids no larger than needed, of the first kind or as small.

@@ -35,7 +35,8 @@ fn results_of_manifold3d() {
             );
         }
         let solids = [&case.a, &case.b].map(|mesh| Solid::try_from(mesh.clone()).expect("closed"));
-        let outcome = Options::new().threads(1).run(case.operation, &[&solids[0], &solids[1]]).expect("no limits");
+        let outcome =
+            Options::new().threads(1).run(case.operation, &[&solids[0], &solids[1]]).expect("no limits");
         let found = Properties::of(outcome.solid().mesh());
         let [low, high] = extent(case.a.positions.iter().chain(&case.b.positions));
         let [x, y, z] = [0, 1, 2].map(|k| high[k] - low[k]);
@@ -44,7 +45,10 @@ fn results_of_manifold3d() {
             if recorded != "-" {
                 compared += 1;
                 if (found - number(recorded)).abs() > tolerance {
-                    failures.push(format!("seed {seed} {:?} {:?}: {name} {found}, not {recorded}", case.family, case.operation));
+                    failures.push(format!(
+                        "seed {seed} {:?} {:?}: {name} {found}, not {recorded}",
+                        case.family, case.operation
+                    ));
                 }
             }
         };

@@ -10,7 +10,11 @@ use crate::judge::oracle;
 use crate::trial::{Expected, Trial};
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().find(|p| p.join("fixtures").is_dir()).expect("fixtures").join("fixtures/pairs")
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .find(|p| p.join("fixtures").is_dir())
+        .expect("fixtures")
+        .join("fixtures/pairs")
 }
 
 /// Writes a pair as OBJ, as the driver does, and reads it again.
@@ -30,7 +34,9 @@ pub(crate) fn written_and_read(pair: &Pair, name: &str) -> Pair {
 fn pairs_that_once_failed() {
     let mut names: Vec<String> = std::fs::read_dir(folder())
         .expect("a folder")
-        .filter_map(|entry| entry.ok()?.file_name().into_string().ok()?.strip_suffix("-a.obj").map(str::to_owned))
+        .filter_map(|entry| {
+            entry.ok()?.file_name().into_string().ok()?.strip_suffix("-a.obj").map(str::to_owned)
+        })
         .collect();
     names.sort();
     let mut trial = Trial::default();
@@ -40,7 +46,8 @@ fn pairs_that_once_failed() {
             Solid::try_from(mesh).expect("closed")
         });
         let volume = |solid: &Solid| crate::judge::surface::volume(solid.mesh());
-        let shared = trial.run(name, OPERATIONS[1], [&a, &b], &Expected::default()).map_or(f64::NAN, |s| volume(&s));
+        let shared =
+            trial.run(name, OPERATIONS[1], [&a, &b], &Expected::default()).map_or(f64::NAN, |s| volume(&s));
         for operation in OPERATIONS {
             use trisect::Operation::{Difference, Intersection, SymmetricDifference, Union};
             let (va, vb) = (volume(&a), volume(&b));

@@ -44,7 +44,8 @@ fn boxes_nearly_flush() {
     let mut trial = Trial::default();
     let a = cuboid([0.0; 3], [1.0; 3]);
     // Beside one another, on one another, nearly the same; moved along one axis or all.
-    let places = [([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]), ([0.25, 0.25, 1.0], [0.75, 0.75, 2.0]), ([0.0; 3], [1.0; 3])];
+    let places =
+        [([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]), ([0.25, 0.25, 1.0], [0.75, 0.75, 2.0]), ([0.0; 3], [1.0; 3])];
     for (low, high) in places {
         for direction in [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]] {
             for amount in amounts() {

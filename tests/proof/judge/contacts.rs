@@ -72,7 +72,8 @@ pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
         for (a, b) in wedges(sides)? {
             pairs += 1;
             bodies.join(a.face, b.face);
-            let corner = |of: &Side, next: usize| first[of.face] + (of.side + next) % faces[of.face].corners.len();
+            let corner =
+                |of: &Side, next: usize| first[of.face] + (of.side + next) % faces[of.face].corners.len();
             fans.join(corner(a, 0), corner(b, 1));
             fans.join(corner(a, 1), corner(b, 0));
         }
@@ -111,7 +112,10 @@ fn face(triangle: [usize; 3], points: &[Point], near: f64) -> Option<Face> {
     }
     let [low, high] = extent(&[a, b, c]);
     let close: Vec<usize> = (0..points.len())
-        .filter(|v| !triangle.contains(v) && (0..3).all(|k| points[*v][k] >= low[k] - near && points[*v][k] <= high[k] + near))
+        .filter(|v| {
+            !triangle.contains(v)
+                && (0..3).all(|k| points[*v][k] >= low[k] - near && points[*v][k] <= high[k] + near)
+        })
         .collect();
     let mut corners = Vec::new();
     for side in 0..3 {
@@ -194,7 +198,11 @@ fn wedges(sides: &mut [Side]) -> Option<Vec<(&Side, &Side)>> {
     }
     // A face that runs with the edge has its material behind it, in the sense of growing angles before it.
     let start = usize::from(sides[0].forward);
-    Some((0..count / 2).map(|k| (&sides[(start + 2 * k) % count], &sides[(start + 2 * k + 1) % count])).collect())
+    Some(
+        (0..count / 2)
+            .map(|k| (&sides[(start + 2 * k) % count], &sides[(start + 2 * k + 1) % count]))
+            .collect(),
+    )
 }
 
 #[cfg(test)]

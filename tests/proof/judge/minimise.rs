@@ -55,7 +55,10 @@ fn is_operand(mesh: &Mesh) -> bool {
 fn replacements(mesh: &Mesh) -> Vec<Mesh> {
     let [low, high] = extent(&mesh.positions);
     let corner = [low, [high[0], low[1], low[2]], [low[0], high[1], low[2]], [low[0], low[1], high[2]]];
-    [trisect::primitives::tetrahedron(corner), trisect::primitives::cuboid(low, high)].into_iter().flatten().collect()
+    [trisect::primitives::tetrahedron(corner), trisect::primitives::cuboid(low, high)]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// The mesh without each of its shells in turn, if it has several.
