@@ -5,6 +5,7 @@
 //! trisect-proof show SEED...                 what is known of each case, in words
 //! trisect-proof save SEED FOLDER             the operands and the result of a case as OBJ files
 //! trisect-proof judge                        trisect's and another engine's results at the same points (see arbiter.rs)
+//! trisect-proof limits                       how soon a running operation stops, and its account of memory
 //! trisect-proof minimise SEED FOLDER NAME    the smallest pair found that fails like the case, as NAME-a.obj and NAME-b.obj
 //! ```
 
@@ -12,6 +13,7 @@
 #[allow(dead_code, reason = "shared with the tests")]
 mod judge;
 mod arbiter;
+mod limits;
 mod record;
 mod run;
 
@@ -44,6 +46,10 @@ fn command(words: &[&str]) -> Result<(), String> {
             let (input, out) = (std::io::stdin().lock(), std::io::stdout().lock());
             arbiter::serve(&mut { input }, &mut { out }, &models).map_err(|error| error.to_string())
         }
+        ["limits"] => {
+            limits::measure();
+            Ok(())
+        }
         ["show", seeds @ ..] => seeds.iter().try_for_each(|word| {
             let seed = number(word)?;
             run::show(seed, &Case::new(seed, &models));
@@ -70,7 +76,7 @@ fn command(words: &[&str]) -> Result<(), String> {
             println!("{:?}: {} and {} triangles", case.operation, small[0].triangles.len(), small[1].triangles.len());
             small.iter().zip(["a", "b"]).try_for_each(|(mesh, which)| save(mesh, folder, &format!("{name}-{which}")))
         }
-        _ => Err("usage: trisect-proof emit FIRST COUNT [POINTS] | judge | show SEED... | save SEED FOLDER | \
+        _ => Err("usage: trisect-proof emit FIRST COUNT [POINTS] | judge | limits | show SEED... | save SEED FOLDER | \
                   minimise SEED FOLDER NAME"
             .into()),
     }
