@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Random booleans of trisect against manifold3d; the oracle of the tests judges every result.
 
-    python3 benches/proof/compare.py live --cases 1000 [--first SEED] [--points 48] [--report FILE]
+    python3 benches/proof/compare.py live --cases 1000 [--first SEED] [--points 48] [--report FILE] [--seeds N N ...]
     python3 benches/proof/compare.py record --cases 3000 --to fixtures/manifold3d.txt
 
 Needs manifold3d and numpy (pip install manifold3d numpy) and the driver (cargo build --release in benches/proof).
@@ -165,47 +165,68 @@ def classified(case, peer, differing, ours, theirs):
     return UNEXPLAINED + ", ".join(differing)
 
 
-def live(arguments):
-    begun, done, judged, farthest = time.time(), 0, 0, 0.0
-    classes = collections.defaultdict(list)
-    totals = collections.Counter()
-    arbiter = Arbiter()
-    agreed = 0
-    for case in stream(arguments.first, arguments.cases, arguments.points):
-        done += 1
-        judged += case.judged
-        farthest = max(farthest, case.farthest_rounded)
-        totals[case.family, case.operation] += 1
-        names = [OURS + fault for fault in case.faults]
+class Tally:
+    """What a live run has seen so far."""
+
+    def __init__(self, first):
+        self.first, self.begun, self.done, self.agreed, self.judged, self.farthest = first, time.time(), 0, 0, 0, 0.0
+        self.classes, self.totals = collections.defaultdict(list), collections.Counter()
+
+    def add(self, case, arbiter):
+        self.done += 1
+        self.judged += case.judged
+        self.farthest = max(self.farthest, case.farthest_rounded)
+        self.totals[case.family, case.operation] += 1
+        names = {OURS + fault for fault in case.faults}
         if case.mistakes:
-            names.append(OURS + "the oracle disagrees")
+            names.add(OURS + "the oracle disagrees")
         if "panic" not in case.faults:
             peer = Peer(case)
             differing = ["refused"] if peer.refused else differences(case, peer)
             if peer.refused:
-                names.append("manifold3d refuses an operand")
+                names.add("manifold3d refuses an operand")
             elif differing:
-                names.append(explained(case, peer, differing, arbiter))
-            agreed += not differing
-        for name in set(names):
-            classes[name, case.family].append((case.seed, case.operation))
-        if done % 1000 == 0:
-            print(f"{done} cases, {time.time() - begun:.0f} s", file=sys.stderr, flush=True)
-    seconds = time.time() - begun
-    lines = [f"{done} cases from seed {arguments.first}: {agreed} agree in everything; {judged} points judged by the oracle, the "
-             f"farthest that differs {farthest:.2f} ulps from a surface; {seconds:.0f} s; manifold3d {version()}"]
-    for family in FAMILIES:
-        counts = ", ".join(f"{operation} {totals[family, operation]}" for operation in OPERATIONS)
-        lines.append(f"  {family}: {counts}")
-    for (name, family), seeds in sorted(classes.items()):
-        shown = " ".join(f"{seed}:{operation[0]}" for seed, operation in seeds[:arguments.show])
-        lines.append(f"{name} | {family}: {len(seeds)} [{shown}{' ...' if len(seeds) > arguments.show else ''}]")
-    text = "\n".join(lines)
-    print(text)
-    if arguments.report:
-        with open(arguments.report, "w") as file:
-            file.write(text + "\n")
-    if any(name.startswith((OURS, UNEXPLAINED)) for name, _ in classes):
+                names.add(explained(case, peer, differing, arbiter))
+            self.agreed += not differing
+        for name in names:
+            self.classes[name, case.family].append(f"{case.seed}:{case.operation[0]}")
+
+    def failed(self):
+        return any(name.startswith((OURS, UNEXPLAINED)) for name, _ in self.classes)
+
+    def text(self, show):
+        lines = [f"{self.done} cases from seed {self.first}: {self.agreed} agree in everything; {self.judged} points judged by the "
+                 f"oracle, the farthest that differs {self.farthest:.2f} ulps from a surface; {time.time() - self.begun:.0f} s; "
+                 f"manifold3d {version()}"]
+        for family in FAMILIES:
+            counts = ", ".join(f"{operation} {self.totals[family, operation]}" for operation in OPERATIONS)
+            lines.append(f"  {family}: {counts}")
+        for (name, family), seeds in sorted(self.classes.items()):
+            more = " ..." if len(seeds) > show else ""
+            lines.append(f"{name} | {family}: {len(seeds)} [{' '.join(seeds[:show])}{more}]")
+        return "\n".join(lines) + "\n"
+
+
+def live(arguments):
+    tally, arbiter = Tally(arguments.first), Arbiter()
+
+    def report():
+        if arguments.report:
+            with open(arguments.report, "w") as file:
+                file.write(tally.text(1000))
+
+    if arguments.seeds:
+        cases = (case for seed in arguments.seeds for case in stream(seed, 1, arguments.points))
+    else:
+        cases = stream(arguments.first, arguments.cases, arguments.points)
+    for case in cases:
+        tally.add(case, arbiter)
+        if tally.done % 1000 == 0:
+            print(f"{tally.done} cases, {time.time() - tally.begun:.0f} s", file=sys.stderr, flush=True)
+            report()
+    report()
+    print(tally.text(arguments.show), end="")
+    if tally.failed():
         sys.exit(1)
 
 
@@ -257,7 +278,8 @@ if __name__ == "__main__":
         if verb == "live":
             sub.add_argument("--points", type=int, default=48)
             sub.add_argument("--show", type=int, default=12)
-            sub.add_argument("--report")
+            sub.add_argument("--report", help="a file for the text, with all seeds; brought up to date every thousand cases")
+            sub.add_argument("--seeds", type=int, nargs="*", help="these cases only")
         else:
             sub.add_argument("--to", required=True)
     arguments = parser.parse_args()

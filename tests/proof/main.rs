@@ -11,6 +11,7 @@ mod common;
 #[allow(dead_code, reason = "shared with the driver of the live comparison")]
 mod judge;
 mod minimiser;
+mod models;
 mod named;
 mod properties;
 mod recorded;

@@ -195,3 +195,40 @@ fn three_balls_in_a_row() {
     assert!(close(left.volume, 2.232282676693307), "{left:?}");
     assert_eq!(united.components, 1);
 }
+
+// What other engines get wrong on these few cubes is in every comparison.
+
+#[test]
+fn far_from_the_origin() {
+    let at = [500_000.0, 4_649_776.0, 120.0];
+    let a = cube(at, 1.0);
+    // A third of a unit is no sum of powers of two: the coordinates themselves are rounded, the boolean of them is exact.
+    let b = cube(at.map(|x| x + 0.25), 1.0);
+    assert_eq!(volume(Difference, &a, &b), 1.0 - 0.75 * 0.75 * 0.75);
+    let near = volume(Difference, &a, &cube(at.map(|x| x + 0.3), 1.0));
+    assert!((near - 0.657).abs() < 1e-8, "{near}");
+}
+
+#[test]
+fn an_operand_that_crosses_itself_is_told() {
+    let mut mesh = primitives::cuboid([0.5; 3], [1.5; 3]).expect("a cube");
+    mesh.append(&primitives::cuboid([1.0; 3], [2.0; 3]).expect("a cube")).expect("small");
+    let (big, doubled) = (cube([0.0; 3], 3.0), solid(mesh));
+    let crossings = doubled.self_crossings(&trisect::Control::new()).expect("no limits");
+    assert!(!crossings.is_clean());
+    let outcome = run(Difference, &[&big, &doubled]);
+    let states = &outcome.certificate().operands;
+    assert!(matches!(states[1], trisect::boolean::OperandState::Crossing { .. }), "{states:?}");
+    // United part by part, as the message advises, the result is right.
+    let parts = [cube([0.5; 3], 1.0), cube([1.0; 3], 1.0)];
+    let (united, _) = result(Union, &[&parts[0], &parts[1]]);
+    assert_eq!(volume(Difference, &big, &united), 25.125);
+}
+
+#[test]
+fn an_open_operand_is_refused_with_its_edges() {
+    let mut mesh = primitives::cuboid([0.0; 3], [1.0; 3]).expect("a cube");
+    mesh.triangles.truncate(10);
+    let error = Solid::try_from(mesh).expect_err("it is open");
+    assert!(matches!(error, trisect::Error::NotClosed(_)), "{error}");
+}

@@ -6,7 +6,6 @@
 use std::io::{self, BufRead, Write};
 
 use crate::judge::cases::Case;
-use crate::judge::contacts;
 use crate::judge::oracle;
 use crate::judge::samples;
 use crate::judge::surface::{Properties, volume};
@@ -40,9 +39,10 @@ pub(crate) fn serve(input: &mut impl BufRead, out: &mut impl Write, models: &[Me
 
 fn describe(mesh: &Mesh, verdict: &oracle::Verdict) -> String {
     let found = Properties::of(mesh);
-    let parted = contacts::parted(mesh, run::REACH)
+    let found_parted = run::parted(mesh);
+    let parted = found_parted
         .map_or("null".to_string(), |parted| format!("[{},{}]", parted.topology.components, parted.topology.euler));
-    let pinched = contacts::parted(mesh, run::REACH).is_some_and(|parted| parted.pinched);
+    let pinched = found_parted.is_some_and(|parted| parted.pinched);
     let bodies: Vec<String> = bodies(mesh).iter().map(|body| format!("{:e}", volume(body))).collect();
     format!(
         "{{\"judged\":{},\"mistakes\":{},\"farthest\":{:e},\"closed\":{},\"manifold\":{},\"zero_area\":{},\"volume\":{:e},\

@@ -3,14 +3,17 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::judge::cases::{Case, Family};
-use crate::judge::contacts::{self, Topology};
+use crate::judge::contacts::{self, Parted, Topology};
 use crate::judge::oracle;
 use crate::judge::surface::Properties;
 use crate::judge::vector::extent;
 use trisect::{Control, Mesh, Operation, Options, Solid};
 
-/// Vertices nearer than this times the size of a mesh are one where contacts are looked for.
-pub(crate) const REACH: f64 = 1e-9;
+/// The topology of a mesh with its contacts parted. Vertices nearer than a part of its size are one: on the grid 1e-9, less
+/// where features are so small that they would collapse.
+pub(crate) fn parted(mesh: &Mesh) -> Option<Parted> {
+    [1e-9, 1e-11, 1e-13].into_iter().find_map(|reach| contacts::parted(mesh, reach))
+}
 
 pub(crate) const PANIC: u16 = 1;
 pub(crate) const OPEN: u16 = 2;
@@ -80,7 +83,7 @@ pub(crate) fn crosses_itself(mesh: &Mesh) -> bool {
 /// Whether touching material is apart all over a surface.
 fn is_parted(mesh: &Mesh, properties: &Properties) -> bool {
     let actual = Topology { components: properties.components, euler: properties.euler };
-    contacts::parted(mesh, REACH).is_some_and(|parted| parted.topology == actual)
+    parted(mesh).is_some_and(|parted| parted.topology == actual)
 }
 
 /// The volume of the result of another operation on the same operands; not a number after a panic.
@@ -176,7 +179,7 @@ pub(crate) fn show(seed: u64, case: &Case) {
     let faults: Vec<&str> = (0..9).filter(|bit| found.faults >> bit & 1 == 1).map(|bit| FAULTS[bit]).collect();
     println!("  faults {faults:?} (identity tolerance {:e})\n  {found:?}", identity_tolerance(case));
     if let (Some(mesh), _) = attempt(case) {
-        println!("  result {:?}, contacts parted {:?}", Properties::of(&mesh), contacts::parted(&mesh, REACH));
+        println!("  result {:?}, contacts parted {:?}", Properties::of(&mesh), parted(&mesh));
         let verdict = oracle::judge(case.operation, &[&case.a, &case.b], &mesh, 2_000, seed);
         for mistake in verdict.mistakes.iter().take(3) {
             println!("  {mistake:?}");
