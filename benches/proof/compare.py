@@ -25,7 +25,7 @@ FAULTS = ["panic", "open", "not manifold", "zero area", "identity", "certificate
 # Relative to the volume or area of the box round the operands.
 EQUAL = 1e-9
 # Points at which a difference is judged; more where that explains nothing.
-ARBITER_POINTS = [400, 4000, 40000]
+ARBITER_POINTS = [200, 4000, 40000]
 
 
 class Case:

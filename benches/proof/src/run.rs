@@ -117,7 +117,9 @@ pub(crate) fn identity_tolerance(case: &Case) -> f64 {
 
 pub(crate) fn examine(seed: u64, case: &Case, points: usize) -> Found {
     let mut found = Found::default();
-    if crosses_itself(&case.a) || crosses_itself(&case.b) {
+    // Of large surfaces only every eighth is asked whether it crosses itself: that takes longer than all the rest.
+    let asks = |mesh: &Mesh| mesh.triangles.len() < 1_000 || seed.is_multiple_of(8);
+    if [&case.a, &case.b].into_iter().any(|mesh| asks(mesh) && crosses_itself(mesh)) {
         found.faults |= OPERAND;
     }
     let (outcome, agrees) = attempt(case);
@@ -131,7 +133,7 @@ pub(crate) fn examine(seed: u64, case: &Case, points: usize) -> Found {
         (OPEN, !properties.closed),
         (NOT_MANIFOLD, !properties.manifold),
         (ZERO_AREA, properties.zero_area > 0),
-        (CROSSES_ITSELF, crosses_itself(&mesh)),
+        (CROSSES_ITSELF, asks(&mesh) && crosses_itself(&mesh)),
         (CONTACT, case.family == Family::Grid && !is_parted(&mesh, &properties)),
     ] {
         if is_so {
