@@ -24,43 +24,50 @@ pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>) {
         if splits.is_empty() {
             return;
         }
-        let mut index = 0;
-        while index < patch.faces.len() {
-            if !split_face(patch, index, &splits) {
-                index += 1;
-            }
+        for index in 0..patch.faces.len() {
+            split_face(patch, index, &splits);
         }
         patch.cancel();
     }
 }
 
-/// Splits one side of a face, if it is to be split: a fan round the opposite corner. The face itself becomes the last
-/// triangle of the fan, which has the other two sides in part.
-fn split_face(patch: &mut Patch<'_>, index: usize, splits: &FxHashMap<Edge, Vec<u32>>) -> bool {
+/// Splits the sides of a face that are to be split. Diagonals are left alone, whatever else runs along them: they bound two
+/// triangles of this face and so do not matter to others.
+fn split_face(patch: &mut Patch<'_>, index: usize, splits: &FxHashMap<Edge, Vec<u32>>) {
     let face = patch.faces[index];
-    if !face.alive {
-        return false;
+    let on_side = |from: u32, to: u32| splits.get(&(from.min(to), from.max(to)));
+    let is_split = |k: usize| on_side(face.corners[k], face.corners[(k + 1) % 3]).is_some();
+    if !face.alive || !(0..3).any(is_split) {
+        return;
     }
-    let corners = face.corners;
-    let side = (0..3).find_map(|k| {
-        let (from, to) = (corners[k], corners[(k + 1) % 3]);
-        splits.get(&(from.min(to), from.max(to))).map(|on| (from, to, corners[(k + 2) % 3], on))
-    });
-    let Some((from, to, opposite, on)) = side else { return false };
-    // The vertices are in order from the lower end of the edge.
-    let mut chain = Vec::with_capacity(on.len() + 2);
-    chain.push(from);
-    if from < to {
-        chain.extend(on);
-    } else {
-        chain.extend(on.iter().rev());
-    }
-    chain.push(to);
     patch.faces[index].alive = false;
-    for pair in chain.windows(2).filter(|pair| !pair.contains(&opposite)) {
-        patch.faces.push(Face { corners: [pair[0], pair[1], opposite], untouched: false, ..face });
+    // Triangles with, for each side from corner k, whether it is (part of) a side of the face.
+    let mut stack = vec![(face.corners, [true; 3])];
+    while let Some((corners, is_side)) = stack.pop() {
+        let side = (0..3).filter(|&k| is_side[k]).find_map(|k| {
+            let (from, to) = (corners[k], corners[(k + 1) % 3]);
+            Some((k, on_side(from, to)?))
+        });
+        let Some((k, on)) = side else {
+            patch.faces.push(Face { corners, untouched: false, ..face });
+            continue;
+        };
+        // A fan round the opposite corner. The vertices are in order from the lower end of the edge.
+        let [from, to, opposite] = [0, 1, 2].map(|i| corners[(k + i) % 3]);
+        let mut chain = Vec::with_capacity(on.len() + 2);
+        chain.push(from);
+        if from < to {
+            chain.extend(on);
+        } else {
+            chain.extend(on.iter().rev());
+        }
+        chain.push(to);
+        for (i, pair) in chain.windows(2).enumerate() {
+            let (first, last) = (i == 0, i + 2 == chain.len());
+            let sides = [true, last && is_side[(k + 1) % 3], first && is_side[(k + 2) % 3]];
+            stack.push(([pair[0], pair[1], opposite], sides));
+        }
     }
-    true
 }
 
 /// Edges to split, with the vertices on them from the lower end to the higher one.
@@ -114,18 +121,16 @@ fn shared_edges(patch: &Patch<'_>) -> Vec<Edge> {
         .collect()
 }
 
-/// Whether `x` lies on the segment from `u` to `v`, not at its ends: exactly as given, or before it was rounded.
+/// Whether `x` lies on the segment from `u` to `v`, not at its ends: exactly as given, or before it was rounded. Both parts
+/// are shorter than the whole, so splitting comes to an end.
 fn lies_between(patch: &Patch<'_>, cutter: &Cutter<'_>, u: u32, x: u32, v: u32) -> bool {
     let (p, at, q) = (patch.position(u), patch.position(x), patch.position(v));
-    // Along the axis on which the segment is longest; nearly always that says no.
-    let axis =
-        (1..3).fold(0, |best, k| if (q[k] - p[k]).abs() > (q[best] - p[best]).abs() { k } else { best });
-    let is_within = if p[axis] < q[axis] {
-        p[axis] < at[axis] && at[axis] < q[axis]
-    } else {
-        q[axis] < at[axis] && at[axis] < p[axis]
-    };
-    is_within && (collinear(p, at, q) || were_on_one_line(cutter, [u, x, v]))
+    // Nearly always one look says no.
+    let is_within = (0..3).all(|k| p[k].min(q[k]) <= at[k] && at[k] <= p[k].max(q[k]));
+    let length = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|k| (q[k] - p[k]).powi(2)).sum::<f64>();
+    is_within
+        && length(p, at).max(length(at, q)) < length(p, q)
+        && (collinear(p, at, q) || were_on_one_line(cutter, [u, x, v]))
 }
 
 /// Whether three points lay on the line of some edge before nodes were rounded.
