@@ -142,7 +142,7 @@ fn checkerboards_touch_everywhere() {
     let solid = |cells: &Cells| Solid::try_from(cells.surface().mesh).expect("closed");
     let (black, white) = (board(0), board(1));
     let mut trial = Trial::default();
-    for operation in [Operation::Union, Operation::Intersection, Difference, Operation::SymmetricDifference] {
+    for operation in [Union, Operation::Intersection, Difference, Operation::SymmetricDifference] {
         let result = black.combined(operation, &white);
         let surface = result.surface();
         let expected = Expected {
