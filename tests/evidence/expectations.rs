@@ -10,7 +10,8 @@ const TOLERANCE: f64 = 1e-9;
 
 #[test]
 fn recorded_answers_of_an_exact_engine_are_met() {
-    let file = std::env::var_os("TRISECT_EXPECTATIONS").map_or_else(|| fixtures("expectations.json"), Into::into);
+    let file =
+        std::env::var_os("TRISECT_EXPECTATIONS").map_or_else(|| fixtures("expectations.json"), Into::into);
     let text = std::fs::read_to_string(file).expect("the recorded answers");
     let all: Value = serde_json::from_str(&text).expect("JSON");
     let entries = all["files"].as_array().expect("a list");
@@ -44,8 +45,12 @@ enum Answer {
 }
 
 fn judged(entry: &Value) -> Result<Answer, String> {
-    let names: Vec<&str> =
-        entry["inputs"].as_array().expect("inputs").iter().map(|name| name.as_str().expect("a name")).collect();
+    let names: Vec<&str> = entry["inputs"]
+        .as_array()
+        .expect("inputs")
+        .iter()
+        .map(|name| name.as_str().expect("a name"))
+        .collect();
     let operation = match entry["operation"].as_str() {
         Some("union" | "self-union") => Operation::Union,
         Some("intersection") => Operation::Intersection,

@@ -17,13 +17,10 @@ pub(crate) fn sound(solid: &Solid, context: &str) -> f64 {
 /// How far the volumes of union, intersection and difference are from adding up, as a part of the volume of the box
 /// round both operands; and the union, intersection and difference.
 pub(crate) fn identities(a: &Solid, b: &Solid, context: &str) -> (f64, [Solid; 3]) {
-    let results =
-        [Operation::Union, Operation::Intersection, Operation::Difference].map(|operation| {
-            Options::new().run(operation, &[a, b]).expect("no limits").into_solid()
-        });
+    let results = [Operation::Union, Operation::Intersection, Operation::Difference]
+        .map(|operation| Options::new().run(operation, &[a, b]).expect("no limits").into_solid());
     let names = ["union", "intersection", "difference"];
-    let [union, both, rest] =
-        [0, 1, 2].map(|i| sound(&results[i], &format!("{context}, {}", names[i])));
+    let [union, both, rest] = [0, 1, 2].map(|i| sound(&results[i], &format!("{context}, {}", names[i])));
     let [volume_a, volume_b] = [a, b].map(|solid| surface::volume(solid.mesh()));
     let [low, high] = extent(a.mesh().positions.iter().chain(&b.mesh().positions));
     let of_box: f64 = (0..3).map(|k| high[k] - low[k]).product();
@@ -52,6 +49,9 @@ fn volumes_add_up_for_random_pairs_of_models() {
         assert!(off <= 1e-12, "{context}: off by {off:e} of the box");
         worst = worst.max(off);
     }
-    println!("{seeds} pairs of {} models, {meeting} of them meet; worst: {worst:.1e} of the box", models.len());
+    println!(
+        "{seeds} pairs of {} models, {meeting} of them meet; worst: {worst:.1e} of the box",
+        models.len()
+    );
     assert!(2 * meeting as u64 > seeds, "only {meeting} of {seeds} pairs meet");
 }

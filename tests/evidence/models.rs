@@ -58,6 +58,8 @@ pub(crate) fn clean_models() -> Vec<Model> {
         // Textures and notes are among them.
         let mesh = normalised(Mesh::load(path).ok()?)?;
         let solid = Solid::try_from(mesh).ok().filter(|solid| solid.volume() > 0.0)?;
+        // As the program does: what touches itself in single vertices would do so in the result as well.
+        let solid = if solid.is_manifold() { solid } else { solid.separated().0 };
         let crossings = solid.self_crossings(&Control::new()).expect("no limits");
         let name = path.file_name()?.to_string_lossy().into_owned();
         (crossings.is_clean() && solid.inside_out_shells().is_none()).then_some(Model { name, solid })

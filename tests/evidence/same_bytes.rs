@@ -21,8 +21,12 @@ fn assert_same(verb: &str, inputs: &[PathBuf], more: &[&str]) {
     for threads in ["1", "2", "8", "8"] {
         let folder = Folder::new();
         let outputs = OUTPUTS.iter().flat_map(|name| ["-o", name]);
-        let rest: Vec<&str> =
-            more.iter().copied().chain(outputs).chain(["--threads", threads, "--png-size", "200x150"]).collect();
+        let rest: Vec<&str> = more
+            .iter()
+            .copied()
+            .chain(outputs)
+            .chain(["--threads", threads, "--png-size", "200x150"])
+            .collect();
         run(&folder, verb, inputs, &rest);
         let all: Vec<Vec<u8>> = OUTPUTS.iter().map(|name| bytes(&folder.path(name))).collect();
         assert!(all.iter().all(|bytes| bytes.len() > 80), "{verb}: an output is empty");

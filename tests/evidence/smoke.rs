@@ -62,7 +62,8 @@ fn an_operand_that_overlaps_itself_is_refused_with_places() {
         assert!(crossing.place.iter().all(|x| (1.5..=2.0).contains(x)), "{crossing:?}");
     }
     // United first, it gives the right answer: 27 less 1.875.
-    let united = boolean(Union, &solid(cube([1.0; 3], 1.0)), &solid(cube([1.5; 3], 1.0))).expect("small enough");
+    let united =
+        boolean(Union, &solid(cube([1.0; 3], 1.0)), &solid(cube([1.5; 3], 1.0))).expect("small enough");
     let found = run(Difference, &solid(cube([0.0; 3], 3.0)), united.solid());
     assert_eq!(found.volume, 25.125);
 }
