@@ -170,7 +170,7 @@ impl<'a> Patch<'a> {
     /// Drops triangles with a repeated corner, and pairs of opposite triangles.
     pub(super) fn cancel(&mut self) {
         let mut order: Vec<([u32; 3], bool, u32)> = Vec::with_capacity(self.faces.len());
-        for (i, face) in self.faces.iter_mut().enumerate() {
+        for (i, face) in self.faces.iter_mut().enumerate().filter(|(_, face)| face.alive) {
             let [a, b, c] = face.corners;
             if a == b || b == c || c == a {
                 face.alive = false;
@@ -189,6 +189,19 @@ impl<'a> Patch<'a> {
                 self.faces[entry.2 as usize].alive = false;
             }
         }
+    }
+
+    /// The boundary of the sum of all triangles: directed edges that do not cancel, ascending.
+    #[cfg(debug_assertions)]
+    pub(super) fn boundary(&self) -> Vec<((u32, u32), i32)> {
+        let mut counts: std::collections::BTreeMap<(u32, u32), i32> = std::collections::BTreeMap::new();
+        for face in self.faces.iter().filter(|face| face.alive) {
+            for k in 0..3 {
+                let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
+                *counts.entry((u.min(v), u.max(v))).or_default() += if u < v { 1 } else { -1 };
+            }
+        }
+        counts.into_iter().filter(|&((u, v), count)| count != 0 && u != v).collect()
     }
 
     /// Builds the adjacency; from now on every directed edge occurs once.
