@@ -336,6 +336,21 @@ impl Surface for Patch<'_> {
         *self.position(point)
     }
 
+    /// The corner of the face a triangle was cut from that lies furthest to the left: a narrow triangle's own corner would
+    /// tell nothing but how it was rounded.
+    fn left_of_side(&self, triangle: u32, side: usize) -> [f64; 3] {
+        let face = &self.faces[triangle as usize];
+        let corners = [0, 1, 2].map(|k| *self.position(face.corners[(side + k) % 3]));
+        let (source, (x, y)) = super::planes::source_and_axes(self.cutter.operands, face.origin);
+        let [p, q] = [corners[0], corners[1]].map(|point| [point[x], point[y]]);
+        let left = |c: &[f64; 3]| (q[0] - p[0]) * (c[y] - p[1]) - (q[1] - p[1]) * (c[x] - p[0]);
+        source
+            .into_iter()
+            .max_by(|c, d| left(c).total_cmp(&left(d)))
+            .filter(|corner| left(corner) > 0.0)
+            .unwrap_or(corners[2])
+    }
+
     fn add_point(&mut self, position: [f64; 3]) -> u32 {
         self.copies.push(position);
         self.first_copy + self.copies.len() as u32 - 1
