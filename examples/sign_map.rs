@@ -21,9 +21,12 @@ const TRIANGLE: [[f64; 3]; 3] = [[12.1, 12.1, 3.3], [24.7, 24.7, -7.7], [17.3, 1
 /// Its normal, towards which it moves.
 const NORMAL: [i32; 3] = [-1, 1, 0];
 
+/// A name and the sign it gives each position of the fourth point.
+type Map<'a> = (&'a str, &'a dyn Fn([f64; 3]) -> Sign);
+
 fn main() -> Result<(), Error> {
     let output = std::env::args().nth(1).unwrap_or_else(|| "sign-map.png".into());
-    let maps: [(&str, &dyn Fn([f64; 3]) -> Sign); 4] = [
+    let maps: [Map<'_>; 4] = [
         ("plain f64", &plain),
         ("exact", &|d| orient3d(&TRIANGLE[0], &TRIANGLE[1], &TRIANGLE[2], &d)),
         ("perturbed outwards", &|d| perturbed_sign(d, 1)),

@@ -1,4 +1,7 @@
-//! Loops over ranges, on rayon's threads where that pays and is allowed; the results never depend on it.
+//! Loops on rayon's threads where that pays and is allowed. Results come back in order, so nothing depends on the number
+//! of threads, or on the feature `parallel`.
+//!
+//! A [`Runner`] also carries limits, for loops that may be long; the functions are for loops that are never.
 
 use std::ops::Range;
 
@@ -75,10 +78,122 @@ impl<'a> Runner<'a> {
         first: impl FnOnce() -> A + Send,
         second: impl FnOnce() -> B + Send,
     ) -> (A, B) {
-        #[cfg(feature = "parallel")]
-        if self.parallel {
-            return rayon::join(first, second);
+        if self.is_parallel() { join(first, second) } else { (first(), second()) }
+    }
+}
+
+/// Runs both, at once where another thread is free.
+pub(crate) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+    #[cfg(feature = "parallel")]
+    return rayon::join(a, b);
+    #[cfg(not(feature = "parallel"))]
+    (a(), b())
+}
+
+/// `work` on pieces of `items` of fixed length; the results in order.
+pub(crate) fn map_chunks<T: Sync, R: Send>(
+    items: &[T],
+    length: usize,
+    work: impl Fn(&[T]) -> R + Send + Sync,
+) -> Vec<R> {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        items.par_chunks(length).map(work).collect()
+    }
+    #[cfg(not(feature = "parallel"))]
+    items.chunks(length).map(work).collect()
+}
+
+/// How many pieces to cut `length` units of work into: one on a single thread or for little work.
+pub(crate) fn pieces(length: usize, smallest: usize) -> usize {
+    #[cfg(feature = "parallel")]
+    {
+        match rayon::current_num_threads() {
+            1 => 1,
+            threads => (length / smallest.max(1)).clamp(1, threads * 4),
         }
-        (first(), second())
+    }
+    #[cfg(not(feature = "parallel"))]
+    {
+        let _ = (length, smallest);
+        1
+    }
+}
+
+/// The results of `work` on every item, in order.
+pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+    #[cfg(feature = "parallel")]
+    if items.len() > 1 {
+        use rayon::prelude::*;
+        return items.into_par_iter().map(work).collect();
+    }
+    items.into_iter().map(work).collect()
+}
+
+/// A list of `count` items that `fill` puts in, given the index of the first item and room for a run of them.
+pub(crate) fn build<T: Copy + Default + Send>(
+    count: usize,
+    smallest: usize,
+    fill: impl Fn(usize, &mut [T]) + Sync + Send,
+) -> Vec<T> {
+    let mut items = vec![T::default(); count];
+    let length = count.div_ceil(pieces(count, smallest)).max(1);
+    #[cfg(feature = "parallel")]
+    if length < count {
+        use rayon::prelude::*;
+        items.par_chunks_mut(length).enumerate().for_each(|(i, run)| fill(i * length, run));
+        return items;
+    }
+    items.chunks_mut(length).enumerate().for_each(|(i, run)| fill(i * length, run));
+    items
+}
+
+/// Whether `test` holds for every item.
+pub(crate) fn all<T: Sync>(items: &[T], test: impl Fn(&T) -> bool + Sync + Send) -> bool {
+    #[cfg(feature = "parallel")]
+    if pieces(items.len(), 1 << 16) > 1 {
+        use rayon::prelude::*;
+        return items.par_chunks(1 << 14).all(|run| run.iter().all(&test));
+    }
+    items.iter().all(test)
+}
+
+/// Ranges that cut `0..length` into pieces of nearly equal size.
+pub(crate) fn ranges(length: usize, count: usize) -> Vec<Range<usize>> {
+    let count = count.max(1);
+    // The product of a length and a small count cannot overflow 128 bits.
+    let bound = |i: usize| (length as u128 * i as u128 / count as u128) as usize;
+    (0..count).map(|i| bound(i)..bound(i + 1)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_cover_everything_once() {
+        for (length, count) in [(0, 3), (1, 3), (10, 3), (7, 7), (1000, 8)] {
+            let all: Vec<usize> = ranges(length, count).into_iter().flatten().collect();
+            assert_eq!(all, (0..length).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
+    fn lists_are_built_in_order() {
+        for count in [0, 1, 10, 100_000] {
+            let built = build(count, 1000, |first, run: &mut [u64]| {
+                run.iter_mut().enumerate().for_each(|(i, item)| *item = (first + i) as u64);
+            });
+            assert!(built.iter().copied().eq(0..count as u64));
+            assert!(all(&built, |&item| item < count as u64));
+            assert!(count == 0 || !all(&built, |&item| item != count as u64 / 2));
+        }
+    }
+
+    #[test]
+    fn results_come_in_order() {
+        let squares = map((0..1000).collect(), |i: u64| i * i);
+        assert!(squares.windows(2).all(|pair| pair[0] < pair[1]));
     }
 }

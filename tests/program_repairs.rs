@@ -109,3 +109,14 @@ fn pictures_of_gltf_have_y_upwards() {
     assert_eq!(picture("union a.glb"), up_y);
     assert_eq!(picture("convert a.glb --png-up z"), up_z);
 }
+
+#[test]
+fn a_sheet_with_two_sides_is_said_to_be_empty() {
+    let folder = Folder::new();
+    folder.write("a.obj", unit_cube());
+    folder.write("sheet.obj", "v 0 0 0.5\nv 1 0 0.5\nv 0 1 0.5\nv 1 1 0.5\nf 1 2 4 3\nf 1 3 4 2\n");
+    let ran = folder.run("difference a.obj sheet.obj --json --strict").exits(5).says("operand 2 (sheet.obj)");
+    assert_eq!(ran.json()["result"]["volume"], 1.0);
+    assert!(ran.err.contains("each of its 4 triangles has an opposite copy"), "{}", ran.err);
+    folder.run("check sheet.obj").exits(0).says("enclose nothing");
+}

@@ -149,7 +149,7 @@ fn number_nodes(found: &[PairCrossing], runner: Runner<'_>) -> Result<Crossings,
         if last != Some(key >> 32) {
             last = Some(key >> 32);
             let pair = &found[place / 2];
-            nodes.push(if place % 2 == 0 { pair.tail } else { pair.head });
+            nodes.push(if place.is_multiple_of(2) { pair.tail } else { pair.head });
         }
         node_of[place] = nodes.len() as u32 - 1;
     }

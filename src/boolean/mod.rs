@@ -3,15 +3,15 @@
 //! The algorithm is that of Vyatkin 2019 (steps 1 and 2) with every decision exact. All decisions are signs of one
 //! determinant of perturbed input vertices, so the operands are always in general position and there is one kind of event:
 //! an edge of one crosses a triangle of the other. The result is a sum of pieces of faces with integer multiplicities
-//! ([`multiplicity`]) whose boundary cancels identically; what perturbation kept apart at the same place is identified
-//! afterwards, exactly. The pipeline is [`pair::combine`], one function per step:
+//! (`multiplicity`) whose boundary cancels identically; what perturbation kept apart at the same place is identified
+//! afterwards, exactly. The pipeline is `pair::combine`, one function per step:
 //!
-//! 1. [`overlap`], [`candidates`]: pairs of triangles that may meet;
-//! 2. [`crossings`]: which do, and where ([`cut_edges`]: in which order along each edge, correctly rounded);
-//! 3. [`winding`]: how often each operand winds round the other's vertices;
-//! 4. [`identify`], [`cut`]: coincident points become one; kept pieces of cut faces become triangles;
-//! 5. [`tidy`]: what touches separates; triangles without area and needless vertices go;
-//! 6. [`assemble`]: untouched triangles keep their order, and vertices their bits.
+//! 1. `overlap`, `candidates`: pairs of triangles that may meet;
+//! 2. `crossings`: which do, and where (`cut_edges`: in which order along each edge, correctly rounded);
+//! 3. `winding`: how often each operand winds round the other's vertices;
+//! 4. `identify`, `cut`: coincident points become one; kept pieces of cut faces become triangles;
+//! 5. `tidy`: what touches separates; triangles without area and needless vertices go;
+//! 6. `assemble`: untouched triangles keep their order, and vertices their bits.
 //!
 //! **Guaranteed** for any closed operands: the result is closed; it is the exact boolean with every new coordinate correctly
 //! rounded; operands that touch resolve as regularised set operations do; the same input gives the same bits on any number of

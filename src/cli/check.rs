@@ -57,7 +57,7 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
         Ok(input) => input,
         Err(error) => return refused(&name, error, None),
     };
-    let Input { mesh, format, warnings, reserved: _reserved } = input;
+    let Input { mesh, format, mut warnings, reserved: _reserved } = input;
     let mut diagnosis = diagnose(&mesh);
     let mut object = Measures::of_mesh(&mesh).to_json();
     object.insert("format".into(), format.extension().into());
@@ -77,6 +77,10 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
             return Ok(Verdict { warnings, ..verdict });
         }
     };
+    if let Some(warning) = operands::nothing_left(&solid) {
+        warnings.push(warning);
+        object.insert("warnings".into(), json!(warnings));
+    }
     let measures = Measures::of_solid(&solid);
     let (cleaning, cleaned) = report::cleaning(&solid);
     object.extend(measures.to_json());

@@ -125,6 +125,18 @@ pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usab
     Ok(Usable { solid, turned, welded, crossings })
 }
 
+/// A warning if a mesh had triangles, but none that enclose anything.
+pub(crate) fn nothing_left(solid: &Solid) -> Option<String> {
+    let cleaning = solid.cleaning();
+    let left_out = cleaning.repeated_corners + 2 * cleaning.opposite_pairs;
+    (solid.is_empty() && left_out > 0).then(|| {
+        format!(
+            "it is empty: each of its {left_out} triangles has an opposite copy or a repeated corner, so they enclose \
+             nothing (a sheet with two sides is not a body: give it a thickness)"
+        )
+    })
+}
+
 /// The mesh with its open edges welded within a distance, and how many vertices that removed.
 pub(crate) fn welded(mesh: Mesh, distance: Option<f64>) -> Result<(Mesh, usize), Error> {
     let Some(distance) = distance else { return Ok((mesh, 0)) };
@@ -164,8 +176,9 @@ pub(crate) fn operands(
 
 fn operand(request: Request, using: Using, limits: &Limits, control: &Control) -> Result<Operand, Error> {
     let start = Instant::now();
-    let Input { mesh, format, warnings, reserved } = read(&request, limits, control)?;
+    let Input { mesh, format, mut warnings, reserved } = read(&request, limits, control)?;
     let Usable { solid, turned, welded, crossings } = usable(mesh, using, control)?;
+    warnings.extend(nothing_left(&solid));
     // What touches itself in single vertices would do so in the result as well.
     let solid = if solid.is_manifold() { solid } else { solid.separated().0 };
     let seconds = start.elapsed().as_secs_f64();

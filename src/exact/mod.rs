@@ -5,7 +5,7 @@
 //! never zero (Vyatkin 2019, step 1).
 //!
 //! Each sign is found in stages: plain `f64` with an error bound; where that is not enough, exact integers. A finite
-//! `f64` is an integer multiple of a power of two, so a handful of coordinates always lies on a common [`lattice`] of
+//! `f64` is an integer multiple of a power of two, so a handful of coordinates always lies on a common `lattice` of
 //! integers: where 40 bits suffice (models on a grid) the arithmetic is native 128-bit; else it is multi-word
 //! ([`Integer`]), which has no range to leave, so that tiny, huge and mixed magnitudes need no special care. The filters
 //! demand that a determinant exceed, besides the usual relative bound, an absolute floor far above anything that underflow

@@ -2,7 +2,7 @@
 //!
 //! Every point moves along `p(eps) = p + eps r + eps^8 h`, where `eps` is a positive infinitesimal. The determinant is
 //! then a polynomial in `eps`, and its sign is that of its lowest non-zero coefficient. The first direction `r` expresses
-//! what a tie *should* mean (it is chosen by the boolean operation: see [`crate::boolean`]); the second direction `h` is a
+//! what a tie *should* mean (it is chosen by the boolean operation: see [`crate::boolean`](mod@crate::boolean)); the second direction `h` is a
 //! hash of the point's identity and breaks whatever ties the first leaves. The exponent 8 keeps the two apart: no product
 //! of two determinants mixes powers of `r` with powers of `h`, so every coefficient is homogeneous in both, and the
 //! decisions do not depend on the unit the coordinates are measured in.

@@ -33,7 +33,6 @@ mod notes;
 mod obj;
 mod off;
 mod options;
-mod parallel;
 mod ply;
 mod polygon;
 mod precision;

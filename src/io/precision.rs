@@ -1,6 +1,7 @@
 //! What rounding to single precision does to a mesh.
 
-use super::{Format, parallel, unsupported};
+use super::{Format, unsupported};
+use crate::parallel;
 use crate::{Error, Mesh};
 
 /// Refuses a mesh whose coordinates are beyond single precision, and says how many triangles lose a corner when

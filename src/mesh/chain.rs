@@ -5,7 +5,7 @@
 //! hashed, so the order of triangles and vertices hardly matters, and a vertex of any valence is handled alike.
 //! Memory: 12 bytes a triangle and 9 a vertex.
 
-use super::parallel::join;
+use crate::parallel::join;
 
 /// The most triangles a mesh may have, so that three entries each can be counted in 32 bits.
 pub(super) const MAX_TRIANGLES: usize = (u32::MAX / 3) as usize;

@@ -9,9 +9,9 @@
 use std::borrow::Cow;
 use std::cmp::Ordering;
 
-use super::parallel::map_chunks;
 use super::summation::{ExactSum, Sum};
 use super::{Bounds, Mesh, scale};
+use crate::parallel::map_chunks;
 
 /// A volume with its sign, which holds also where the number itself under- or overflows.
 #[derive(Clone, Copy, Debug, PartialEq)]

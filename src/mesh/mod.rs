@@ -15,7 +15,6 @@ mod groups;
 mod measure;
 mod nesting;
 mod orient;
-mod parallel;
 mod patches;
 pub(crate) mod scale;
 mod self_crossing;

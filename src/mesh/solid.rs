@@ -5,10 +5,10 @@ use std::sync::OnceLock;
 
 use super::clean::{self, Weld};
 use super::measure::signed_volume;
-use super::parallel::join;
 use super::topology::Topology;
 use super::{Bounds, FaceGroups, Mesh, SelfCrossings, chain, diagnose};
 use crate::Error;
+use crate::parallel::join;
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
 /// often as it occurs. Every vertex belongs to a triangle, no triangle has a repeated corner, and the enclosed

@@ -1,9 +1,10 @@
 //! Binary PLY: the usual layouts as whole blocks, all others value by value.
 
 use super::super::faces::FaceList;
-use super::super::{Format, malformed, parallel};
+use super::super::{Format, malformed};
 use super::body::{Body, Source};
 use super::header::{Element, Header, Property, Role, Type};
+use crate::parallel;
 use crate::{Control, Error};
 
 /// Elements fewer than this are not worth a thread.

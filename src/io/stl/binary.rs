@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use super::super::notes::Notes;
-use super::super::{Format, malformed, parallel};
+use super::super::{Format, malformed};
 use super::weld::Weld;
+use crate::parallel;
 use crate::{Control, Error, Mesh};
 
 const HEADER: usize = 84;
