@@ -71,14 +71,14 @@ fn grid_pair(random: &mut ChaCha8Rng) -> (Mesh, Mesh) {
     let b = if random.random_range(0..8) == 0 { a.clone() } else { shapes::on_grid(random) };
     let step = if random.random_range(0..4) == 0 { 0.5 } else { 1.0 };
     let by = [0; 3].map(|_| step * f64::from(random.random_range(-3..4)));
-    let b = if random.random() { turned_on_grid(b, random) } else { b };
+    let b = if random.random() { turned_on_grid(&b, random) } else { b };
     (a, moved(&b, by))
 }
 
 fn generic_pair(random: &mut ChaCha8Rng) -> (Mesh, Mesh) {
     let a = shapes::round_or_any(random);
     let b = shapes::round_or_any(random);
-    (anywhere(a, 0.1, random), anywhere(b, 0.8, random))
+    (anywhere(&a, 0.1, random), anywhere(&b, 0.8, random))
 }
 
 fn near_pair(random: &mut ChaCha8Rng) -> (Mesh, Mesh) {
@@ -119,7 +119,7 @@ fn model_pair(random: &mut ChaCha8Rng, models: &[Mesh]) -> (Mesh, Mesh) {
     let one = |random: &mut ChaCha8Rng| normalized(&models[random.random_range(0..models.len())]);
     let a = one(random);
     let b = if random.random() { one(random) } else { shapes::round_or_any(random) };
-    (anywhere(a, 0.1, random), anywhere(b, 1.0, random))
+    (anywhere(&a, 0.1, random), anywhere(&b, 1.0, random))
 }
 
 /// The solids in a folder, in the order of their names.

@@ -74,7 +74,7 @@ fn shells(mesh: &Mesh) -> Vec<Mesh> {
     }
     let mut without = |root: usize| {
         let rest = mesh.triangles.iter().filter(|t| sets.find(t[0] as usize) != root).copied().collect();
-        compacted(Mesh::new(mesh.positions.clone(), rest))
+        compacted(&Mesh::new(mesh.positions.clone(), rest))
     };
     roots.iter().map(|&root| without(root)).collect()
 }
@@ -88,7 +88,7 @@ fn collapse_all(best: &mut Pair, which: usize, accept: &mut impl FnMut(&mut Pair
             let mesh = some.iter().fold(best[which].clone(), |mesh, &[keep, lose]| {
                 collapsed(&mesh, keep, lose).unwrap_or(mesh)
             });
-            mesh.triangles.len() < best[which].triangles.len() && accept(best, which, compacted(mesh))
+            mesh.triangles.len() < best[which].triangles.len() && accept(best, which, compacted(&mesh))
         });
         if !accepted && chunk == 1 {
             return;
@@ -134,7 +134,7 @@ fn collapsed(mesh: &Mesh, keep: Place, lose: Place) -> Option<Mesh> {
 }
 
 /// Without vertices that no triangle uses.
-fn compacted(mesh: Mesh) -> Mesh {
+fn compacted(mesh: &Mesh) -> Mesh {
     let mut number: HashMap<u32, u32> = HashMap::new();
     let mut positions = Vec::new();
     let triangles = mesh.triangles.iter().map(|t| {

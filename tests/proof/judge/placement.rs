@@ -19,12 +19,12 @@ pub(crate) fn moved(mesh: &Mesh, by: Point) -> Mesh {
 }
 
 /// Axes permuted and mirrored at random.
-pub(crate) fn turned_on_grid(mesh: Mesh, random: &mut ChaCha8Rng) -> Mesh {
+pub(crate) fn turned_on_grid(mesh: &Mesh, random: &mut ChaCha8Rng) -> Mesh {
     const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [1, 0, 2], [2, 1, 0]];
     let order = random.random_range(0..6);
     let signs = [0; 3].map(|_| if random.random() { 1.0 } else { -1.0 });
     let mirrors = (order >= 3) != (signs.iter().product::<f64>() < 0.0);
-    mapped(&mesh, mirrors, |p| [0, 1, 2].map(|k| signs[k] * p[ORDERS[order][k]]))
+    mapped(mesh, mirrors, |p| [0, 1, 2].map(|k| signs[k] * p[ORDERS[order][k]]))
 }
 
 /// A rotation matrix.
@@ -51,8 +51,8 @@ pub(crate) fn rotated(mesh: &Mesh, matrix: &[Point; 3]) -> Mesh {
 }
 
 /// Turned at random and moved by at most `reach` along each axis.
-pub(crate) fn anywhere(mesh: Mesh, reach: f64, random: &mut ChaCha8Rng) -> Mesh {
-    let turned = rotated(&mesh, &rotation(random));
+pub(crate) fn anywhere(mesh: &Mesh, reach: f64, random: &mut ChaCha8Rng) -> Mesh {
+    let turned = rotated(mesh, &rotation(random));
     moved(&turned, [0; 3].map(|_| random.random_range(-reach..reach)))
 }
 

@@ -67,7 +67,7 @@ pub(crate) fn round_or_any(random: &mut ChaCha8Rng) -> Mesh {
         12 => bumpy(random),
         _ => combined(random, |random| {
             let mesh = if random.random() { bumpy(random) } else { tetrahedron(random) };
-            placement::anywhere(mesh, 0.5, random)
+            placement::anywhere(&mesh, 0.5, random)
         }),
     }
 }
@@ -140,7 +140,7 @@ pub(crate) fn grid_prism(random: &mut ChaCha8Rng) -> Mesh {
         .collect();
     let height = f64::from(random.random_range(1..4));
     let mesh = primitives::extrusion(&polygon, &[], height).expect("a polygon seen whole from inside");
-    placement::turned_on_grid(mesh, random)
+    placement::turned_on_grid(&mesh, random)
 }
 
 /// A plate with square holes, some of which meet in corners when the plate is cut again.
@@ -154,7 +154,7 @@ fn pierced_plate(random: &mut ChaCha8Rng) -> Mesh {
         .collect();
     let holes: Vec<&[[f64; 2]]> = holes.iter().map(<[_; 4]>::as_slice).collect();
     let mesh = primitives::extrusion(&outer, &holes, f64::from(random.random_range(1..3))).expect("a plate");
-    placement::turned_on_grid(mesh, random)
+    placement::turned_on_grid(&mesh, random)
 }
 
 /// A ball with bumps: every vertex of a sphere moved along its ray by a cubic.
