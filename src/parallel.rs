@@ -58,6 +58,17 @@ impl<'a> Runner<'a> {
         (0..pieces).map(run).collect()
     }
 
+    /// Sorts items that differ from each other, so that the order does not depend on the number of threads.
+    pub(crate) fn sort<T: Ord + Send>(self, items: &mut [T]) {
+        #[cfg(feature = "parallel")]
+        if self.parallel && items.len() > 1 << 14 {
+            use rayon::prelude::*;
+            items.par_sort_unstable();
+            return;
+        }
+        items.sort_unstable();
+    }
+
     /// What two independent computations return, run side by side if allowed.
     pub(crate) fn both<A: Send, B: Send>(
         self,

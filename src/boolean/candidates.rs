@@ -8,7 +8,7 @@ use crate::Error;
 use crate::control::Reservation;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
-use crate::spatial::{BoxTree, Frame, Occupancy, visit_pairs};
+use crate::spatial::{BoxTree, Cell, Frame, Occupancy, visit_pairs};
 
 /// Below this many triangles near the other operand, ruling some out costs more than it saves.
 const CULL_FROM: usize = 2_000;
@@ -69,20 +69,38 @@ fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> [Vec<u32>
     let near = [operands.near(0), operands.near(1)];
     // Cells a few triangles wide.
     let resolution = ((near[0].len().max(near[1].len()) as f64).sqrt() / 2.0) as u32;
+    let mut grid = Occupancy::new(resolution);
+    // Each vertex once, unless most of them belong to no near triangle.
+    let cells_of_vertices = |side: usize| -> Vec<Cell> {
+        let positions = operands.sides[side].positions;
+        if 3 * near[side].len() < positions.len() {
+            return Vec::new();
+        }
+        positions.iter().map(|position| grid.cell(frame.point(position))).collect()
+    };
+    let (of_a, of_b) = runner.both(|| cells_of_vertices(0), || cells_of_vertices(1));
+    let of_vertices = [of_a, of_b];
     let corners = |side: usize, t: u32| {
         let operand = &operands.sides[side];
         operand.triangles[t as usize].map(|v| frame.point(&operand.positions[v as usize]))
     };
-    let mut cells = Occupancy::new(resolution);
+    let cells = |grid: &Occupancy, side: usize, t: u32| {
+        if of_vertices[side].is_empty() {
+            return corners(side, t).map(|corner| grid.cell(corner));
+        }
+        operands.sides[side].triangles[t as usize].map(|v| of_vertices[side][v as usize])
+    };
     for &t in near[0] {
-        cells.mark(corners(0, t));
+        grid.mark(cells(&grid, 0, t), || corners(0, t));
     }
-    let of_b: Vec<u32> = near[1].iter().copied().filter(|&t| cells.is_marked(corners(1, t))).collect();
-    cells.clear();
+    let marked = |grid: &Occupancy, side: usize| -> Vec<u32> {
+        let is_marked = |t: &u32| grid.is_marked(cells(grid, side, *t), || corners(side, *t));
+        near[side].iter().copied().filter(is_marked).collect()
+    };
+    let of_b = marked(&grid, 1);
+    grid.clear();
     for &t in &of_b {
-        cells.mark(corners(1, t));
+        grid.mark(cells(&grid, 1, t), || corners(1, t));
     }
-    let of_a: Vec<u32> = near[0].iter().copied().filter(|&t| cells.is_marked(corners(0, t))).collect();
-    let _ = runner;
-    [of_a, of_b]
+    [marked(&grid, 0), of_b]
 }

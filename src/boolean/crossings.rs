@@ -42,6 +42,9 @@ pub(super) struct Crossings {
 /// Memory for one intersecting pair while its crossings are numbered.
 const BYTES_PER_PAIR: u64 = (size_of::<PairCrossing>() + 2 * size_of::<(Crossing, u32)>() + 64) as u64;
 
+/// So many vertices and nodes can be numbered by 32 bits, with room for copies.
+const MOST_POINTS: usize = 0xf000_0000;
+
 /// The two crossings of a pair of triangles, tail first.
 #[derive(Clone, Copy, Debug)]
 struct PairCrossing {
@@ -58,7 +61,11 @@ pub(super) fn find(
 ) -> Result<Crossings, Error> {
     let found = candidates.visit(runner, |s, t, found| found.extend(cross(operands, [s, t])))?;
     let _tables = runner.control.reserve(found.len() as u64 * BYTES_PER_PAIR)?;
-    Ok(number_nodes(&found))
+    let points = operands.vertex_count() as usize + 2 * found.len();
+    if points > MOST_POINTS {
+        return Err(Error::TooLarge { what: format!("{points} vertices and crossings in one operation") });
+    }
+    number_nodes(&found, runner)
 }
 
 /// Decides whether two triangles intersect and where: at most ten signs.
@@ -119,30 +126,48 @@ fn lone(inside: [bool; 3]) -> Option<usize> {
 }
 
 /// Gives every crossing one number: each is met in the pairs of all triangles beside its edge.
-fn number_nodes(found: &[PairCrossing]) -> Crossings {
-    let mut order: Vec<(Crossing, u32)> = found
+fn number_nodes(found: &[PairCrossing], runner: Runner<'_>) -> Result<Crossings, Error> {
+    // Edge, triangle, and place among all ends of segments, from the highest bits to the lowest.
+    let key = |crossing: &Crossing, place: u32| {
+        u128::from(crossing.low) << 96
+            | u128::from(crossing.high) << 64
+            | u128::from(crossing.triangle) << 32
+            | u128::from(place)
+    };
+    let mut order: Vec<u128> = found
         .iter()
-        .enumerate()
-        .flat_map(|(i, pair)| [(pair.tail, 2 * i as u32), (pair.head, 2 * i as u32 + 1)])
+        .zip((0u32..).step_by(2))
+        .flat_map(|(pair, place)| [key(&pair.tail, place), key(&pair.head, place + 1)])
         .collect();
-    order.sort_unstable();
+    runner.sort(&mut order);
+    runner.control.check()?;
     let mut nodes: Vec<Crossing> = Vec::with_capacity(order.len() / 2);
     let mut node_of = vec![0u32; order.len()];
-    for &(crossing, place) in &order {
-        if nodes.last() != Some(&crossing) {
-            nodes.push(crossing);
+    let mut last = None;
+    for &key in &order {
+        let place = key as u32 as usize;
+        if last != Some(key >> 32) {
+            last = Some(key >> 32);
+            let pair = &found[place / 2];
+            nodes.push(if place % 2 == 0 { pair.tail } else { pair.head });
         }
-        node_of[place as usize] = nodes.len() as u32 - 1;
+        node_of[place] = nodes.len() as u32 - 1;
     }
-    let mut segments: Vec<Segment> = found
+    // Triangle of A, triangle of B, and place.
+    let mut order: Vec<u128> = found
         .iter()
         .enumerate()
-        .map(|(i, pair)| Segment {
-            triangles: pair.triangles,
-            tail: node_of[2 * i],
-            head: node_of[2 * i + 1],
+        .map(|(i, pair)| {
+            u128::from(pair.triangles[0]) << 96 | u128::from(pair.triangles[1]) << 64 | i as u128
         })
         .collect();
-    segments.sort_unstable_by_key(|segment| segment.triangles);
-    Crossings { nodes, segments }
+    runner.sort(&mut order);
+    let segments = order
+        .iter()
+        .map(|&key| {
+            let i = key as u64 as usize;
+            Segment { triangles: found[i].triangles, tail: node_of[2 * i], head: node_of[2 * i + 1] }
+        })
+        .collect();
+    Ok(Crossings { nodes, segments })
 }

@@ -16,6 +16,9 @@ use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
 
+/// From this many triangles on, threads are worth waking.
+const PARALLEL_FROM: usize = 4_096;
+
 /// An operand, or what some of them have become.
 struct Partial<'a> {
     solid: Cow<'a, Solid>,
@@ -185,7 +188,9 @@ impl Engine<'_> {
             remove_vertices: self.options.remove_vertices,
             groups: [&a.groups, &b.groups],
         };
-        let made = pair::combine(operation, &a.solid, &b.solid, settings, self.runner)?;
+        let triangles = a.solid.mesh().triangles.len() + b.solid.mesh().triangles.len();
+        let runner = if triangles < PARALLEL_FROM { self.runner.serial() } else { self.runner };
+        let made = pair::combine(operation, &a.solid, &b.solid, settings, runner)?;
         let sources = [a, b];
         let origins = made
             .origins

@@ -25,6 +25,9 @@ use crate::{Error, Solid};
 /// two points is off by less than one.
 const ROUNDING_ULPS: f64 = 4.0;
 
+/// So many vertices of both operands together leave numbers for crossings.
+const MOST_VERTICES: usize = 1 << 31;
+
 /// Settings of one combination.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings<'a> {
@@ -45,6 +48,10 @@ pub(super) fn combine(
     runner: Runner<'_>,
 ) -> Result<Assembled, Error> {
     let (sides, bounds) = (sides(a, b), bounds(a, b));
+    let vertices = sides[0].positions.len() + sides[1].positions.len();
+    if vertices > MOST_VERTICES {
+        return Err(Error::TooLarge { what: format!("{vertices} vertices in one operation") });
+    }
     let parts = multiplicity::parts(operation);
 
     let _tables = runner.control.reserve(fixed_tables(&sides))?;
@@ -57,7 +64,13 @@ pub(super) fn combine(
     let candidates = Candidates::new(&operands, overlap::intersection(&bounds[0], &bounds[1]), runner)?;
     let crossings = crossings::find(&operands, &candidates, runner)?;
     let edges = CutEdges::new(&operands, &crossings, runner)?;
-    let mut faces = [0, 1].map(|side| CutFaces::new(&operands, side, &crossings, &edges));
+    runner.control.check()?;
+    let (faces_a, faces_b) = runner.both(
+        || CutFaces::new(&operands, 0, &crossings, &edges),
+        || CutFaces::new(&operands, 1, &crossings, &edges),
+    );
+    let mut faces = [faces_a, faces_b];
+    runner.control.check()?;
     let mut windings = [Vec::new(), Vec::new()];
     for side in 0..2 {
         windings[side] = winding::of_vertices(

@@ -127,6 +127,7 @@ fn single_triangle(edges: &[[u32; 2]]) -> Option<[u32; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exact::{Sign, orient2d};
     use rand::rngs::ChaCha8Rng;
     use rand::{RngExt, SeedableRng};
     use std::collections::BTreeMap;
@@ -260,6 +261,22 @@ mod tests {
         assert_complete(&edges, &triangles);
         assert_eq!(shape, Shape::Flat);
         assert_eq!(triangles.iter().map(|t| area(&points, t)).sum::<f64>(), 2.0);
+    }
+
+    #[test]
+    fn a_hole_that_rounding_pushed_through_its_outline() {
+        // Corner 3 of the hole lies on the side from 0 to 1 but for an ulp.
+        let third = 1.0 / 3.0;
+        let points = [[0.0, 1.0], [1.0, 0.0], [2.0, 2.0], [third, 2.0 * third], [0.5, 0.75], [0.5, 1.0]];
+        assert_eq!(orient2d(points[0], points[1], points[3]), Sign::Negative);
+        let edges = [[0, 1], [1, 2], [2, 0], [4, 3], [5, 4], [3, 5]];
+        let mut triangles = Vec::new();
+        Triangulator::default().triangulate(&points, &edges, &mut triangles);
+        assert_complete(&edges, &triangles);
+        // Nothing is covered twice: no triangle of more than rounding is turned over.
+        assert!(triangles.iter().all(|t| area(&points, t) > -1e-15), "{triangles:?}");
+        let sum: f64 = triangles.iter().map(|t| area(&points, t)).sum();
+        assert!((sum - (1.5 - 1.0 / 48.0)).abs() < 1e-15, "{sum}");
     }
 
     #[test]

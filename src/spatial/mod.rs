@@ -34,5 +34,5 @@ pub(crate) use build::binary_tree;
 pub(crate) use frame::Frame;
 pub(crate) use local_frame::{LocalFrame, SmallBox};
 pub(crate) use morton::coherent_order;
-pub(crate) use occupancy::Occupancy;
+pub(crate) use occupancy::{Cell, Occupancy};
 pub(crate) use wide::{LANES, WideTree};

@@ -3,7 +3,10 @@
 use glam::Vec3A;
 
 /// Largest number of cells along an axis: the grid then fits a second-level cache.
-const MAX_RESOLUTION: u32 = 128;
+const MAX_RESOLUTION: u32 = 256;
+/// Bits of one component of a cell number; the last resolution has eight.
+const BITS: u32 = 10;
+const MASK: u32 = (1 << BITS) - 1;
 /// A triangle whose box covers more cells than this is divided.
 const DIVIDE_FROM: u32 = 12;
 /// So often a triangle is divided at most.
@@ -15,7 +18,19 @@ const MARGIN: f32 = 1.0 / 64.0;
 #[derive(Debug)]
 pub(crate) struct Occupancy {
     bits: Vec<u64>,
+    /// Cells along each axis, a power of two, and its logarithm.
     resolution: u32,
+    shift: u32,
+}
+
+/// The cell of a point: three components of [`BITS`] bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Cell(u32);
+
+impl Cell {
+    fn components(self) -> [u32; 3] {
+        [self.0 & MASK, self.0 >> BITS & MASK, self.0 >> (2 * BITS)]
+    }
 }
 
 /// A range of cells along each axis, ends included.
@@ -29,8 +44,9 @@ impl Occupancy {
     /// An empty grid with about `resolution` cells along each axis of the region the frame was made for.
     pub(crate) fn new(resolution: u32) -> Self {
         // The region lies in -1..1 up to a factor of two; what is outside falls into the outermost cells.
-        let resolution = (2 * resolution).clamp(8, 2 * MAX_RESOLUTION).next_multiple_of(8);
-        Self { bits: vec![0; (resolution as usize).pow(3).div_ceil(64)], resolution }
+        let resolution = (2 * resolution).next_power_of_two().clamp(8, MAX_RESOLUTION);
+        let bits = vec![0; (resolution as usize).pow(3) / 64];
+        Self { bits, resolution, shift: resolution.trailing_zeros() }
     }
 
     /// Unmarks all cells.
@@ -38,28 +54,79 @@ impl Occupancy {
         self.bits.fill(0);
     }
 
-    /// Marks the cells a triangle passes (and perhaps a few beside it).
-    pub(crate) fn mark(&mut self, corners: [Vec3A; 3]) {
-        let resolution = self.resolution;
-        divide(corners.map(|corner| self.scaled(corner)), resolution, |cells| {
-            for_cells(cells, resolution, |word, bit| {
+    /// The cell of a point. Points outside the grid are in its outermost cells.
+    #[inline]
+    pub(crate) fn cell(&self, point: Vec3A) -> Cell {
+        let last = Vec3A::splat((self.resolution - 1) as f32);
+        let [x, y, z] = self.scaled(point).clamp(Vec3A::ZERO, last).to_array().map(|x| x as u32);
+        Cell(x | y << BITS | z << (2 * BITS))
+    }
+
+    /// Marks the cells a triangle passes (and perhaps a few beside it), given the cells of its corners; `corners` is asked
+    /// only for big triangles.
+    #[inline]
+    pub(crate) fn mark(&mut self, of_corners: [Cell; 3], corners: impl FnOnce() -> [Vec3A; 3]) {
+        let shift = self.shift;
+        if of_corners[0] == of_corners[1] && of_corners[1] == of_corners[2] {
+            let (word, bit) = place(of_corners[0].components(), shift);
+            self.bits[word] |= bit;
+            return;
+        }
+        let cells = around(of_corners);
+        if count(cells) <= DIVIDE_FROM {
+            for_cells(cells, shift, |word, bit| {
+                self.bits[word] |= bit;
+                false
+            });
+            return;
+        }
+        let corners = corners().map(|corner| self.scaled(corner));
+        divide(corners, self.resolution, &mut |cells| {
+            for_cells(cells, shift, |word, bit| {
                 self.bits[word] |= bit;
                 false
             })
         });
     }
 
-    /// Whether a triangle passes a marked cell (or nearly).
-    pub(crate) fn is_marked(&self, corners: [Vec3A; 3]) -> bool {
-        divide(corners.map(|corner| self.scaled(corner)), self.resolution, |cells| {
-            for_cells(cells, self.resolution, |word, bit| self.bits[word] & bit != 0)
-        })
+    /// Whether a triangle passes a marked cell (or nearly); arguments as in [`mark`](Self::mark).
+    #[inline]
+    pub(crate) fn is_marked(&self, of_corners: [Cell; 3], corners: impl FnOnce() -> [Vec3A; 3]) -> bool {
+        let is_set = |word: usize, bit: u64| self.bits[word] & bit != 0;
+        if of_corners[0] == of_corners[1] && of_corners[1] == of_corners[2] {
+            let (word, bit) = place(of_corners[0].components(), self.shift);
+            return is_set(word, bit);
+        }
+        let cells = around(of_corners);
+        if count(cells) <= DIVIDE_FROM {
+            return for_cells(cells, self.shift, is_set);
+        }
+        let corners = corners().map(|corner| self.scaled(corner));
+        divide(corners, self.resolution, &mut |cells| for_cells(cells, self.shift, is_set))
     }
 
     /// A point in units of cells.
+    #[inline]
     fn scaled(&self, point: Vec3A) -> Vec3A {
         (point + 2.0) * (self.resolution as f32 / 4.0)
     }
+}
+
+/// The range of cells around those of three corners.
+#[inline]
+fn around(of_corners: [Cell; 3]) -> Cells {
+    let [a, b, c] = of_corners.map(Cell::components);
+    Cells {
+        low: std::array::from_fn(|k| a[k].min(b[k]).min(c[k])),
+        high: std::array::from_fn(|k| a[k].max(b[k]).max(c[k])),
+    }
+}
+
+/// Word and bit of a cell.
+#[inline]
+fn place([x, y, z]: [u32; 3], shift: u32) -> (usize, u64) {
+    let cell = (z << shift | y) << shift | x;
+    (cell as usize / 64, 1 << (cell % 64))
 }
 
 fn cell_range(low: Vec3A, high: Vec3A, resolution: u32) -> Cells {
@@ -70,13 +137,12 @@ fn cell_range(low: Vec3A, high: Vec3A, resolution: u32) -> Cells {
 
 /// Calls `visit` for each cell of a range until it returns true; returns whether it did.
 #[inline]
-fn for_cells(cells: Cells, resolution: u32, mut visit: impl FnMut(usize, u64) -> bool) -> bool {
+fn for_cells(cells: Cells, shift: u32, mut visit: impl FnMut(usize, u64) -> bool) -> bool {
     for z in cells.low[2]..=cells.high[2] {
         for y in cells.low[1]..=cells.high[1] {
-            let row = (z * resolution + y) * resolution;
             for x in cells.low[0]..=cells.high[0] {
-                let cell = row + x;
-                if visit(cell as usize / 64, 1 << (cell % 64)) {
+                let (word, bit) = place([x, y, z], shift);
+                if visit(word, bit) {
                     return true;
                 }
             }
@@ -85,23 +151,13 @@ fn for_cells(cells: Cells, resolution: u32, mut visit: impl FnMut(usize, u64) ->
     false
 }
 
-/// Calls `visit` with ranges of cells that cover a triangle, until it returns true; returns whether it did. A triangle that
-/// is much smaller than its box is divided along its longest side, so that needles cover only what they pass.
-#[inline]
-fn divide(corners: [Vec3A; 3], resolution: u32, mut visit: impl FnMut(Cells) -> bool) -> bool {
-    let [a, b, c] = corners;
-    let cells = cell_range(a.min(b).min(c), a.max(b).max(c), resolution);
-    if count(cells) <= DIVIDE_FROM {
-        return visit(cells);
-    }
-    divide_further(corners, resolution, &mut visit)
-}
-
 fn count(cells: Cells) -> u32 {
     (0..3).map(|k| cells.high[k] - cells.low[k] + 1).product()
 }
 
-fn divide_further(corners: [Vec3A; 3], resolution: u32, visit: &mut impl FnMut(Cells) -> bool) -> bool {
+/// Calls `visit` with ranges of cells that cover a triangle, until it returns true; returns whether it did. A triangle that
+/// is much smaller than its box is divided along its longest side, so that needles cover only what they pass.
+fn divide(corners: [Vec3A; 3], resolution: u32, visit: &mut impl FnMut(Cells) -> bool) -> bool {
     let mut stack = vec![corners];
     let mut divisions = 0;
     let end = Vec3A::splat(resolution as f32);
@@ -155,17 +211,20 @@ mod tests {
             let first = [centre + a, centre + b, centre - a - b];
             let (a, b) = (point(1.5), point(1e-3));
             let second = [centre + a, centre + b, centre - a - b];
-            grid.mark(first);
-            assert!(grid.is_marked(second), "{first:?} {second:?}");
+            let cells = |grid: &Occupancy, t: [Vec3A; 3]| t.map(|corner| grid.cell(corner));
+            grid.mark(cells(&grid, first), || first);
+            let of_second = cells(&grid, second);
+            assert!(grid.is_marked(of_second, || second), "{first:?} {second:?}");
             grid.clear();
-            assert!(!grid.is_marked(second));
+            assert!(!grid.is_marked(of_second, || second));
         }
     }
 
     #[test]
     fn a_needle_covers_only_what_it_passes() {
         let mut grid = Occupancy::new(64);
-        grid.mark([Vec3A::splat(-1.0), Vec3A::splat(1.0), Vec3A::new(1.0, 1.0, 0.99)]);
+        let needle = [Vec3A::splat(-1.0), Vec3A::splat(1.0), Vec3A::new(1.0, 1.0, 0.99)];
+        grid.mark(needle.map(|corner| grid.cell(corner)), || needle);
         let marked: u32 = grid.bits.iter().map(|word| word.count_ones()).sum();
         assert!((64..2_000).contains(&marked), "{marked}");
     }

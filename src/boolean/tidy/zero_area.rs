@@ -271,3 +271,18 @@ fn middle(points: [[f64; 3]; 3]) -> Option<usize> {
         p.min(q) < at[k] && at[k] < p.max(q)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_of_three_points_however_near_it_is_to_an_end() {
+        let (p, q, r) = ([1.0, 1.0, 0.0], [1.0, 1.0, 5e-17], [1.0, 1.0, 1.0]);
+        assert_eq!(middle([p, q, r]), Some(1));
+        assert_eq!(middle([r, p, q]), Some(2));
+        assert_eq!(middle([q, r, p]), Some(0));
+        assert_eq!(middle([p, r, p]), None);
+        assert_eq!(middle([p; 3]), None);
+    }
+}
