@@ -41,7 +41,7 @@ fn results_of_manifold3d() {
         let [low, high] = extent(case.a.positions.iter().chain(&case.b.positions));
         let [x, y, z] = [0, 1, 2].map(|k| high[k] - low[k]);
         let mut compare = |name: &str, found: f64, recorded: &str, tolerance: f64| {
-            // "-": manifold3d is wrong there, or resolves a contact otherwise; the arbiter said so when it was recorded.
+            // "-": manifold3d is wrong there, or connects what touches, or rounding decides; see `compare.py`.
             if recorded != "-" {
                 compared += 1;
                 if (found - number(recorded)).abs() > tolerance {

@@ -57,9 +57,9 @@ fn command(words: &[&str]) -> Result<(), String> {
         }),
         ["save", seed, folder] => {
             let case = Case::new(number(seed)?, &models);
-            let (outcome, _) = run::attempt(&case);
             save(&case.a, folder, "a")?;
             save(&case.b, folder, "b")?;
+            let (outcome, _) = run::attempt(&case);
             outcome.map_or(Ok(()), |mesh| save(&mesh, folder, "result"))
         }
         ["minimise", seed, folder, name] => {
@@ -98,6 +98,8 @@ fn emit(first: u64, count: u64, points: usize, models: &[Mesh]) -> std::io::Resu
         let case = Case::new(seed, models);
         let found = run::examine(seed, &case, points);
         record::write(&mut out, seed, &case, &found)?;
+        // A crash must not take the cases before it along.
+        out.flush()?;
     }
-    out.flush()
+    Ok(())
 }
