@@ -64,8 +64,10 @@ fn from_meshes(criterion: &mut Criterion) {
             bencher.iter_batched(
                 || meshes.clone(),
                 |meshes| {
-                    let solids: Vec<Solid> =
-                        meshes.into_iter().map(|mesh| Solid::try_from(mesh).expect("a solid's mesh")).collect();
+                    let solids: Vec<Solid> = meshes
+                        .into_iter()
+                        .map(|mesh| Solid::try_from(mesh).expect("a solid's mesh"))
+                        .collect();
                     let solids: Vec<&Solid> = solids.iter().collect();
                     let made = Options::new().threads(1).run(operation, &solids).expect("no limits");
                     made.into_solid().into_mesh()

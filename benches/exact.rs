@@ -44,7 +44,10 @@ fn orientation(criterion: &mut Criterion) {
             (0..COUNT).map(|_| std::array::from_fn(|_| point(lie, &mut random))).collect();
         group.bench_function(format!("plain/{name}"), |bencher| {
             bencher.iter(|| {
-                plain.iter().filter(|[a, b, c, d]| orient3d(a, b, c, d) == trisect::exact::Sign::Positive).count()
+                plain
+                    .iter()
+                    .filter(|[a, b, c, d]| orient3d(a, b, c, d) == trisect::exact::Sign::Positive)
+                    .count()
             });
         });
         let moving: Vec<[PerturbedPoint; 4]> = (0..COUNT as u64)

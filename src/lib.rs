@@ -21,9 +21,9 @@ pub mod io;
 pub mod mesh;
 pub mod model;
 mod parallel;
-mod polygon;
 #[cfg(feature = "parametric")]
 pub mod parametric;
+mod polygon;
 pub mod primitives;
 #[cfg(feature = "render")]
 pub mod render;

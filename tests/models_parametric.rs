@@ -82,7 +82,8 @@ fn the_aircraft_is_one_solid() {
     let exact = 34.681153;
     let mut before = f64::INFINITY;
     for tolerance in [0.04, 0.01, 0.0025] {
-        let mesh = Evaluation::new().tolerance(tolerance).run(&example("aircraft.json")).expect("six patches").mesh;
+        let mesh =
+            Evaluation::new().tolerance(tolerance).run(&example("aircraft.json")).expect("six patches").mesh;
         assert_eq!(manifold(&mesh), (1, 0));
         let off = (volume(&mesh) - exact).abs();
         println!("tolerance {tolerance}: {} triangles, volume {}", mesh.triangles.len(), volume(&mesh));
@@ -155,7 +156,6 @@ fn descriptions_are_files_too() {
 
 #[test]
 fn faults_are_named_by_node_and_place() {
-    fails(r#"{"kind": "patches", "name": "wing", "patches": []}"#, &["`wing`"]);
     fails(
         r#"{"nodes": {"w": {"kind": "patches", "patches": [{"type": "bezier", "points": [[[0, 0, 0]]]}]}}, "result": "w"}"#,
         &["`w` (/nodes/w)", "/patches/0"],
@@ -165,7 +165,10 @@ fn faults_are_named_by_node_and_place() {
         &["gap"],
     );
     fails(r#"{"kind": "extrusion", "height": 1, "width": 2, "region": {}}"#, &["unknown field `width`"]);
-    fails(r#"{"kind": "extrusion", "height": -1, "region": {"type": "rectangle", "low": [0, 0], "high": [1, 1]}}"#, &["height"]);
+    fails(
+        r#"{"kind": "extrusion", "height": -1, "region": {"type": "rectangle", "low": [0, 0], "high": [1, 1]}}"#,
+        &["height"],
+    );
     fails(r#"{"kind": "region", "extrude": 1}"#, &["`region` is missing"]);
     fails(r#"{"kind": "region", "region": {"type": "blob"}, "extrude": 1}"#, &["unknown type \"blob\""]);
     fails(
@@ -175,5 +178,8 @@ fn faults_are_named_by_node_and_place() {
     fails(r#"{"kind": "parametric", "file": "none.json"}"#, &["cannot read", "none.json"]);
     fails(r#"{"kind": "parametric", "file": "polygon.json", "extrude": 1}"#, &["\"type\" is missing"]);
     fails(r#"{"kind": "patches", "patches": [], "tolerance": -1}"#, &["`tolerance` must be positive"]);
-    fails(r#"{"kind": "parametric", "file": "../parametric/naca0011.json", "extrude": 1}"#, &["can be extruded"]);
+    fails(
+        r#"{"kind": "parametric", "file": "../parametric/naca0011.json", "extrude": 1}"#,
+        &["can be extruded"],
+    );
 }

@@ -21,7 +21,10 @@ fn folder() -> Folder {
     let folder = workshop();
     folder.write("model.json", MODEL);
     folder.write("field.json", MODEL.replace("\"difference\",", "\"difference\", \"evaluate\": \"field\","));
-    folder.write("bad.json", MODEL.replace("\"a.obj\"", "{\"kind\": \"formula\", \"formula\": \"1 - sinn(x)\"}"));
+    folder.write(
+        "bad.json",
+        MODEL.replace("\"a.obj\"", "{\"kind\": \"formula\", \"formula\": \"1 - sinn(x)\"}"),
+    );
     folder.write("missing.json", MODEL.replace("a.obj", "none.obj"));
     folder
 }
@@ -116,7 +119,8 @@ fn slice_draws_models_meshes_and_formulas() {
     let folder = folder();
     folder.run("slice model.json --axis y --width 60 -o m.png --bounds 0,0,0,2,1,1").exits(0);
     assert_eq!(size(&program::bytes(&folder.path("m.png"))), [60, 30]);
-    let line = "slice a.obj --scale 2,1,1 --axis z --at 0.25 --sign winding --width 48 --bands 0.1 -o s.png --json";
+    let line =
+        "slice a.obj --scale 2,1,1 --axis z --at 0.25 --sign winding --width 48 --bands 0.1 -o s.png --json";
     let report = folder.run(line).exits(0).json();
     assert_eq!(report["section"]["at"], 0.25);
     // The box is two wide and one high, with a fifth all round.

@@ -120,9 +120,7 @@ pub(crate) enum Verb {
     )]
     Slice(Slice),
     /// Sample a model, a mesh's signed distance, or a formula on a grid
-    #[command(
-        after_help = "Example:\n  trisect grid part.stl --spacing 0.5 --band 2 -o part.npy"
-    )]
+    #[command(after_help = "Example:\n  trisect grid part.stl --spacing 0.5 --band 2 -o part.npy")]
     Grid(SampleGrid),
     /// Join, mesh, convert and draw curves
     #[cfg(feature = "parametric")]

@@ -85,8 +85,8 @@ fn mesh(arguments: &CurveMesh, session: &mut Session<'_>) -> Result<Exit, Fault>
 fn convert(arguments: &CurveConvert, session: &mut Session<'_>) -> Result<Exit, Fault> {
     documents::check([arguments.output.as_path()], session.common, &session.limits)?;
     let texts = read(&[&arguments.file], session)?;
-    let (text, format) = curve_text::convert(&texts[0], arguments.tolerance)
-        .map_err(|error| named(error, &arguments.file))?;
+    let (text, format) =
+        curve_text::convert(&texts[0], arguments.tolerance).map_err(|error| named(error, &arguments.file))?;
     let bytes = (text + "\n").into_bytes();
     write(&[Document { path: arguments.output.clone(), format, bytes }], "converted", session)
 }

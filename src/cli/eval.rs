@@ -45,7 +45,8 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     let model = Model::parse(&operands::text(&arguments.model, &session.limits)?, folder)?;
     session.took("read", start);
     let files: Vec<String> = model.files().iter().map(|file| file.display().to_string()).collect();
-    session.note("model", json!({ "file": name, "nodes": model.names().collect::<Vec<_>>(), "files": files }));
+    session
+        .note("model", json!({ "file": name, "nodes": model.names().collect::<Vec<_>>(), "files": files }));
     if arguments.dry_run {
         return dry_run(&model, &name, session);
     }
@@ -106,8 +107,11 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
 
 fn dry_run(model: &Model, name: &str, session: &mut Session<'_>) -> Result<Exit, Fault> {
     for file in model.files() {
-        std::fs::metadata(&file)
-            .map_err(|source| trisect::Error::File { action: "read", path: file.clone(), source })?;
+        std::fs::metadata(&file).map_err(|source| trisect::Error::File {
+            action: "read",
+            path: file.clone(),
+            source,
+        })?;
     }
     session.note("dry_run", true);
     session.console.say(&format!(

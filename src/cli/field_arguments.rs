@@ -42,7 +42,13 @@ pub(crate) struct Source {
     #[arg(value_name = "FILE", required_unless_present = "formula", num_args = 0..=1)]
     pub(crate) files: Vec<PathBuf>,
     /// A formula instead of a file
-    #[arg(long, value_name = "TEXT", conflicts_with = "files", allow_hyphen_values = true, help_heading = "Inputs")]
+    #[arg(
+        long,
+        value_name = "TEXT",
+        conflicts_with = "files",
+        allow_hyphen_values = true,
+        help_heading = "Inputs"
+    )]
     pub(crate) formula: Option<String>,
     /// How a mesh's inside is told
     #[arg(long, value_enum, default_value_t = Rule::Automatic, help_heading = "Inputs")]

@@ -14,11 +14,7 @@ use super::session::Session;
 use super::source;
 
 /// Draws a section.
-pub(crate) fn run(
-    arguments: &Slice,
-    matches: &ArgMatches,
-    session: &mut Session<'_>,
-) -> Result<Exit, Fault> {
+pub(crate) fn run(arguments: &Slice, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
     documents::check([arguments.output.as_path()], session.common, &session.limits)?;
     let control = session.control();
     let start = Instant::now();

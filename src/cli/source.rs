@@ -33,8 +33,7 @@ pub(crate) fn field(
     let mut distance = None;
     let (expression, own, name) = if let Some(text) = &source.formula {
         let formula = Formula::parse(text).map_err(trisect::Error::from)?;
-        let expression =
-            formula.compile(System::default(), &[], &[]).map_err(trisect::Error::from)?;
+        let expression = formula.compile(System::default(), &[], &[]).map_err(trisect::Error::from)?;
         (expression, None, "the formula".to_owned())
     } else if let Some(path) = source.files.iter().find(|path| is_json(path)) {
         let requests = requests::placed_requests(matches)?;

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
+use super::Kind;
 use super::contour::Outline;
 use super::parse::fault;
-use super::Kind;
 use crate::field::Contours;
 use crate::parametric::json::{SOLID_TYPES, parse, region, solid};
 use crate::parametric::{CurveMeshing, Refinement};

@@ -412,8 +412,7 @@ fn resolve(model: &mut Model) -> Result<(), Error> {
             Kind::Reference(name, target) => match names.get(name) {
                 Some(&index) => *target = index,
                 None => {
-                    let what =
-                        format!("there is no node named `{name}`, and it is not the name of a file");
+                    let what = format!("there is no node named `{name}`, and it is not the name of a file");
                     return Err(fault(what).in_node(&node.label));
                 }
             },

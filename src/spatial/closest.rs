@@ -58,6 +58,7 @@ impl TriangleTree {
     /// Best first: nearer boxes are opened first, and boxes farther than the best answer never.
     fn search(&self, query: DVec3, best: &mut Closest) {
         let around = self.frame.around(query);
+        let local = self.frame.local(query);
         let squared_scale = self.frame.scale() * self.frame.scale();
         let bound_of = |best: &Closest| ((best.squared_distance * squared_scale) as f32).next_up() * SLACK;
         let mut bound = bound_of(best);
@@ -74,6 +75,10 @@ impl TriangleTree {
                     }
                 }
                 Child::Node(index) => {
+                    let squared = best.squared_distance * squared_scale;
+                    if self.discs[index as usize].squared_distance(local) > squared {
+                        continue;
+                    }
                     let node = &self.tree.nodes[index as usize];
                     let distances = node.squared_distances(&around.low, &around.high);
                     push_sorted(&mut stack, node, distances, bound);

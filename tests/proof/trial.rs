@@ -11,7 +11,9 @@ use super::judge::surface::Properties;
 pub(crate) fn one_in(usual: usize) -> usize {
     match std::env::var("TRISECT_PROOF").as_deref() {
         Ok("all") => 1,
-        Ok(times) => (usual / times.parse::<usize>().expect("TRISECT_PROOF is a number or all").max(1)).max(1),
+        Ok(times) => {
+            (usual / times.parse::<usize>().expect("TRISECT_PROOF is a number or all").max(1)).max(1)
+        }
         Err(_) => usual,
     }
 }
@@ -74,9 +76,12 @@ impl Trial {
     ) {
         if let Ok(folder) = std::env::var("TRISECT_PROOF_SAVE") {
             let number = self.failures.len();
-            for (name, mesh) in [("a", Some(operands[0].mesh())), ("b", Some(operands[1].mesh())), ("r", result)] {
+            for (name, mesh) in
+                [("a", Some(operands[0].mesh())), ("b", Some(operands[1].mesh())), ("r", result)]
+            {
                 if let Some(mesh) = mesh {
-                    mesh.save(format!("{folder}/{number}-{operation:?}-{name}.obj")).expect("a writable folder");
+                    mesh.save(format!("{folder}/{number}-{operation:?}-{name}.obj"))
+                        .expect("a writable folder");
                 }
             }
         }
@@ -103,8 +108,7 @@ fn faults(found: &Properties, mesh: &Mesh, operands: [&Solid; 2], expected: &Exp
     if found.zero_area > 0 && !expected.flat_triangles {
         faults.push(format!("{} triangles without area", found.zero_area));
     }
-    let [low, high] =
-        super::judge::vector::extent(operands.iter().flat_map(|solid| &solid.mesh().positions));
+    let [low, high] = super::judge::vector::extent(operands.iter().flat_map(|solid| &solid.mesh().positions));
     let size = [0, 1, 2].map(|k| high[k] - low[k]);
     let box_area = 2.0 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
     let mut number = |name: &str, found: f64, expected: Option<f64>, tolerance: f64| {

@@ -17,12 +17,15 @@ use crate::{Control, Error};
 pub(super) struct Tables<'a> {
     pub(super) lattice: Lattice,
     pub(super) tolerance: f64,
-    pub(super) corners: Corners,
+    pub(super) corners: &'a Corners,
     /// Leaves that are not certainly empty.
     pub(super) cells: Vec<&'a Leaf>,
     /// Cells that are divided into tetrahedra, by position in `cells`.
     pub(super) divided: Vec<bool>,
-    values: FxHashMap<Key, f64>,
+    /// Cut faces that only one of the cells has.
+    pub(super) one_sided: Vec<Face>,
+    /// The field at corners of cells, of earlier rounds too.
+    values: &'a mut FxHashMap<Key, f64>,
     /// Numbers of the crossed edges' vertices.
     edges: FxHashMap<u64, u32>,
     faces: FxHashMap<u64, FaceLine>,
@@ -60,21 +63,23 @@ struct SharedFace {
 }
 
 impl<'a> Tables<'a> {
+    /// Tables of the given cells. `corners` are those of all leaves, `values` the field at them as far as it is known.
     pub(super) fn new(
-        leaves: &'a [Leaf],
+        cells: Vec<&'a Leaf>,
+        corners: &'a Corners,
+        values: &'a mut FxHashMap<Key, f64>,
         lattice: Lattice,
         tolerance: f64,
         control: &Control,
     ) -> Result<Self, Error> {
-        let corners = Corners::of(leaves.iter().map(|leaf| leaf.cube));
-        let cells: Vec<&Leaf> = leaves.iter().filter(|leaf| leaf.tape.is_some()).collect();
         let mut tables = Self {
             lattice,
             tolerance,
             corners,
             divided: vec![false; cells.len()],
+            one_sided: Vec::new(),
             cells,
-            values: FxHashMap::default(),
+            values,
             edges: FxHashMap::default(),
             faces: FxHashMap::default(),
             places: Vec::new(),
@@ -127,7 +132,8 @@ impl<'a> Tables<'a> {
             let mut points: Vec<(Key, u32)> = Vec::new();
             for cell in range {
                 for (_, outline) in self.boundary(cell) {
-                    points.extend(outline.into_iter().map(|point| (point, cell as u32)));
+                    let unknown = outline.into_iter().filter(|point| !self.values.contains_key(point));
+                    points.extend(unknown.map(|point| (point, cell as u32)));
                 }
             }
             Ok(first_of_each(points, |point| point.0))
@@ -166,6 +172,9 @@ impl<'a> Tables<'a> {
         let edges = first_of_each(edges, |edge| edge.0);
         let name = |shared: &SharedFace| directed(super::lattice::key(shared.face.corner), shared.face.axis);
         faces.sort_by_key(|shared| (name(shared), shared.cell));
+        let same = |a: &SharedFace, b: &SharedFace| name(a) == name(b);
+        let alone = faces.chunk_by(same).filter(|run| run.len() == 1).map(|run| run[0].face);
+        self.one_sided = alone.collect();
         faces.dedup_by(|later, first| {
             let same = name(later) == name(first);
             first.fanned |= same && later.fanned;

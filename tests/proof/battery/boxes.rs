@@ -1,7 +1,7 @@
 //! Boxes in every relation along every axis.
 
-use trisect::Operation::{Difference, Intersection, SymmetricDifference, Union};
 use trisect::Operation;
+use trisect::Operation::{Difference, Intersection, SymmetricDifference, Union};
 
 use crate::common::cuboid;
 use crate::judge::cells::Cells;
@@ -9,9 +9,8 @@ use crate::trial::{Expected, Trial, one_in};
 
 /// All relations of an interval to the interval from 2 to 4: before, meets, overlaps, starts, within, ends, equals, contains
 /// and their reverses.
-const RELATIONS: [[i64; 2]; 13] = [
-    [0, 1], [0, 2], [1, 3], [0, 4], [2, 3], [0, 6], [2, 4], [2, 6], [3, 4], [3, 5], [4, 6], [5, 6], [1, 5],
-];
+const RELATIONS: [[i64; 2]; 13] =
+    [[0, 1], [0, 2], [1, 3], [0, 4], [2, 3], [0, 6], [2, 4], [2, 6], [3, 4], [3, 5], [4, 6], [5, 6], [1, 5]];
 /// One more relation needs a finer grid: strictly within.
 const WITHIN: [f64; 2] = [2.5, 3.5];
 
@@ -44,7 +43,8 @@ fn boxes_in_every_relation_along_every_axis() {
         let (low, high) = (intervals.map(|i| i[0]), intervals.map(|i| i[1]));
         let (b, b_cells) = (cuboid(low, high), cells(low, high));
         for (operation, swapped) in BOTH_WAYS {
-            let (solids, of) = if swapped { ([&b, &a], [&b_cells, &a_cells]) } else { ([&a, &b], [&a_cells, &b_cells]) };
+            let (solids, of) =
+                if swapped { ([&b, &a], [&b_cells, &a_cells]) } else { ([&a, &b], [&a_cells, &b_cells]) };
             let result = of[0].combined(operation, of[1]);
             let surface = result.surface();
             let expected = Expected {

@@ -56,8 +56,7 @@ fn cells_shifted_by_halves() {
                 let fine = |bits: usize, by: [i64; 3]| {
                     Cells::new([0; 3], [5; 3], |p| {
                         let q = [0, 1, 2].map(|k| p[k] - by[k]);
-                        q.iter().all(|&x| (0..4).contains(&x))
-                            && cells(bits).contains(q.map(|x| x / 2))
+                        q.iter().all(|&x| (0..4).contains(&x)) && cells(bits).contains(q.map(|x| x / 2))
                     })
                 };
                 let of = [fine(bits, [0; 3]), fine(other, by)];

@@ -24,9 +24,8 @@ impl Twin {
 
     /// The prism over a polygon that the origin sees whole, as triangular prisms from the axis.
     pub(crate) fn star(polygon: &[[f64; 2]], height: f64, place: impl Fn(Mesh) -> Mesh) -> Self {
-        let extrude = |ring: &[[f64; 2]]| {
-            place(primitives::extrusion(ring, &[], height).expect("a simple polygon"))
-        };
+        let extrude =
+            |ring: &[[f64; 2]]| place(primitives::extrusion(ring, &[], height).expect("a simple polygon"));
         let sector = |i: usize| extrude(&[[0.0; 2], polygon[i], polygon[(i + 1) % polygon.len()]]);
         let surface = extrude(polygon);
         let pieces: Vec<Mesh> = (0..polygon.len()).map(sector).collect();
@@ -110,7 +109,8 @@ fn tetrahedra_of_a_grid() {
     let fixed = [
         Twin::convex(primitives::tetrahedron(corner).expect("a tetrahedron")),
         Twin::convex(
-            primitives::tetrahedron([[0., 0., 1.], [2., 1., 0.], [1., 2., 2.], [0., 2., 0.]]).expect("a tetrahedron"),
+            primitives::tetrahedron([[0., 0., 1.], [2., 1., 0.], [1., 2., 2.], [0., 2., 0.]])
+                .expect("a tetrahedron"),
         ),
     ];
     let mut trial = Trial::default();

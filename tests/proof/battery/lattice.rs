@@ -171,9 +171,12 @@ fn gear(teeth: usize, turned: bool) -> Vec<[f64; 2]> {
 #[test]
 fn gears() {
     let mut trial = Trial::default();
-    for (teeth, height, by) in
-        [(6, 200.0, [0.0, 0.0, 0.0]), (9, 200.0, [0.0, 0.0, 100.0]), (12, 300.0, [0.0, 0.0, 200.0]), (5, 200.0, [900.0, 0.0, 0.0])]
-    {
+    for (teeth, height, by) in [
+        (6, 200.0, [0.0, 0.0, 0.0]),
+        (9, 200.0, [0.0, 0.0, 100.0]),
+        (12, 300.0, [0.0, 0.0, 200.0]),
+        (5, 200.0, [900.0, 0.0, 0.0]),
+    ] {
         let a = Twin::star(&gear(teeth, false), 200.0, |mesh| mesh);
         // Half a tooth on: the flanks lie on one another.
         let b = Twin::star(&gear(teeth, true), height, |mesh: Mesh| mesh.translated(by));

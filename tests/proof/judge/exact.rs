@@ -53,7 +53,10 @@ fn clipped_by_all(polygon: &[Point], planes: &[Plane]) -> Polygon {
 }
 
 fn rational(numerator: i128, denominator: i128) -> RBig {
-    RBig::from_parts(IBig::from(numerator), u128::try_from(denominator).expect("a positive denominator").into())
+    RBig::from_parts(
+        IBig::from(numerator),
+        u128::try_from(denominator).expect("a positive denominator").into(),
+    )
 }
 
 /// Six times the volume of the cone from the origin over a polygon.
@@ -74,8 +77,10 @@ fn area(polygon: &[Point]) -> f64 {
     let points: Vec<[f64; 3]> = polygon.iter().map(float).collect();
     let mut sum = [0.0; 3];
     for i in 2..points.len() {
-        let normal =
-            super::vector::cross(super::vector::minus(points[i - 1], points[0]), super::vector::minus(points[i], points[0]));
+        let normal = super::vector::cross(
+            super::vector::minus(points[i - 1], points[0]),
+            super::vector::minus(points[i], points[0]),
+        );
         sum = super::vector::plus(sum, normal, 1.0);
     }
     0.5 * super::vector::length(sum)
@@ -150,7 +155,8 @@ impl Exact {
             Piece { planes: planes(&faces), faces }
         };
         let solid = Self { surface: faces(surface), pieces: pieces.iter().map(piece).collect() };
-        let six: RBig = solid.surface.iter().map(|face| six_cones(&face.corners)).fold(RBig::ZERO, |s, x| s + x);
+        let six: RBig =
+            solid.surface.iter().map(|face| six_cones(&face.corners)).fold(RBig::ZERO, |s, x| s + x);
         assert_eq!(six, solid.six_volumes(), "the pieces do not fill the solid");
         solid
     }

@@ -60,16 +60,13 @@ pub(crate) fn judge(
 }
 
 /// Judges `result` at the given points.
-pub(crate) fn judge_at(
-    operation: Operation,
-    operands: &[&Mesh],
-    result: &Mesh,
-    points: &[Point],
-) -> Verdict {
+pub(crate) fn judge_at(operation: Operation, operands: &[&Mesh], result: &Mesh, points: &[Point]) -> Verdict {
     let surfaces: Vec<Surface> = operands.iter().map(|mesh| Surface::new(mesh)).collect();
     let outcome = Surface::new(result);
-    let largest =
-        operands.iter().flat_map(|mesh| mesh.positions.iter().flatten()).fold(0.0f64, |most, x| most.max(x.abs()));
+    let largest = operands
+        .iter()
+        .flat_map(|mesh| mesh.positions.iter().flatten())
+        .fold(0.0f64, |most, x| most.max(x.abs()));
     let ulp = largest.next_up() - largest;
     let mut verdict = Verdict::default();
     for &point in points {

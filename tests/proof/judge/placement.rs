@@ -9,7 +9,8 @@ use super::vector::Point;
 
 /// Maps every vertex; `mirrors` reverses the triangles as well.
 pub(crate) fn mapped(mesh: &Mesh, mirrors: bool, map: impl Fn(Point) -> Point) -> Mesh {
-    let triangles = mesh.triangles.iter().map(|&[a, b, c]| if mirrors { [a, c, b] } else { [a, b, c] }).collect();
+    let triangles =
+        mesh.triangles.iter().map(|&[a, b, c]| if mirrors { [a, c, b] } else { [a, b, c] }).collect();
     Mesh::new(mesh.positions.iter().map(|&p| map(p)).collect(), triangles)
 }
 
@@ -44,7 +45,9 @@ pub(crate) fn rotation(random: &mut ChaCha8Rng) -> [Point; 3] {
 }
 
 pub(crate) fn rotated(mesh: &Mesh, matrix: &[Point; 3]) -> Mesh {
-    mapped(mesh, false, |p| [0, 1, 2].map(|k| matrix[k][0] * p[0] + matrix[k][1] * p[1] + matrix[k][2] * p[2]))
+    mapped(mesh, false, |p| {
+        [0, 1, 2].map(|k| matrix[k][0] * p[0] + matrix[k][1] * p[1] + matrix[k][2] * p[2])
+    })
 }
 
 /// Turned at random and moved by at most `reach` along each axis.

@@ -30,8 +30,12 @@ pub(crate) fn round_or_any(random: &mut ChaCha8Rng) -> Mesh {
         1 => tetrahedron(random),
         2 => scaled(grid_prism(random), 0.3),
         3 => scaled(pierced_plate(random), 0.3),
-        4 => primitives::cylinder(random.random_range(0.1..0.9), random.random_range(0.2..2.0), segments(random))
-            .expect("a cylinder"),
+        4 => primitives::cylinder(
+            random.random_range(0.1..0.9),
+            random.random_range(0.2..2.0),
+            segments(random),
+        )
+        .expect("a cylinder"),
         5 => primitives::cone(random.random_range(0.2..1.0), random.random_range(0.3..2.0), segments(random))
             .expect("a cone"),
         6 => primitives::frustum(
@@ -41,15 +45,24 @@ pub(crate) fn round_or_any(random: &mut ChaCha8Rng) -> Mesh {
             segments(random),
         )
         .expect("a frustum"),
-        7 => primitives::uv_sphere(random.random_range(0.3..1.0), segments(random), random.random_range(2..12))
-            .expect("a sphere"),
-        8 => primitives::icosphere(random.random_range(0.3..1.0), random.random_range(0..3)).expect("a sphere"),
+        7 => {
+            primitives::uv_sphere(random.random_range(0.3..1.0), segments(random), random.random_range(2..12))
+                .expect("a sphere")
+        }
+        8 => {
+            primitives::icosphere(random.random_range(0.3..1.0), random.random_range(0..3)).expect("a sphere")
+        }
         9 => primitives::geodesic_sphere(random.random_range(0.3..1.0), random.random_range(1..6))
             .expect("a sphere"),
         10 | 11 => {
             let major = random.random_range(0.4..0.9);
-            primitives::torus(major, major * random.random_range(0.1..0.9), segments(random), segments(random))
-                .expect("a torus")
+            primitives::torus(
+                major,
+                major * random.random_range(0.1..0.9),
+                segments(random),
+                segments(random),
+            )
+            .expect("a torus")
         }
         12 => bumpy(random),
         _ => combined(random, |random| {
@@ -99,8 +112,22 @@ fn tetrahedron(random: &mut ChaCha8Rng) -> Mesh {
 /// A prism over a polygon that the origin sees whole, with integer corners; along any axis.
 pub(crate) fn grid_prism(random: &mut ChaCha8Rng) -> Mesh {
     const DIRECTIONS: [[f64; 2]; 16] = [
-        [1., 0.], [2., 1.], [1., 1.], [1., 2.], [0., 1.], [-1., 2.], [-1., 1.], [-2., 1.],
-        [-1., 0.], [-2., -1.], [-1., -1.], [-1., -2.], [0., -1.], [1., -2.], [1., -1.], [2., -1.],
+        [1., 0.],
+        [2., 1.],
+        [1., 1.],
+        [1., 2.],
+        [0., 1.],
+        [-1., 2.],
+        [-1., 1.],
+        [-2., 1.],
+        [-1., 0.],
+        [-2., -1.],
+        [-1., -1.],
+        [-1., -2.],
+        [0., -1.],
+        [1., -2.],
+        [1., -1.],
+        [2., -1.],
     ];
     let every = [1, 2, 4][random.random_range(0..3)];
     let polygon: Vec<[f64; 2]> = DIRECTIONS

@@ -30,7 +30,8 @@ impl Properties {
                 edges.entry((u.min(v), u.max(v))).or_default().push((index, u < v));
             }
         }
-        let balanced = |sides: &Vec<(usize, bool)>| 2 * sides.iter().filter(|side| side.1).count() == sides.len();
+        let balanced =
+            |sides: &Vec<(usize, bool)>| 2 * sides.iter().filter(|side| side.1).count() == sides.len();
         let closed = edges.values().all(balanced) && edges.keys().all(|(u, v)| u != v);
         let two_sided = closed && edges.values().all(|sides| sides.len() == 2);
         let corners = 3 * mesh.triangles.len();
