@@ -162,7 +162,7 @@ fn faults_are_named_by_node_and_place() {
     );
     fails(
         r#"{"kind": "patches", "patches": [{"type": "plane", "origin": [0, 0, 0], "a": [1, 0, 0], "b": [0, 1, 0]}]}"#,
-        &["gap"],
+        &["open boundaries", "patch 0"],
     );
     fails(r#"{"kind": "extrusion", "height": 1, "width": 2, "region": {}}"#, &["unknown field `width`"]);
     fails(

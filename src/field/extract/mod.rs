@@ -21,6 +21,7 @@
 //! What is *not* promised: parts of the solid thinner than [`Extraction::resolution`] may be missed or joined, and the
 //! tolerance is checked at sample points (the largest deviation found is in the report), not proven.
 
+mod boundaries;
 mod contour;
 mod faces;
 mod lattice;
@@ -93,7 +94,8 @@ impl Extraction {
     }
 
     /// Parts of the solid at least this thick are found for certain where the field is given by formulas. Default: a
-    /// 64th of the longest side of the box.
+    /// 64th of the longest side of the box, and for fields with distances of meshes or polygons no more than four
+    /// times the tolerance.
     #[must_use]
     pub fn resolution(mut self, resolution: f64) -> Self {
         self.resolution = Some(resolution);
@@ -154,14 +156,17 @@ impl Extraction {
             return Err(Error::InvalidArgument(what));
         }
         let lattice = Lattice::around(low, high, depth as u32);
-        let resolution = positive(self.resolution.unwrap_or(extent / 64.0), "resolution")?;
         let field = if self.clip { self.clipped(field) } else { field.clone() }.sign_form();
+        let usual = octree::usual_resolution(field.tape(), extent, tolerance);
+        let resolution = positive(self.resolution.unwrap_or(usual), "resolution")?;
         let settings = octree::Settings { lattice, tolerance, resolution, control: &self.control };
         let mut leaves = octree::subdivide(field.tape(), &settings)?;
         let mut corners = Corners::of(leaves.iter().map(|leaf| leaf.cube));
         let mut values = FxHashMap::default();
         // The cells to look at: all, or those whose neighbours have changed since they were looked at.
         let mut changed: Option<FxHashSet<Cube>> = None;
+        // Whether the field is known at all corners.
+        let mut known = false;
         let (mut refinements, mut openings) = (0, 0);
         loop {
             if let Some(leaf) = leaves.iter().find(|leaf| leaf.inside && at_edge(&lattice, leaf.cube)) {
@@ -173,11 +178,13 @@ impl Extraction {
             };
             let chosen: Vec<usize> = (0..leaves.len()).filter(|&index| looked_at(&leaves[index])).collect();
             let cells = chosen.iter().map(|&index| &leaves[index]).collect();
-            let tables = Tables::new(cells, &corners, &mut values, lattice, tolerance, &self.control)?;
+            let control = &self.control;
+            let tables = Tables::new(cells, &corners, &mut values, known, lattice, tolerance, control)?;
             if changed.is_none() && !tables.one_sided.is_empty() && openings < OPENINGS {
                 let faces = tables.one_sided;
                 octree::reopen(&mut leaves, &faces, field.tape());
                 openings += 1;
+                known = false;
                 continue;
             }
             let (mesh, deviations) = surface::assemble(&tables, &self.control)?;
@@ -194,10 +201,12 @@ impl Extraction {
                 cubes.extend(leaves[first..].iter().map(|leaf| leaf.cube));
                 changed = Some(cubes);
                 refinements += 1;
+                known = false;
                 continue;
             }
             // The surface is put together only from all cells.
             if changed.take().is_some() {
+                known = true;
                 continue;
             }
             let finest = chosen.iter().map(|&index| leaves[index].cube.size).min().unwrap_or(lattice.count);

@@ -36,6 +36,13 @@ pub(super) struct Settings<'a> {
     pub(super) control: &'a Control,
 }
 
+/// The resolution where nobody asks for one. Bounds of formulas find small parts by themselves; those of distances
+/// tell little where a thin part has faces both ways.
+pub(super) fn usual_resolution(tape: &Tape, extent: f64, tolerance: f64) -> f64 {
+    let coarse = extent / 64.0;
+    if tape.has_leaf() { coarse.min(4.0 * tolerance) } else { coarse }
+}
+
 /// What becomes of a box.
 pub(super) enum Judgement {
     Empty { inside: bool },
