@@ -37,6 +37,8 @@ pub use evaluate::{Evaluated, Evaluation, ExtractionReport, LeafKind};
 use crate::Error;
 use crate::boolean::Operation;
 use crate::field::{Formula, System};
+#[cfg(not(feature = "parametric"))]
+use crate::{Control, Mesh};
 use contour::Outline;
 use glam::DAffine3;
 #[cfg(feature = "parametric")]
@@ -47,6 +49,13 @@ use primitive::Primitive;
 #[cfg(not(feature = "parametric"))]
 #[derive(Clone, Debug)]
 enum Parametric {}
+
+#[cfg(not(feature = "parametric"))]
+impl Parametric {
+    fn mesh(&self, _: Option<f64>, _: &Control) -> Result<Mesh, Error> {
+        match *self {}
+    }
+}
 
 /// A model: named and unnamed nodes, one of which is the result.
 #[derive(Clone, Debug)]
@@ -108,6 +117,10 @@ enum Kind {
     /// A plane region, the same at every height.
     Contour(Outline),
     /// Patches, or a region moved.
+    #[cfg_attr(
+        not(feature = "parametric"),
+        allow(dead_code, reason = "nothing is parametric in such a build")
+    )]
     Parametric(Parametric),
     /// A leaf of a kind of the caller's own.
     Custom {
