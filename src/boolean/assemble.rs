@@ -23,8 +23,8 @@ pub(super) struct Assembled {
     pub(super) origins: Vec<Origin>,
     /// Decisions that plain positions left open.
     pub(super) ties: u64,
-    /// Cut triangles that rounding turned over.
-    pub(super) inverted: u64,
+    /// Whether rounding turned over some triangle.
+    pub(super) has_inverted: bool,
 }
 
 /// What the arrays are made of.

@@ -29,7 +29,7 @@ pub struct Certificate {
     pub area: f64,
     /// Triangles whose corners lie exactly on one line.
     pub zero_area: usize,
-    /// Cut triangles that rounding turned over.
+    /// Triangles that rounding turned over: they look the other way than the faces they were cut from.
     pub inverted: u64,
     /// No new vertex lies further from its exact place than this, in units of the coordinates: each coordinate is
     /// correctly rounded.

@@ -15,7 +15,6 @@ use super::identify::Identification;
 use super::multiplicity::Part;
 use super::operands::Operands;
 use crate::Error;
-use crate::exact::{Sign, orient2d};
 use crate::parallel::Runner;
 use crate::polygon::{Shape, Triangulator};
 
@@ -32,8 +31,8 @@ pub(super) struct Piece {
 #[derive(Debug, Default)]
 pub(super) struct Cut {
     pub(super) pieces: Vec<Piece>,
-    /// Triangles that rounding turned over.
-    pub(super) inverted: u64,
+    /// Whether rounding turned over some triangle.
+    pub(super) has_inverted: bool,
     /// Whether some triangle has no area, or an edge no longer than rounding.
     pub(super) has_slivers: bool,
 }
@@ -81,9 +80,9 @@ impl Cutter<'_> {
             }
             cut
         })?;
-        let inverted = pieces.iter().map(|cut| cut.inverted).sum();
+        let has_inverted = pieces.iter().any(|cut| cut.has_inverted);
         let has_slivers = pieces.iter().any(|cut| cut.has_slivers);
-        Ok(Cut { pieces: pieces.into_iter().flat_map(|cut| cut.pieces).collect(), inverted, has_slivers })
+        Ok(Cut { pieces: pieces.into_iter().flat_map(|cut| cut.pieces).collect(), has_inverted, has_slivers })
     }
 
     /// Where a point is.
@@ -121,13 +120,7 @@ impl Cutter<'_> {
         let shape =
             scratch.triangulator.triangulate(&scratch.points, &scratch.boundary, &mut scratch.triangles);
         cut.has_slivers |= shape >= Shape::Flat || self.has_short_edge(&points, &scratch.boundary);
-        if shape == Shape::Folded {
-            let is_inverted = |t: &&[u32; 3]| {
-                let [a, b, c] = t.map(|point| scratch.points[point as usize]);
-                orient2d(a, b, c) == Sign::Negative
-            };
-            cut.inverted += scratch.triangles.iter().filter(is_inverted).count() as u64;
-        }
+        cut.has_inverted |= shape == Shape::Folded;
         cut.pieces.extend(scratch.triangles.iter().map(|corners| Piece {
             corners: corners.map(|point| points[point as usize]),
             triangle: face.triangle,

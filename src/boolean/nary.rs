@@ -7,9 +7,11 @@
 use std::borrow::Cow;
 
 use super::certificate::{Notes, OperandState};
+use super::cut::dominant_axis;
 use super::pair::{self, Settings};
 use super::sheets;
 use super::{Contact, Operation, Options, Origin, Outcome};
+use crate::exact::{Sign, orient2d};
 use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
@@ -22,12 +24,32 @@ struct Partial<'a> {
     /// The result's group of each triangle; empty if no operand has groups.
     groups: Vec<u32>,
     ties: u64,
-    inverted: u64,
+    /// Whether rounding turned over some triangle on the way.
+    may_be_inverted: bool,
 }
 
 impl<'a> Partial<'a> {
     fn new(solid: Cow<'a, Solid>, origins: Origins, groups: Vec<u32>) -> Self {
-        Self { solid, origins, groups, ties: 0, inverted: 0 }
+        Self { solid, origins, groups, ties: 0, may_be_inverted: false }
+    }
+
+    /// Both, as bodies of their own.
+    fn beside<'b>(self, other: Partial<'_>) -> Partial<'b> {
+        let [first, second] = [self.solid.mesh(), other.solid.mesh()];
+        let offset = first.positions.len() as u32;
+        let positions = [first.positions.as_slice(), &second.positions].concat();
+        let moved = second.triangles.iter().map(|corners| corners.map(|v| v + offset));
+        let triangles = first.triangles.iter().copied().chain(moved).collect();
+        let origins = |origins: &Origins, mesh: &Mesh| -> Vec<Origin> {
+            (0..mesh.triangles.len() as u32).map(|t| origins.of(t)).collect()
+        };
+        Partial {
+            origins: Origins::List([origins(&self.origins, first), origins(&other.origins, second)].concat()),
+            solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(positions, triangles))),
+            groups: [self.groups, other.groups].concat(),
+            ties: self.ties + other.ties,
+            may_be_inverted: self.may_be_inverted || other.may_be_inverted,
+        }
     }
 }
 
@@ -87,7 +109,7 @@ pub(super) fn run(
     };
     let notes = Notes {
         contacts: result.ties,
-        inverted: result.inverted,
+        inverted: if result.may_be_inverted { count_inverted(&result, operands) } else { 0 },
         operands: operands.iter().map(|solid| OperandState::of(solid)).collect(),
     };
     Ok(finish(result, groups.list, notes))
@@ -136,24 +158,34 @@ impl Engine<'_> {
         level.pop().ok_or_else(no_operands)
     }
 
+    /// The two differences share no inside and touch in the curve, so they are put beside each other. Only where faces of A
+    /// and B touch from opposite sides do walls have to vanish; elsewhere a union would see nothing but crossings by
+    /// rounding.
+    fn symmetric_difference<'a>(&self, a: &Partial<'_>, b: &Partial<'_>) -> Result<Partial<'a>, Error> {
+        let (left, right) =
+            (self.combine(Operation::Difference, a, b)?, self.combine(Operation::Difference, b, a)?);
+        if pair::touch_from_opposite_sides(&a.solid, &b.solid, self.runner)? {
+            self.combine(Operation::Union, &left, &right)
+        } else {
+            Ok(left.beside(right))
+        }
+    }
+
     fn combine<'a>(
         &self,
         operation: Operation,
         a: &Partial<'_>,
         b: &Partial<'_>,
     ) -> Result<Partial<'a>, Error> {
+        if operation == Operation::SymmetricDifference {
+            return self.symmetric_difference(a, b);
+        }
         let settings = Settings {
             swell: operation == Operation::Union && self.options.contact == Contact::Fuse,
             remove_vertices: self.options.remove_vertices,
             groups: [&a.groups, &b.groups],
         };
         let made = pair::combine(operation, &a.solid, &b.solid, settings, self.runner)?;
-        if operation == Operation::SymmetricDifference && made.ties > 0 {
-            // In one pass coincident faces would stay as walls without thickness: unite the two differences instead.
-            let (left, right) =
-                (self.combine(Operation::Difference, a, b)?, self.combine(Operation::Difference, b, a)?);
-            return self.combine(Operation::Union, &left, &right);
-        }
         let sources = [a, b];
         let origins = made
             .origins
@@ -176,9 +208,26 @@ impl Engine<'_> {
             origins: Origins::List(origins),
             groups,
             ties: a.ties + b.ties + made.ties,
-            inverted: a.inverted + b.inverted + made.inverted,
+            may_be_inverted: a.may_be_inverted || b.may_be_inverted || made.has_inverted,
         })
     }
+}
+
+/// Triangles of a result that look the other way than the faces they were cut from.
+fn count_inverted(result: &Partial<'_>, operands: &[&Solid]) -> u64 {
+    let mesh = result.solid.mesh();
+    let corners = |mesh: &Mesh, t: u32| mesh.triangles[t as usize].map(|v| mesh.positions[v as usize]);
+    let is_inverted = |t: u32| {
+        let origin = result.origins.of(t);
+        let source = corners(operands[origin.operand as usize].mesh(), origin.triangle);
+        let triangle = corners(mesh, t);
+        let (axis, positive) = dominant_axis(&source);
+        let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
+        let [a, b, c] = triangle.map(|p| [p[x], p[y]]);
+        let expected = if positive != origin.reversed { Sign::Positive } else { Sign::Negative };
+        ![expected, Sign::Zero].contains(&orient2d(a, b, c))
+    };
+    (0..mesh.triangles.len() as u32).filter(|&t| is_inverted(t)).count() as u64
 }
 
 fn no_operands() -> Error {

@@ -36,7 +36,7 @@ pub(super) struct Settings<'a> {
     pub(super) groups: [&'a [u32]; 2],
 }
 
-/// Combines two solids.
+/// Combines two solids by an operation that keeps one part of each surface.
 pub(super) fn combine(
     operation: Operation,
     a: &Solid,
@@ -44,19 +44,13 @@ pub(super) fn combine(
     settings: Settings<'_>,
     runner: Runner<'_>,
 ) -> Result<Assembled, Error> {
-    let sides = [a, b].map(|solid| Operand {
-        positions: solid.mesh().positions.as_slice(),
-        triangles: solid.mesh().triangles.as_slice(),
-    });
-    // The box of an empty operand meets nothing.
-    let bounds = [a, b].map(|solid| solid.bounds().unwrap_or(Bounds::NOTHING));
+    let (sides, bounds) = (sides(a, b), bounds(a, b));
     let parts = multiplicity::parts(operation);
 
     let _tables = runner.control.reserve(fixed_tables(&sides))?;
     let outcodes = [overlap::outcodes(&sides[0], &bounds[1]), overlap::outcodes(&sides[1], &bounds[0])];
     let near = [0, 1].map(|side| overlap::near_triangles(&sides[side], &outcodes[side]));
-    let largest =
-        bounds.iter().flat_map(|b| b.low.iter().chain(&b.high)).fold(0.0f64, |most, x| most.max(x.abs()));
+    let largest = largest_coordinate(&bounds);
     let operands = Operands::new(sides, if settings.swell { 1 } else { -1 }, largest, near);
     runner.control.check()?;
 
@@ -94,7 +88,7 @@ pub(super) fn combine(
         identification: &identification,
         rounding,
     };
-    let (mut pieces, mut inverted, mut has_slivers) = (Vec::new(), 0, false);
+    let (mut pieces, mut has_inverted, mut has_slivers) = (Vec::new(), false, false);
     let mut done = FxHashSet::default();
     for sheet in &sheets {
         if let Some(left) = walls::add_up(&cutter, &parts, sheet) {
@@ -104,7 +98,7 @@ pub(super) fn combine(
     }
     for &part in &parts {
         let cut = cutter.cut(part, &done, runner)?;
-        inverted += cut.inverted;
+        has_inverted |= cut.has_inverted;
         has_slivers |= cut.has_slivers;
         pieces.extend(cut.pieces.into_iter().map(|piece| NewTriangle {
             corners: piece.corners,
@@ -114,9 +108,8 @@ pub(super) fn combine(
     let tidy_settings = tidy::Settings {
         remove_vertices: settings.remove_vertices,
         groups: settings.groups,
-        // All parts of both surfaces meet in the curve: four triangles at each of its edges.
         rounding,
-        always: operation == Operation::SymmetricDifference || has_slivers || !sheets.is_empty(),
+        always: has_slivers || !sheets.is_empty(),
     };
     let tidied = tidy::tidy(&cutter, &parts, &pieces, &tidy_settings, runner)?;
     let (new, replaced, copies) = match tidied {
@@ -135,7 +128,39 @@ pub(super) fn combine(
         replaced: replaced.as_ref(),
         copies: &copies,
     };
-    Ok(Assembled { ties: operands.ties(), inverted, ..ingredients.assemble() })
+    Ok(Assembled { ties: operands.ties(), has_inverted, ..ingredients.assemble() })
+}
+
+/// Whether some faces of two solids may touch each other from opposite sides of one plane: their boxes meet.
+pub(super) fn touch_from_opposite_sides(a: &Solid, b: &Solid, runner: Runner<'_>) -> Result<bool, Error> {
+    let (sides, bounds) = (sides(a, b), bounds(a, b));
+    let near = [0, 1].map(|side| {
+        overlap::near_triangles(&sides[side], &overlap::outcodes(&sides[side], &bounds[1 - side]))
+    });
+    let operands = Operands::new(sides, 1, largest_coordinate(&bounds), near);
+    let candidates = Candidates::new(&operands, overlap::intersection(&bounds[0], &bounds[1]), runner)?;
+    let touching = candidates.visit(runner, |s, t, found: &mut Vec<()>| {
+        if found.is_empty() && walls::touch(&operands, s, t) == Some(true) {
+            found.push(());
+        }
+    })?;
+    Ok(!touching.is_empty())
+}
+
+fn sides<'a>(a: &'a Solid, b: &'a Solid) -> [Operand<'a>; 2] {
+    [a, b].map(|solid| Operand {
+        positions: solid.mesh().positions.as_slice(),
+        triangles: solid.mesh().triangles.as_slice(),
+    })
+}
+
+/// The boxes of both; that of an empty operand meets nothing.
+fn bounds(a: &Solid, b: &Solid) -> [Bounds; 2] {
+    [a, b].map(|solid| solid.bounds().unwrap_or(Bounds::NOTHING))
+}
+
+fn largest_coordinate(bounds: &[Bounds; 2]) -> f64 {
+    bounds.iter().flat_map(|b| b.low.iter().chain(&b.high)).fold(0.0, |most, x| most.max(x.abs()))
 }
 
 /// Bytes of the tables whose size the operands give: classes and winding numbers of vertices, the near triangles, and the

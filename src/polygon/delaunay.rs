@@ -44,21 +44,47 @@ fn attempt(points: &[[f64; 2]], rings: &[&[u32]]) -> Option<Vec<[u32; 3]>> {
         .then(|| found.into_iter().map(|(triangle, _)| triangle).collect())
 }
 
+/// Vertices up to so many units in the last place of the largest coordinate from an edge may lie on it: each of the three
+/// points is off by half a unit in each coordinate.
+const ROUNDING_ULPS: f64 = 4.0;
+/// Rounds of splitting edges at vertices. Splitting moves an edge by no more than rounding, so few are left after the first.
+const ROUNDS: usize = 6;
+
 /// Triangulates what edges, each with a count, wind round: triangles (counter-clockwise) with their winding numbers. The
 /// boundary of their sum is the sum of the edges, exactly: where an edge runs through a vertex that is not its end, there
-/// are triangles without area between it and the chain of edges in its place. `None` for edges that cross.
+/// are triangles without area between it and the chain of edges in its place. Where edges cross because their ends were
+/// rounded, a vertex so near an edge counts as lying on it. `None` for edges that cross in earnest.
 pub(crate) fn by_winding(points: &[[f64; 2]], edges: &[([u32; 2], i32)]) -> Option<Vec<([u32; 3], i32)>> {
-    let (split, slivers) = split_at_vertices(points, edges);
-    let mut found = between(points, &split)?;
+    let largest = edges
+        .iter()
+        .flat_map(|(edge, _)| edge)
+        .flat_map(|&v| points[v as usize])
+        .fold(0.0f64, |most, x| most.max(x.abs()));
+    let (mut split, mut slivers) = split_at_vertices(points, edges, 0.0);
+    let mut found = between(points, &split);
+    for _ in 0..ROUNDS {
+        if found.is_some() {
+            break;
+        }
+        let (finer, more) = split_at_vertices(points, &split, ROUNDING_ULPS * f64::EPSILON * largest);
+        if more.is_empty() {
+            return None;
+        }
+        split = finer;
+        slivers.extend(more);
+        found = between(points, &split);
+    }
+    let mut found = found?;
     found.extend(slivers);
     Some(found)
 }
 
-/// Replaces edges that run through vertices by chains of edges, and returns with them the triangles without area that,
-/// together with the chain, bound the same as the edge.
+/// Replaces edges that run through vertices, or pass them no further than `rounding`, by chains of edges, and returns with
+/// them the triangles without area that, together with the chain, bound the same as the edge.
 fn split_at_vertices(
     points: &[[f64; 2]],
     edges: &[([u32; 2], i32)],
+    rounding: f64,
 ) -> (Vec<CountedEdge>, Vec<CountedTriangle>) {
     let mut vertices: Vec<u32> = edges.iter().flat_map(|(edge, _)| *edge).collect();
     vertices.sort_unstable();
@@ -70,11 +96,19 @@ fn split_at_vertices(
         // Along the axis on which the edge is longer.
         let k = usize::from((q[1] - p[1]).abs() > (q[0] - p[0]).abs());
         let along = |x: u32| if q[k] > p[k] { points[x as usize][k] } else { -points[x as usize][k] };
+        let is_on = |x: u32| {
+            let at = points[x as usize];
+            let across = || {
+                let part = (at[k] - p[k]) / (q[k] - p[k]);
+                (at[1 - k] - (p[1 - k] + part * (q[1 - k] - p[1 - k]))).abs()
+            };
+            orient2d(p, q, at) == Sign::Zero || (rounding > 0.0 && across() <= rounding)
+        };
         let mut on: Vec<u32> = vertices
             .iter()
             .copied()
             .filter(|&x| x != u && x != v && along(u) < along(x) && along(x) < along(v))
-            .filter(|&x| orient2d(p, q, points[x as usize]) == Sign::Zero)
+            .filter(|&x| is_on(x))
             .collect();
         on.sort_by(|&x, &y| along(x).total_cmp(&along(y)));
         on.push(v);

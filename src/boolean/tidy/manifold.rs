@@ -22,6 +22,11 @@ pub(crate) trait Surface {
     fn add_part(&mut self, of: u32, corners: [u32; 3]);
     /// Where a point is.
     fn position(&self, point: u32) -> [f64; 3];
+    /// A point to the left of a triangle's side, in its plane; the side starts at corner `side`.
+    fn left_of_side(&self, triangle: u32, side: usize) -> [f64; 3] {
+        let corner = self.corners(triangle).map_or(0, |corners| corners[(side + 2) % 3]);
+        self.position(corner)
+    }
     /// A new point.
     fn add_point(&mut self, position: [f64; 3]) -> u32;
     /// Whether all triangles at a point are known.
@@ -97,9 +102,8 @@ fn pair_by_angle(
     let mut spokes: Vec<Spoke> = half_edges
         .iter()
         .map(|&half_edge| {
-            let corners = surface.corners(half_edge / 3).unwrap_or([u; 3]);
-            let apex = corners[(half_edge as usize % 3 + 2) % 3];
-            Spoke { half_edge, opens: ends(surface, half_edge).0 == v, apex: surface.position(apex) }
+            let apex = surface.left_of_side(half_edge / 3, half_edge as usize % 3);
+            Spoke { half_edge, opens: ends(surface, half_edge).0 == v, apex }
         })
         .collect();
     let reference = spokes[0].apex;

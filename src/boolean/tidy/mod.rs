@@ -9,6 +9,7 @@ pub(crate) mod manifold;
 mod patch;
 mod planes;
 mod remove;
+mod shared_edges;
 mod short_edges;
 mod zero_area;
 
@@ -19,6 +20,9 @@ use super::multiplicity::Part;
 use crate::Error;
 use crate::parallel::Runner;
 use patch::Patch;
+
+/// How often all steps are repeated while triangles without area are left.
+const ROUNDS: usize = 3;
 
 /// What tidying made of the pieces.
 pub(super) struct Tidied {
@@ -62,27 +66,36 @@ pub(super) fn tidy(
         candidates.extend(cutter.identification.representatives());
     }
     let mut patch = Patch::new(cutter, parts, pieces);
-    patch.cancel();
-    runner.control.check()?;
-    zero_area::flip_chain(&mut patch);
-    patch.cancel();
-    let copied_from = manifold::make_manifold(&mut patch);
-    candidates.extend(
-        copied_from
-            .iter()
-            .filter(|(_, of)| candidates.contains(of))
-            .map(|&(copy, _)| copy)
-            .collect::<Vec<_>>(),
-    );
-    patch.connect();
-    runner.control.check()?;
-    if settings.remove_vertices {
-        zero_area::flip(&mut patch, &planes, 0.0);
-        remove::remove(&mut patch, &planes, candidates, runner.control)?;
+    for round in 0..ROUNDS {
+        separate(&mut patch, cutter, &mut candidates);
+        runner.control.check()?;
+        if settings.remove_vertices {
+            zero_area::flip(&mut patch, &planes, 0.0);
+            remove::remove(&mut patch, &planes, candidates.clone(), runner.control)?;
+        }
+        short_edges::collapse(&mut patch, &planes, settings.rounding);
+        zero_area::flip(&mut patch, &planes, settings.rounding);
+        if round + 1 == ROUNDS || !zero_area::any_flat(&patch) {
+            break;
+        }
     }
-    short_edges::collapse(&mut patch, &planes, settings.rounding);
-    zero_area::flip(&mut patch, &planes, settings.rounding);
     Ok(Some(patch.collect()))
+}
+
+/// Makes the patch a 2-manifold without triangles that have no area.
+fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>, candidates: &mut Vec<u32>) {
+    #[cfg(debug_assertions)]
+    let boundary = patch.boundary();
+    zero_area::split_chain(patch);
+    patch.cancel();
+    if cutter.operands.ties() > 0 {
+        shared_edges::split(patch, cutter);
+    }
+    #[cfg(debug_assertions)]
+    assert_eq!(patch.boundary(), boundary, "splitting edges opened the surface");
+    let copied_from = manifold::make_manifold(patch);
+    candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
+    patch.connect();
 }
 
 /// Whether some piece of an edge counts more than once or negatively: rounded surfaces that cross themselves.

@@ -170,7 +170,7 @@ impl<'a> Patch<'a> {
     /// Drops triangles with a repeated corner, and pairs of opposite triangles.
     pub(super) fn cancel(&mut self) {
         let mut order: Vec<([u32; 3], bool, u32)> = Vec::with_capacity(self.faces.len());
-        for (i, face) in self.faces.iter_mut().enumerate() {
+        for (i, face) in self.faces.iter_mut().enumerate().filter(|(_, face)| face.alive) {
             let [a, b, c] = face.corners;
             if a == b || b == c || c == a {
                 face.alive = false;
@@ -189,6 +189,19 @@ impl<'a> Patch<'a> {
                 self.faces[entry.2 as usize].alive = false;
             }
         }
+    }
+
+    /// The boundary of the sum of all triangles: directed edges that do not cancel, ascending.
+    #[cfg(debug_assertions)]
+    pub(super) fn boundary(&self) -> Vec<((u32, u32), i32)> {
+        let mut counts: std::collections::BTreeMap<(u32, u32), i32> = std::collections::BTreeMap::new();
+        for face in self.faces.iter().filter(|face| face.alive) {
+            for k in 0..3 {
+                let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
+                *counts.entry((u.min(v), u.max(v))).or_default() += if u < v { 1 } else { -1 };
+            }
+        }
+        counts.into_iter().filter(|&((u, v), count)| count != 0 && u != v).collect()
     }
 
     /// Builds the adjacency; from now on every directed edge occurs once.
@@ -321,6 +334,21 @@ impl Surface for Patch<'_> {
 
     fn position(&self, point: u32) -> [f64; 3] {
         *self.position(point)
+    }
+
+    /// The corner of the face a triangle was cut from that lies furthest to the left: a narrow triangle's own corner would
+    /// tell nothing but how it was rounded.
+    fn left_of_side(&self, triangle: u32, side: usize) -> [f64; 3] {
+        let face = &self.faces[triangle as usize];
+        let corners = [0, 1, 2].map(|k| *self.position(face.corners[(side + k) % 3]));
+        let (source, (x, y)) = super::planes::source_and_axes(self.cutter.operands, face.origin);
+        let [p, q] = [corners[0], corners[1]].map(|point| [point[x], point[y]]);
+        let left = |c: &[f64; 3]| (q[0] - p[0]) * (c[y] - p[1]) - (q[1] - p[1]) * (c[x] - p[0]);
+        source
+            .into_iter()
+            .max_by(|c, d| left(c).total_cmp(&left(d)))
+            .filter(|corner| left(corner) > 0.0)
+            .unwrap_or(corners[2])
     }
 
     fn add_point(&mut self, position: [f64; 3]) -> u32 {

@@ -15,9 +15,7 @@ pub(super) struct Planes<'a> {
 
 impl Planes<'_> {
     fn corners(&self, origin: Origin) -> [[f64; 3]; 3] {
-        let [a, b, c] =
-            self.operands.corners(origin.operand as usize, origin.triangle).map(|corner| corner.position);
-        if origin.reversed { [a, c, b] } else { [a, b, c] }
+        source(self.operands, origin)
     }
 
     /// Whether a triangle looks the way of the face it was cut from.
@@ -36,9 +34,7 @@ impl Planes<'_> {
 
     /// The two axes onto which a face is best projected, in the order in which it is seen counter-clockwise.
     pub(super) fn axes(&self, origin: Origin) -> (usize, usize) {
-        let (axis, positive) = dominant_axis(&self.corners(origin));
-        let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
-        if positive { (x, y) } else { (y, x) }
+        source_and_axes(self.operands, origin).1
     }
 
     /// Whether two faces look the same way from the same plane and belong to the same group, so that the border between
@@ -99,6 +95,21 @@ impl Planes<'_> {
             .map(|node| first_node + node as u32)
             .collect()
     }
+}
+
+/// The face a triangle comes from, turned over if it was.
+fn source(operands: &Operands<'_>, origin: Origin) -> [[f64; 3]; 3] {
+    let [a, b, c] = operands.corners(origin.operand as usize, origin.triangle).map(|corner| corner.position);
+    if origin.reversed { [a, c, b] } else { [a, b, c] }
+}
+
+/// The face a triangle comes from, and the two axes onto which it is best projected, in the order in which it is seen
+/// counter-clockwise.
+pub(super) fn source_and_axes(operands: &Operands<'_>, origin: Origin) -> ([[f64; 3]; 3], (usize, usize)) {
+    let source = source(operands, origin);
+    let (axis, positive) = dominant_axis(&source);
+    let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
+    (source, if positive { (x, y) } else { (y, x) })
 }
 
 /// Whether the normals of two triangles of one plane point the same way.

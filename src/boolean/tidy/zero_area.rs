@@ -1,4 +1,5 @@
-//! Triangles without area: flip their longest side. The middle corner lies on that side, so the shape does not change.
+//! Triangles without area: split or flip their longest side. The middle corner lies on that side, so the shape does not
+//! change.
 
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
@@ -23,6 +24,11 @@ fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
     face.alive && collinear(a, b, c)
 }
 
+/// Whether a triangle without area is left.
+pub(super) fn any_flat(patch: &Patch<'_>) -> bool {
+    (0..patch.faces.len() as u32).any(|index| !patch.faces[index as usize].untouched && is_flat(patch, index))
+}
+
 /// Whether a triangle is higher over its longest side than nothing, but not than `height`.
 fn is_lower(patch: &Patch<'_>, index: u32, height: f64) -> bool {
     let face = &patch.faces[index as usize];
@@ -38,20 +44,108 @@ fn is_lower(patch: &Patch<'_>, index: u32, height: f64) -> bool {
     square(&cross) <= height * height * square(&u).max(square(&v)).max(square(&w))
 }
 
-/// Flips as a sum of triangles, before the patch is a 2-manifold: at a side with several triangles beyond it any of them
-/// will do, one with area first.
-pub(super) fn flip_chain(patch: &mut Patch<'_>) {
-    let mut queue: Vec<u32> = (0..patch.faces.len() as u32).filter(|&index| is_flat(patch, index)).collect();
-    if queue.is_empty() {
-        return;
+/// The triangles to the left of each directed edge, while there may be several.
+#[derive(Default)]
+struct Chain {
+    left_of: FxHashMap<(u32, u32), SmallVec<[u32; 2]>>,
+}
+
+impl Chain {
+    fn of(patch: &Patch<'_>) -> Self {
+        let mut chain = Self::default();
+        for (index, face) in patch.faces.iter().enumerate().filter(|(_, face)| face.alive) {
+            chain.add(index as u32, face.corners);
+        }
+        chain
     }
-    let mut left_of: FxHashMap<(u32, u32), SmallVec<[u32; 2]>> = FxHashMap::default();
-    for (index, face) in patch.faces.iter().enumerate().filter(|(_, face)| face.alive) {
+
+    fn add(&mut self, index: u32, corners: [u32; 3]) {
         for k in 0..3 {
-            left_of.entry((face.corners[k], face.corners[(k + 1) % 3])).or_default().push(index as u32);
+            self.left_of.entry((corners[k], corners[(k + 1) % 3])).or_default().push(index);
         }
     }
-    let mut budget = 8 * queue.len();
+
+    fn beside(&self, from: u32, to: u32) -> &[u32] {
+        self.left_of.get(&(from, to)).map_or(&[], SmallVec::as_slice)
+    }
+
+    fn change(&mut self, patch: &mut Patch<'_>, index: u32, corners: Option<[u32; 3]>) {
+        let face = &mut patch.faces[index as usize];
+        for k in 0..3 {
+            if let Some(list) = self.left_of.get_mut(&(face.corners[k], face.corners[(k + 1) % 3])) {
+                list.retain(|other| *other != index);
+            }
+        }
+        match corners {
+            None => face.alive = false,
+            Some(corners) => {
+                face.corners = corners;
+                face.untouched = false;
+                self.add(index, corners);
+            }
+        }
+    }
+
+    /// Other points at the place of `b` that triangles at the edge from `a` to `c` have, where both are known completely.
+    fn coincident_middles(&self, patch: &Patch<'_>, a: u32, b: u32, c: u32) -> Vec<u32> {
+        [(a, c), (c, a)]
+            .iter()
+            .flat_map(|&(from, to)| self.beside(from, to))
+            .flat_map(|&index| patch.faces[index as usize].corners)
+            .filter(|&point| point != b && patch.position(point) == patch.position(b))
+            .filter(|&point| patch.is_complete(point) && patch.is_complete(b))
+            .collect()
+    }
+
+    /// Gives all triangles at the edge from `a` to `c` the vertex `b` on it; those that have it already vanish. Returns
+    /// the triangles that changed.
+    fn split(&mut self, patch: &mut Patch<'_>, a: u32, b: u32, c: u32) -> Vec<u32> {
+        let mut changed = Vec::new();
+        for (from, to) in [(a, c), (c, a)] {
+            for index in self.beside(from, to).to_vec() {
+                let face = patch.faces[index as usize];
+                let Some(&d) = face.corners.iter().find(|&&point| point != a && point != c) else { continue };
+                if d == b {
+                    self.change(patch, index, None);
+                    continue;
+                }
+                self.change(patch, index, Some([from, b, d]));
+                patch.faces.push(Face { corners: [b, to, d], untouched: false, ..face });
+                let other = patch.faces.len() as u32 - 1;
+                self.add(other, [b, to, d]);
+                changed.extend([index, other]);
+            }
+        }
+        changed
+    }
+}
+
+/// Rounds of identifying points and splitting again.
+const ROUNDS: usize = 8;
+
+/// Removes triangles without area while the patch is still a sum of triangles, not a 2-manifold: the middle corner becomes
+/// a vertex of all triangles at the longest side, so that whatever meets there meets in the same edges. Where not all of
+/// them are known, the side is flipped with one of them.
+pub(super) fn split_chain(patch: &mut Patch<'_>) {
+    for _ in 0..ROUNDS {
+        let coincident = split_round(patch);
+        if coincident.is_empty() {
+            return;
+        }
+        identify(patch, &coincident);
+    }
+}
+
+/// One round; returns pairs of points at the same place that two triangles without area have as their middle corners over
+/// the same side.
+fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
+    let mut coincident = Vec::new();
+    let mut queue: Vec<u32> = (0..patch.faces.len() as u32).filter(|&index| is_flat(patch, index)).collect();
+    if queue.is_empty() {
+        return coincident;
+    }
+    let mut chain = Chain::of(patch);
+    let mut budget = 16 * queue.len();
     while let Some(index) = queue.pop() {
         if budget == 0 {
             break;
@@ -61,39 +155,57 @@ pub(super) fn flip_chain(patch: &mut Patch<'_>) {
             continue;
         }
         let flip = longest_side(patch, index, |a, c| {
-            let beyond = left_of.get(&(a, c))?;
+            let beyond = chain.beside(a, c);
             beyond.iter().copied().find(|&other| !is_flat(patch, other)).or(beyond.first().copied())
         });
-        let Some(flip) = flip else { continue };
-        let mut change = |patch: &mut Patch<'_>, index: u32, corners: Option<[u32; 3]>| {
-            let face = &mut patch.faces[index as usize];
-            for k in 0..3 {
-                if let Some(list) = left_of.get_mut(&(face.corners[k], face.corners[(k + 1) % 3])) {
-                    list.retain(|other| *other != index);
-                }
+        let Some(Flip { flat, other, a, b, c, d }) = flip else { continue };
+        // A complete point knows all triangles at its edges.
+        if patch.is_complete(a) || patch.is_complete(c) {
+            let apart = chain.coincident_middles(patch, a, b, c);
+            if apart.is_empty() {
+                let changed = chain.split(patch, a, b, c);
+                queue.extend(changed.into_iter().filter(|&index| is_flat(patch, index)));
+            } else {
+                coincident.extend(apart.into_iter().map(|point| (b, point)));
             }
-            match corners {
-                None => face.alive = false,
-                Some(corners) => {
-                    face.corners = corners;
-                    face.untouched = false;
-                    for k in 0..3 {
-                        left_of.entry((corners[k], corners[(k + 1) % 3])).or_default().push(index);
-                    }
-                }
-            }
-        };
-        let Flip { flat, other, a, b, c, d } = flip;
+            continue;
+        }
         if b == d {
-            change(patch, flat, None);
-            change(patch, other, None);
+            chain.change(patch, flat, None);
+            chain.change(patch, other, None);
             continue;
         }
         patch.faces[flat as usize].origin = patch.faces[other as usize].origin;
-        change(patch, flat, Some([a, b, d]));
-        change(patch, other, Some([b, c, d]));
+        chain.change(patch, flat, Some([a, b, d]));
+        chain.change(patch, other, Some([b, c, d]));
         queue.extend([flat, other].into_iter().filter(|&index| is_flat(patch, index)));
     }
+    coincident
+}
+
+/// Makes one point of each pair.
+fn identify(patch: &mut Patch<'_>, pairs: &[(u32, u32)]) {
+    let mut stands_for: FxHashMap<u32, u32> = FxHashMap::default();
+    let root = |stands_for: &FxHashMap<u32, u32>, mut point: u32| {
+        while let Some(&other) = stands_for.get(&point) {
+            point = other;
+        }
+        point
+    };
+    for &(x, y) in pairs {
+        let (x, y) = (root(&stands_for, x), root(&stands_for, y));
+        if x != y {
+            stands_for.insert(x.max(y), x.min(y));
+        }
+    }
+    for face in patch.faces.iter_mut().filter(|face| face.alive) {
+        let corners = face.corners.map(|point| root(&stands_for, point));
+        if corners != face.corners {
+            face.corners = corners;
+            face.untouched = false;
+        }
+    }
+    patch.cancel();
 }
 
 /// Flips triangles in the 2-manifold that are no higher than `height`, as long as that makes no double edge, and (for those
@@ -116,6 +228,10 @@ pub(super) fn flip(patch: &mut Patch<'_>, planes: &Planes<'_>, height: f64) {
         if d == b {
             // The same triangle turned over: both enclose nothing.
             patch.replace(&[flat, other], &[]);
+            continue;
+        }
+        if patch.position(b) == patch.position(d) {
+            // Two bodies that touch in this point: no edge may join them.
             continue;
         }
         let origin = patch.faces[other as usize].origin;
