@@ -34,7 +34,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             found.extraction
         );
         found.mesh.save(Path::new(&out).join(format!("{name}.obj")))?;
-        let view = View { width: 480, height: 360, ..View::default() };
+        let mut view = View::default();
+        (view.width, view.height) = (480, 360);
         trisect::render::mesh(&found.mesh, &view, None)
             .save_png(Path::new(&out).join(format!("{name}.png")))?;
         if let Some([low, high]) = evaluation.bounds(&model)? {

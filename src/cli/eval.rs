@@ -167,7 +167,7 @@ fn extraction(found: &Evaluated) -> Value {
 }
 
 fn contour_format(path: &Path) -> Result<&'static str, Fault> {
-    let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+    let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
     match ending.as_deref().and_then(std::ffi::OsStr::to_str) {
         Some("svg") => Ok("svg"),
         Some("json") => Ok("json"),

@@ -44,10 +44,13 @@ fn directions_between(directions: &[DVec3]) -> Option<[Interval; 3]> {
     }))
 }
 
+/// A nearest point with the number of its mesh and its query.
+type Answer = (u64, [f64; 3], Closest);
+
 thread_local! {
-    /// The last nearest points found on this thread, each with the number of its mesh and its query. Neighbouring
-    /// queries start from them, and several questions about one point are answered once.
-    static LAST: Cell<[Option<(u64, [f64; 3], Closest)>; 4]> = const { Cell::new([None; 4]) };
+    /// The last nearest points found on this thread. Neighbouring queries start from them, and several questions about
+    /// one point are answered once.
+    static LAST: Cell<[Option<Answer>; 4]> = const { Cell::new([None; 4]) };
 }
 
 impl SignedDistance {

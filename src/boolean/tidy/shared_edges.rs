@@ -90,8 +90,7 @@ fn splits(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
         }
         if !on.is_empty() {
             let start = *patch.position(u);
-            let distance =
-                |x: &u32| (0..3).map(|k| (patch.position(*x)[k] - start[k]).powi(2)).sum::<f64>();
+            let distance = |x: &u32| (0..3).map(|k| (patch.position(*x)[k] - start[k]).powi(2)).sum::<f64>();
             on.sort_by(|x, y| distance(x).total_cmp(&distance(y)));
             splits.insert((u, v), on);
         }
