@@ -3,6 +3,8 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use trisect::Mesh;
 use trisect::io::{Encoding, Format, ReadOptions, WriteOptions, read, write};
 
@@ -193,10 +195,44 @@ fn hostile_files() -> Vec<(&'static str, Format, Vec<u8>)> {
     ]
 }
 
+/// Sound files with a few of their bytes, or a word of them, replaced.
+fn damaged_files() -> Vec<(&'static str, Format, Vec<u8>)> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/formats");
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut files = Vec::new();
+    for name in [
+        "negative_indices.obj",
+        "P.off",
+        "three_cubes.stl",
+        "cube_binary_header_with_RN_newline.ply",
+        "rgb_cube_with_primitives.gltf",
+        "BoxInterleaved.glb",
+        "nested-quantized.glb",
+    ] {
+        let bytes = std::fs::read(folder.join(name)).expect("a fixture");
+        let format = Format::from_content(&bytes).expect("of a known format");
+        for _ in 0..500 {
+            let mut damaged = bytes.clone();
+            for _ in 0..random.random_range(1..4) {
+                let at = random.random_range(0..damaged.len() - 4);
+                match random.random_range(0..4) {
+                    0 => damaged[at..at + 4].copy_from_slice(&u32::MAX.to_le_bytes()),
+                    1 => damaged[at..at + 4]
+                        .copy_from_slice(&(1u32 << random.random_range(8..32)).to_le_bytes()),
+                    2 => damaged[at] = b'9',
+                    _ => damaged.splice(at..at + 1, *b"4294967295").for_each(drop),
+                }
+            }
+            files.push((name, format, damaged));
+        }
+    }
+    files
+}
+
 #[test]
 fn peak_memory_is_bounded_by_the_size_of_the_file() {
     let mut worst = (0.0, "");
-    for (name, format, bytes) in hostile_files() {
+    for (name, format, bytes) in hostile_files().into_iter().chain(damaged_files()) {
         let peak = peak(&bytes, format);
         let times = peak.saturating_sub(CONSTANT) as f64 / bytes.len() as f64;
         assert!(peak <= TIMES * bytes.len() + CONSTANT, "{name}: {peak} bytes for a file of {}", bytes.len());

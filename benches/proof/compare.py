@@ -1,13 +1,17 @@
 #!/usr/bin/env python3
 """Random booleans of trisect against manifold3d; the oracle of the tests judges every result.
 
-    python3 benches/proof/compare.py live --cases 1000 [--first 0] [--points 48] [--report FILE]
+    python3 benches/proof/compare.py live --cases 1000 [--first SEED] [--points 48] [--report FILE] [--seeds N N ...]
     python3 benches/proof/compare.py record --cases 3000 --to fixtures/manifold3d.txt
 
 Needs manifold3d and numpy (pip install manifold3d numpy) and the driver (cargo build --release in benches/proof).
-"live" prints every class of difference with its seeds; "record" writes what manifold3d finds, for the plain tests.
+"live" compares volume, area, Euler characteristic, components and emptiness. Where they differ both results go to the
+arbiter: the oracle's verdict at points round both, the topology with contacts parted, volumes shell by shell. That names the
+class of the difference (see docs/proof.md), which is printed with its seeds. It ends with 1 if a result of trisect is wrong
+or a difference is not explained. "record" writes what manifold3d finds, for the plain tests; "-" for a quantity that the
+arbiter explains otherwise.
 """
-import argparse, collections, os, struct, subprocess, sys, time
+import argparse, collections, json, os, struct, subprocess, sys, time
 
 import manifold3d
 import numpy
@@ -16,15 +20,19 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 DRIVER = os.path.join(os.environ.get("CARGO_TARGET_DIR", os.path.join(HERE, "target")), "release", "trisect-proof")
 FAMILIES = ["grid", "generic", "near", "far", "models"]
 OPERATIONS = ["union", "intersection", "difference", "xor"]
-FAULTS = ["panic", "open", "not manifold", "zero area", "identity", "certificate", "operand crosses itself", "result crosses itself"]
+FAULTS = ["panic", "open", "not manifold", "zero area", "identity", "certificate", "operand crosses itself", "result crosses itself",
+          "contact"]
+# Relative to the volume or area of the box round the operands.
+EQUAL = 1e-9
+# Points at which a difference is judged; more where that explains nothing.
+ARBITER_POINTS = [200, 4000, 40000]
 
 
 class Case:
     """One record of the driver (see src/record.rs)."""
 
     def __init__(self, read):
-        head = read(12)
-        self.seed, family, operation, faults, _ = struct.unpack("<QBBBB", head)
+        self.seed, family, operation, faults = struct.unpack("<QBBH", read(12))
         self.family, self.operation = FAMILIES[family], OPERATIONS[operation]
         self.faults = [name for bit, name in enumerate(FAULTS) if faults >> bit & 1]
         self.meshes = []
@@ -49,13 +57,31 @@ class Peer:
         self.refused = any(m.status() != manifold3d.Error.NoError for m in (a, b))
         if self.refused:
             return
-        result = {"union": lambda: a + b, "intersection": lambda: a ^ b, "difference": lambda: a - b,
-                  "xor": lambda: (a - b) + (b - a)}[case.operation]()
-        self.volume, self.area = result.volume(), result.surface_area()
-        self.triangles, self.vertices = result.num_tri(), result.num_vert()
+        self.result = {"union": lambda: a + b, "intersection": lambda: a ^ b, "difference": lambda: a - b,
+                       "xor": lambda: (a - b) + (b - a)}[case.operation]()
+        self.volume, self.area = self.result.volume(), self.result.surface_area()
+        self.triangles, self.vertices = self.result.num_tri(), self.result.num_vert()
         self.euler = self.vertices - self.triangles // 2
-        self.components = len(result.decompose()) if self.triangles else 0
-        self.empty = self.triangles == 0
+        self.components = len(self.result.decompose()) if self.triangles else 0
+        self.tolerance = max(m.get_tolerance() for m in (a, b, self.result))
+
+    def mesh(self):
+        mesh = self.result.to_mesh64()
+        return numpy.array(mesh.vert_properties[:, :3], "<f8"), numpy.array(mesh.tri_verts, "<u4")
+
+
+class Arbiter:
+    """The driver's judge of both results (see src/arbiter.rs)."""
+
+    def __init__(self):
+        self.process = subprocess.Popen([DRIVER, "judge"], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+
+    def ask(self, case, peer, points):
+        positions, corners = peer.mesh()
+        self.process.stdin.write(struct.pack("<QIII", case.seed, points, len(positions), len(corners)) + positions.tobytes() + corners.tobytes())
+        self.process.stdin.flush()
+        answer = json.loads(self.process.stdout.readline())
+        return answer["ours"], answer["theirs"]
 
 
 def stream(first, count, points):
@@ -77,18 +103,13 @@ def stream(first, count, points):
 
 
 def differences(case, peer):
-    """Names of what differs. Topology and area of near contacts depend on rounding, those of a symmetric difference on how
-    touching sheets are parted: there only volumes are compared."""
-    if peer.refused:
-        return ["manifold3d refuses an operand"]
+    """Names of what differs."""
     found = []
-    if abs(case.volume - peer.volume) > 1e-9 * case.box_volume:
+    if abs(case.volume - peer.volume) > EQUAL * case.box_volume:
         found.append("volume")
-    if case.family == "near" or case.operation == "xor":
-        return found
-    if abs(case.area - peer.area) > 1e-9 * case.box_area:
+    if abs(case.area - peer.area) > EQUAL * case.box_area:
         found.append("area")
-    if (case.triangles == 0) != peer.empty:
+    if (case.triangles == 0) != (peer.triangles == 0):
         found.append("emptiness")
     if case.components != peer.components:
         found.append("components")
@@ -97,50 +118,155 @@ def differences(case, peer):
     return found
 
 
-def live(arguments):
-    begun, done, judged, farthest = time.time(), 0, 0, 0.0
-    classes = collections.defaultdict(list)
-    totals = collections.Counter()
-    for case in stream(arguments.first, arguments.cases, arguments.points):
-        done += 1
-        judged += case.judged
-        farthest = max(farthest, case.farthest_rounded)
-        totals[case.family, case.operation] += 1
-        names = [f"trisect: {fault}" for fault in case.faults]
+OURS = "TRISECT WRONG: "
+UNEXPLAINED = "UNEXPLAINED: "
+
+
+def explained(case, peer, differing, arbiter):
+    """The class of a difference, and what the arbiter found of manifold3d's result. docs/proof.md tells the classes apart."""
+    for points in ARBITER_POINTS:
+        ours, theirs = arbiter.ask(case, peer, points)
+        name = classified(case, peer, differing, ours, theirs)
+        if not name.startswith(UNEXPLAINED):
+            break
+    return name, theirs
+
+
+def classified(case, peer, differing, ours, theirs):
+    if ours["mistakes"]:
+        return OURS + "the oracle disagrees"
+    if theirs["mistakes"]:
+        if theirs["farthest"] <= 4 * peer.tolerance:
+            return "manifold3d off by no more than its tolerance"
+        return "manifold3d wrong by more than its tolerance"
+    if "volume" in differing:
+        return UNEXPLAINED + "volume"
+    # The same solid. What has no volume is no part of it.
+    empty_shells = [v for v in theirs["bodies"] if abs(v) <= EQUAL * case.box_volume]
+    if case.family == "near":
+        # Gaps and films of rounding's width are parts of the exact result; manifold3d closes what is within its tolerance.
+        return "same solid; contacts off by rounding"
+    if empty_shells and not [v for v in ours["bodies"] if abs(v) <= EQUAL * case.box_volume]:
+        return "manifold3d keeps shells without volume"
+    if theirs["area"] > ours["area"] + EQUAL * case.box_area:
+        return "manifold3d keeps walls without thickness"
+    if "area" in differing:
+        return UNEXPLAINED + "area"
+    if ours["parted"] is None:
+        return OURS + "walls without thickness"
+    if ours["parted"] != [ours["components"], ours["euler"]]:
+        return OURS + "connected where material touches"
+    if ours["parted"] == theirs["parted"]:
+        return "same solid; manifold3d connected where material touches"
+    if theirs["parted"] is None:
+        return "same solid; manifold3d's surface lies on itself"
+    if ours["pinched"] or theirs["pinched"]:
+        return "same solid; an edge touches a face from inside, which one parts and the other does not"
+    return UNEXPLAINED + ", ".join(differing)
+
+
+class Tally:
+    """What a live run has seen so far."""
+
+    def __init__(self, first):
+        self.first, self.begun, self.done, self.agreed, self.judged, self.farthest = first, time.time(), 0, 0, 0, 0.0
+        self.classes, self.totals = collections.defaultdict(list), collections.Counter()
+
+    def add(self, case, arbiter):
+        self.done += 1
+        self.judged += case.judged
+        self.farthest = max(self.farthest, case.farthest_rounded)
+        self.totals[case.family, case.operation] += 1
+        names = {OURS + fault for fault in case.faults}
         if case.mistakes:
-            names.append("trisect: oracle disagrees")
+            names.add(OURS + "the oracle disagrees")
         if "panic" not in case.faults:
-            differing = differences(case, Peer(case))
-            if differing:
-                names.append("differs from manifold3d in " + ", ".join(differing))
+            peer = Peer(case)
+            differing = ["refused"] if peer.refused else differences(case, peer)
+            if peer.refused:
+                names.add("manifold3d refuses an operand")
+            elif differing:
+                names.add(explained(case, peer, differing, arbiter)[0])
+            self.agreed += not differing
         for name in names:
-            classes[case.family, name].append((case.seed, case.operation))
-        if done % 1000 == 0:
-            print(f"{done} cases, {time.time() - begun:.0f} s", file=sys.stderr, flush=True)
-    seconds = time.time() - begun
-    lines = [f"{done} cases from seed {arguments.first}, {judged} points judged, {seconds:.0f} s, manifold3d "
-             f"{getattr(manifold3d, '__version__', '?')}; farthest point within rounding {farthest:.2f} ulps"]
-    for family in FAMILIES:
-        counts = ", ".join(f"{operation} {totals[family, operation]}" for operation in OPERATIONS)
-        lines.append(f"  {family}: {counts}")
-    for (family, name), seeds in sorted(classes.items()):
-        shown = " ".join(f"{seed}:{operation[0]}" for seed, operation in seeds[:arguments.show])
-        lines.append(f"{family:8} {name}: {len(seeds)} [{shown}{' ...' if len(seeds) > arguments.show else ''}]")
-    text = "\n".join(lines)
-    print(text)
-    if arguments.report:
-        with open(arguments.report, "w") as file:
-            file.write(text + "\n")
+            self.classes[name, case.family].append(f"{case.seed}:{case.operation[0]}")
+
+    def failed(self):
+        return any(name.startswith((OURS, UNEXPLAINED)) for name, _ in self.classes)
+
+    def text(self, show):
+        lines = [f"{self.done} cases from seed {self.first}: {self.agreed} agree in everything; {self.judged} points judged by the "
+                 f"oracle, the farthest that differs {self.farthest:.2f} ulps from a surface; {time.time() - self.begun:.0f} s; "
+                 f"manifold3d {version()}"]
+        for family in FAMILIES:
+            counts = ", ".join(f"{operation} {self.totals[family, operation]}" for operation in OPERATIONS)
+            lines.append(f"  {family}: {counts}")
+        for (name, family), seeds in sorted(self.classes.items()):
+            more = " ..." if len(seeds) > show else ""
+            lines.append(f"{name} | {family}: {len(seeds)} [{' '.join(seeds[:show])}{more}]")
+        return "\n".join(lines) + "\n"
+
+
+def live(arguments):
+    tally, arbiter = Tally(arguments.first), Arbiter()
+
+    def report():
+        if arguments.report:
+            with open(arguments.report, "w") as file:
+                file.write(tally.text(1000))
+
+    if arguments.seeds:
+        cases = (case for seed in arguments.seeds for case in stream(seed, 1, arguments.points))
+    else:
+        cases = stream(arguments.first, arguments.cases, arguments.points)
+    for case in cases:
+        tally.add(case, arbiter)
+        if tally.done % 1000 == 0:
+            print(f"{tally.done} cases, {time.time() - tally.begun:.0f} s", file=sys.stderr, flush=True)
+            report()
+    report()
+    print(tally.text(arguments.show), end="")
+    if tally.failed():
+        sys.exit(1)
+
+
+def version():
+    from importlib.metadata import PackageNotFoundError, version
+    try:
+        return version("manifold3d")
+    except PackageNotFoundError:
+        return "of unknown version"
 
 
 def record(arguments):
+    """One line for each case; a quantity in which manifold3d is not right, or its way is not trisect's, is not recorded."""
+    arbiter, left_out = Arbiter(), collections.Counter()
     with open(arguments.to, "w") as file:
-        file.write("# seed triangles-of-A triangles-of-B volume area euler components, as manifold3d finds them\n")
+        file.write(f"# manifold3d {version()}: seed, volumes of A and B, volume, area, Euler characteristic and components of the result\n")
         for case in stream(arguments.first, arguments.cases, 0):
             peer = Peer(case)
-            counts = " ".join(str(len(corners)) for _, corners in case.meshes)
-            if not peer.refused:
-                file.write(f"{case.seed} {counts} {peer.volume:.12g} {peer.area:.12g} {peer.euler} {peer.components}\n")
+            if peer.refused:
+                continue
+            values = {"volume": f"{peer.volume:.10g}", "area": f"{peer.area:.10g}", "euler": str(peer.euler), "components": str(peer.components)}
+            differing = differences(case, peer)
+            if differing:
+                name, theirs = explained(case, peer, differing, arbiter)
+                if name.startswith((OURS, UNEXPLAINED)):
+                    # It stays, and fails; but for a topology of manifold3d's in which material that touches is connected.
+                    is_parted = theirs["parted"] == [theirs["components"], theirs["euler"]]
+                    differing = [] if is_parted else ["euler", "components"]
+                for quantity in differing:
+                    values[quantity] = "-"
+                left_out[name] += bool(differing)
+            operands = " ".join(f"{volume(*mesh):.6g}" for mesh in case.meshes)
+            file.write(f"{case.seed} {operands} {values['volume']} {values['area']} {values['euler']} {values['components']}\n")
+    for name, count in sorted(left_out.items()):
+        print(f"{count} with a quantity left out: {name}")
+
+
+def volume(positions, corners):
+    a, b, c = (positions[corners[:, k]] - positions[0] for k in range(3))
+    return float((a * numpy.cross(b, c)).sum() / 6)
 
 
 if __name__ == "__main__":
@@ -154,7 +280,8 @@ if __name__ == "__main__":
         if verb == "live":
             sub.add_argument("--points", type=int, default=48)
             sub.add_argument("--show", type=int, default=12)
-            sub.add_argument("--report")
+            sub.add_argument("--report", help="a file for the text, with all seeds; brought up to date every thousand cases")
+            sub.add_argument("--seeds", type=int, nargs="*", help="these cases only")
         else:
             sub.add_argument("--to", required=True)
     arguments = parser.parse_args()

@@ -7,7 +7,7 @@
 //! of two determinants mixes powers of `r` with powers of `h`, so every coefficient is homogeneous in both, and the
 //! decisions do not depend on the unit the coordinates are measured in.
 //!
-//! Coefficients are computed one after the other, exactly; that of `eps` has an `f64` filter of its own, since it decides
+//! Coefficients are computed one after the other, exactly; the lowest has an `f64` filter of its own, since it decides
 //! nearly every contact between flat faces.
 
 use super::lattice::Lattice;
@@ -54,7 +54,14 @@ pub fn orient3d(points: [&PerturbedPoint; 4]) -> Sign {
 
 /// [`orient3d`] of points whose unperturbed determinant is known to be zero.
 pub(crate) fn orient3d_of_tie(points: [&PerturbedPoint; 4]) -> Sign {
-    first_order_filter(points).unwrap_or_else(|| {
+    // Where all points move alike, the second directions decide.
+    let alike = points.iter().all(|point| point.first == points[3].first);
+    let filtered = if alike {
+        linear_filter(points, |point| point.second)
+    } else {
+        linear_filter(points, |point| point.first)
+    };
+    filtered.unwrap_or_else(|| {
         let lattice = Lattice::of(points.iter().flat_map(|point| &point.position));
         if lattice.is_small() {
             lowest_sign(&rows(points, |x| i128::from(lattice.small(x)), i128::from))
@@ -71,23 +78,27 @@ pub(super) fn coefficients(points: [&PerturbedPoint; 4], lattice: Lattice) -> [I
     EXPONENTS.map(|exponent| coefficient(&rows, exponent))
 }
 
-/// The coefficient of `eps` in `f64`, if its sign is certain.
-fn first_order_filter(points: [&PerturbedPoint; 4]) -> Option<Sign> {
+/// The coefficient of the power of `eps` that belongs to a direction, in `f64`, if its sign is certain: the sum of three
+/// determinants with one row of directions each.
+fn linear_filter(
+    points: [&PerturbedPoint; 4],
+    direction: impl Fn(&PerturbedPoint) -> [i32; 3],
+) -> Option<Sign> {
     // Three determinants with one exact row each; twice the bound of a single orient3d covers them and their sum.
     const BOUND: f64 = 2.0 * (7.0 + 56.0 * f64::EPSILON) * f64::EPSILON / 2.0;
     const FLOOR: f64 = f64::from_bits((1023 - 700) << 52);
     const LIMIT: f64 = f64::from_bits((1023 + 350) << 52);
-    if points.iter().all(|point| point.first == points[3].first) {
-        return None;
-    }
     if points.iter().flat_map(|point| &point.position).any(|x| x.abs() > LIMIT) {
         return None;
     }
     let d = points[3];
+    let origin = direction(d);
     let zero: [[f64; 3]; 3] =
         std::array::from_fn(|i| std::array::from_fn(|k| points[i].position[k] - d.position[k]));
-    let one: [[f64; 3]; 3] =
-        std::array::from_fn(|i| std::array::from_fn(|k| f64::from(points[i].first[k] - d.first[k])));
+    let one: [[f64; 3]; 3] = std::array::from_fn(|i| {
+        let moved = direction(points[i]);
+        std::array::from_fn(|k| f64::from(moved[k] - origin[k]))
+    });
     let (mut sum, mut permanent) = (0.0, 0.0);
     for i in 0..3 {
         let (v, w) = (&zero[(i + 1) % 3], &zero[(i + 2) % 3]);

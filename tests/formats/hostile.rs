@@ -182,3 +182,73 @@ fn every_prefix_of_every_file() {
         }
     }
 }
+
+#[test]
+fn every_number_replaced_by_every_hostile_one() {
+    // Not at random: each number of each small text file in turn, by 2^32 - 1, not a number, infinity and the rest.
+    let mut tried = 0;
+    for (format, bytes) in seeds() {
+        let Ok(text) = std::str::from_utf8(&bytes) else { continue };
+        if bytes.len() > 1_500 {
+            continue;
+        }
+        let is_part = |byte: u8| byte.is_ascii_digit() || b"+-.eE".contains(&byte);
+        let mut at = 0;
+        while let Some(start) = text.as_bytes()[at..].iter().position(|&byte| byte.is_ascii_digit()) {
+            let start = at + start;
+            let end = text.as_bytes()[start..]
+                .iter()
+                .position(|&byte| !is_part(byte))
+                .map_or(text.len(), |n| start + n);
+            for word in WORDS {
+                let damaged = [&text[..start], word, &text[end..]].concat();
+                assert_error_or_valid(read(damaged.as_bytes(), format, &ReadOptions::new()));
+                tried += 1;
+            }
+            at = end;
+        }
+    }
+    assert!(tried > 10_000, "{tried}");
+}
+
+#[test]
+fn every_bit_of_small_files_flipped() {
+    let mut tried = 0;
+    for (format, bytes) in seeds() {
+        if bytes.len() > 1_700 {
+            continue;
+        }
+        let mut damaged = bytes.clone();
+        for bit in 0..8 * bytes.len() {
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            assert_error_or_valid(read(&damaged, format, &ReadOptions::new()));
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            tried += 1;
+        }
+    }
+    assert!(tried > 50_000, "{tried}");
+}
+
+#[test]
+fn every_word_of_small_binary_files_at_its_largest() {
+    let mut tried = 0;
+    for (format, bytes) in seeds() {
+        if bytes.len() > 5_000 || std::str::from_utf8(&bytes).is_ok() {
+            continue;
+        }
+        for at in 0..bytes.len().saturating_sub(8) {
+            for value in [
+                &u32::MAX.to_le_bytes()[..],
+                &0x7fff_ffffu32.to_be_bytes(),
+                &f64::NAN.to_le_bytes(),
+                &f32::INFINITY.to_le_bytes(),
+            ] {
+                let mut damaged = bytes.clone();
+                damaged[at..at + value.len()].copy_from_slice(value);
+                assert_error_or_valid(read(&damaged, format, &ReadOptions::new()));
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 10_000, "{tried}");
+}

@@ -5,8 +5,15 @@
 //! What fails is named, and saved as OBJ files in the folder `TRISECT_PROOF_SAVE` if that is set. See `docs/proof.md`.
 
 mod battery;
+mod chains;
 #[path = "../common/mod.rs"]
 mod common;
 #[allow(dead_code, reason = "shared with the driver of the live comparison")]
 mod judge;
+mod minimiser;
+mod models;
+mod named;
+mod properties;
+mod recorded;
+mod regressions;
 mod trial;

@@ -66,6 +66,11 @@ impl Trial {
         Some(outcome.into_solid())
     }
 
+    /// Notes a failure that was found elsewhere.
+    pub(crate) fn note(&mut self, failure: String) {
+        self.failures.push(failure);
+    }
+
     fn fail(
         &mut self,
         context: &str,

@@ -4,12 +4,16 @@
 //! trisect-proof emit FIRST COUNT [POINTS]    cases and results as binary records on standard output (see record.rs)
 //! trisect-proof show SEED...                 what is known of each case, in words
 //! trisect-proof save SEED FOLDER             the operands and the result of a case as OBJ files
-//! trisect-proof minimise SEED FOLDER         the smallest pair found that fails like the case, as OBJ files
+//! trisect-proof judge                        trisect's and another engine's results at the same points (see arbiter.rs)
+//! trisect-proof limits                       how soon a running operation stops, and its account of memory
+//! trisect-proof minimise SEED FOLDER NAME    the smallest pair found that fails like the case, as NAME-a.obj and NAME-b.obj
 //! ```
 
 #[path = "../../../tests/proof/judge/mod.rs"]
 #[allow(dead_code, reason = "shared with the tests")]
 mod judge;
+mod arbiter;
+mod limits;
 mod record;
 mod run;
 
@@ -38,6 +42,14 @@ fn command(words: &[&str]) -> Result<(), String> {
             let points = points.first().map_or(Ok(48), |word| number(word))?;
             emit(number(first)?, number(count)?, points as usize, &models).map_err(|error| error.to_string())
         }
+        ["judge"] => {
+            let (input, out) = (std::io::stdin().lock(), std::io::stdout().lock());
+            arbiter::serve(&mut { input }, &mut { out }, &models).map_err(|error| error.to_string())
+        }
+        ["limits"] => {
+            limits::measure();
+            Ok(())
+        }
         ["show", seeds @ ..] => seeds.iter().try_for_each(|word| {
             let seed = number(word)?;
             run::show(seed, &Case::new(seed, &models));
@@ -50,7 +62,23 @@ fn command(words: &[&str]) -> Result<(), String> {
             save(&case.b, folder, "b")?;
             outcome.map_or(Ok(()), |mesh| save(&mesh, folder, "result"))
         }
-        _ => Err("usage: trisect-proof emit FIRST COUNT [POINTS] | show SEED... | save SEED FOLDER".into()),
+        ["minimise", seed, folder, name] => {
+            let seed = number(seed)?;
+            let case = Case::new(seed, &models);
+            let faults = |pair: &[Mesh; 2]| run::faults_of(&Case { a: pair[0].clone(), b: pair[1].clone(), ..case.clone() });
+            let pair = [case.a.clone(), case.b.clone()];
+            let fault = faults(&pair);
+            if fault == 0 {
+                return Err(format!("seed {seed} does not fail"));
+            }
+            std::panic::set_hook(Box::new(|_| {}));
+            let small = judge::minimise::minimised(&pair, |pair| faults(pair) & fault != 0);
+            println!("{:?}: {} and {} triangles", case.operation, small[0].triangles.len(), small[1].triangles.len());
+            small.iter().zip(["a", "b"]).try_for_each(|(mesh, which)| save(mesh, folder, &format!("{name}-{which}")))
+        }
+        _ => Err("usage: trisect-proof emit FIRST COUNT [POINTS] | judge | limits | show SEED... | save SEED FOLDER | \
+                  minimise SEED FOLDER NAME"
+            .into()),
     }
 }
 

@@ -1,13 +1,13 @@
 //! The records that the comparison reads: little-endian, one after the other, no padding.
 //!
 //! ```text
-//! u64 seed; u8 family, operation, faults, 0
+//! u64 seed; u8 family, operation; u16 faults
 //! twice (A, B): u32 vertices, triangles; f64[3] each vertex; u32[3] each triangle
 //! f64 volume, area; i64 Euler characteristic; u32 components, triangles, points judged, mistakes
 //! f64 error of the volume identity, relative to the box; f64 farthest point within rounding, in ulps
 //! ```
 
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 
 use crate::judge::cases::{Case, Family, OPERATIONS};
 use crate::run::Found;
@@ -17,7 +17,8 @@ pub(crate) fn write(out: &mut impl Write, seed: u64, case: &Case, found: &Found)
     let family = Family::ALL.iter().position(|&family| family == case.family).unwrap_or(0);
     let operation = OPERATIONS.iter().position(|&operation| operation == case.operation).unwrap_or(0);
     out.write_all(&seed.to_le_bytes())?;
-    out.write_all(&[family as u8, operation as u8, found.faults, 0])?;
+    out.write_all(&[family as u8, operation as u8])?;
+    out.write_all(&found.faults.to_le_bytes())?;
     mesh(out, &case.a)?;
     mesh(out, &case.b)?;
     for value in [found.volume, found.area] {
@@ -44,4 +45,28 @@ fn mesh(out: &mut impl Write, mesh: &Mesh) -> io::Result<()> {
         out.write_all(&v.to_le_bytes())?;
     }
     Ok(())
+}
+
+/// A mesh in the form of the records.
+pub(crate) fn read_mesh(input: &mut impl Read) -> io::Result<Mesh> {
+    let mut word = [0; 4];
+    let mut number = |input: &mut dyn Read| {
+        input.read_exact(&mut word)?;
+        io::Result::Ok(u32::from_le_bytes(word))
+    };
+    let (vertices, triangles) = (number(input)?, number(input)?);
+    let mut mesh = Mesh::default();
+    for _ in 0..vertices {
+        let mut point = [0.0; 3];
+        for x in &mut point {
+            let mut bytes = [0; 8];
+            input.read_exact(&mut bytes)?;
+            *x = f64::from_le_bytes(bytes);
+        }
+        mesh.positions.push(point);
+    }
+    for _ in 0..triangles {
+        mesh.triangles.push([number(input)?, number(input)?, number(input)?]);
+    }
+    Ok(mesh)
 }

@@ -257,12 +257,17 @@ fn longest_side(patch: &Patch<'_>, flat: u32, beyond: impl FnOnce(u32, u32) -> O
     Some(Flip { flat, other, a, b, c, d })
 }
 
-/// Which of three points that are (nearly) on one line lies strictly between the others.
+/// Which of three points that are (nearly) on one line lies strictly between the others. Compared along one axis: squared
+/// lengths would not tell a point from one next to it.
 fn middle(points: [[f64; 3]; 3]) -> Option<usize> {
-    let length = |i: usize, j: usize| (0..3).map(|k| (points[j][k] - points[i][k]).powi(2)).sum::<f64>();
-    let opposite = |k: usize| length((k + 1) % 3, (k + 2) % 3);
-    let k = (1..3).fold(0, |best, k| if opposite(k) > opposite(best) { k } else { best });
-    let (p, q, r) = (points[(k + 2) % 3], points[k], points[(k + 1) % 3]);
-    let ahead: f64 = (0..3).map(|axis| (p[axis] - q[axis]) * (r[axis] - q[axis])).sum();
-    (q != p && q != r && ahead < 0.0).then_some(k)
+    let extent = |k: usize| {
+        let [a, b, c] = points.map(|p| p[k]);
+        a.max(b).max(c) - a.min(b).min(c)
+    };
+    let axis = (1..3).fold(0, |best, k| if extent(k) > extent(best) { k } else { best });
+    let at = points.map(|p| p[axis]);
+    (0..3).find(|&k| {
+        let (p, q) = (at[(k + 1) % 3], at[(k + 2) % 3]);
+        p.min(q) < at[k] && at[k] < p.max(q)
+    })
 }

@@ -4,7 +4,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use trisect::Operation::{Difference, Union};
-use trisect::{Mesh, Operation, Options, Solid};
+use trisect::{Mesh, Options, Solid};
 
 use super::convex::{Twin, run};
 use crate::common::{cube, cuboid};
@@ -142,7 +142,7 @@ fn checkerboards_touch_everywhere() {
     let solid = |cells: &Cells| Solid::try_from(cells.surface().mesh).expect("closed");
     let (black, white) = (board(0), board(1));
     let mut trial = Trial::default();
-    for operation in [Operation::Union, Operation::Intersection, Difference, Operation::SymmetricDifference] {
+    for operation in crate::judge::cases::OPERATIONS {
         let result = black.combined(operation, &white);
         let surface = result.surface();
         let expected = Expected {

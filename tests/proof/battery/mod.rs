@@ -4,3 +4,4 @@ mod boxes;
 mod cells;
 mod convex;
 mod lattice;
+mod sweeps;

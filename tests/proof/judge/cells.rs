@@ -46,6 +46,10 @@ impl Cells {
         self.0.contains(&cell)
     }
 
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     pub(crate) fn count(&self) -> usize {
         self.0.len()
     }

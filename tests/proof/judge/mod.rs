@@ -3,11 +3,15 @@
 //! - [`winding`]: how often a surface winds round a point, exactly, by counting crossings of a ray;
 //! - [`oracle`]: whether a result winds as its operands and the operation say, at points where mistakes would show;
 //! - [`surface`]: closedness, manifoldness, components, Euler characteristic, volume, area of a mesh, by definition;
+//! - [`contacts`]: the topology a solid has where its surface touches itself;
+//! - [`minimise`]: a failing pair made small;
 //! - [`shapes`], [`placement`], [`cases`]: pairs of solids and an operation from a seed.
 
 pub(crate) mod cases;
 pub(crate) mod cells;
+pub(crate) mod contacts;
 pub(crate) mod exact;
+pub(crate) mod minimise;
 pub(crate) mod oracle;
 pub(crate) mod placement;
 pub(crate) mod samples;

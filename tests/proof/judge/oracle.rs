@@ -32,6 +32,15 @@ pub(crate) struct Verdict {
     /// Points that differ within rounding of a surface, and how far the farthest is, in units in the last place.
     pub(crate) rounded: usize,
     pub(crate) farthest_rounded: f64,
+    /// The unit in the last place of the largest coordinate.
+    pub(crate) ulp: f64,
+}
+
+impl Verdict {
+    /// How far from the operands' surfaces the farthest point is where the result is wrong; 0 if it is nowhere.
+    pub(crate) fn farthest(&self) -> f64 {
+        self.mistakes.iter().fold(self.farthest_rounded, |most, mistake| most.max(mistake.ulps)) * self.ulp
+    }
 }
 
 /// How often the result should wind round a point that the operands wind round so often: the same as membership where
@@ -68,7 +77,7 @@ pub(crate) fn judge_at(operation: Operation, operands: &[&Mesh], result: &Mesh, 
         .flat_map(|mesh| mesh.positions.iter().flatten())
         .fold(0.0f64, |most, x| most.max(x.abs()));
     let ulp = largest.next_up() - largest;
-    let mut verdict = Verdict::default();
+    let mut verdict = Verdict { ulp, ..Verdict::default() };
     for &point in points {
         let windings: Option<Vec<i32>> = surfaces.iter().map(|surface| surface.winding(point)).collect();
         let (Some(windings), Some(found)) = (windings, outcome.winding(point)) else { continue };

@@ -1,0 +1,77 @@
+//! Two results of one case, trisect's and another engine's, judged at the same points.
+//!
+//! Reads records `u64 seed; u32 points; u32 vertices, triangles; f64[3] each vertex; u32[3] each triangle` until the end of
+//! the input, and answers each with a line of JSON.
+
+use std::io::{self, BufRead, Write};
+
+use crate::judge::cases::Case;
+use crate::judge::oracle;
+use crate::judge::samples;
+use crate::judge::surface::{Properties, volume};
+use crate::{record, run};
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
+use trisect::Mesh;
+
+pub(crate) fn serve(input: &mut impl BufRead, out: &mut impl Write, models: &[Mesh]) -> io::Result<()> {
+    while !input.fill_buf()?.is_empty() {
+        let (mut seed, mut points) = ([0; 8], [0; 4]);
+        input.read_exact(&mut seed)?;
+        input.read_exact(&mut points)?;
+        let (seed, points) = (u64::from_le_bytes(seed), u32::from_le_bytes(points) as usize);
+        let theirs = record::read_mesh(input)?;
+        let case = Case::new(seed, models);
+        let ours = run::attempt(&case).0.unwrap_or_default();
+        let operands = [&case.a, &case.b];
+        let mut random = ChaCha8Rng::seed_from_u64(!seed);
+        let mut places = samples::points(&operands, &ours, points / 2, &mut random);
+        places.extend(samples::points(&operands, &theirs, points / 2, &mut random));
+        let [ours, theirs] = [&ours, &theirs].map(|mesh| {
+            let verdict = oracle::judge_at(case.operation, &operands, mesh, &places);
+            describe(mesh, &verdict)
+        });
+        writeln!(out, "{{\"ours\":{ours},\"theirs\":{theirs}}}")?;
+        out.flush()?;
+    }
+    Ok(())
+}
+
+fn describe(mesh: &Mesh, verdict: &oracle::Verdict) -> String {
+    let found = Properties::of(mesh);
+    let found_parted = run::parted(mesh);
+    let parted = found_parted
+        .map_or("null".to_string(), |parted| format!("[{},{}]", parted.topology.components, parted.topology.euler));
+    let pinched = found_parted.is_some_and(|parted| parted.pinched);
+    let bodies: Vec<String> = bodies(mesh).iter().map(|body| format!("{:e}", volume(body))).collect();
+    format!(
+        "{{\"judged\":{},\"mistakes\":{},\"farthest\":{:e},\"closed\":{},\"manifold\":{},\"zero_area\":{},\"volume\":{:e},\
+         \"area\":{:e},\"components\":{},\"euler\":{},\"parted\":{parted},\"pinched\":{pinched},\"crosses\":{},\"bodies\":[{}]}}",
+        verdict.judged,
+        verdict.mistakes.len(),
+        verdict.farthest(),
+        found.closed,
+        found.manifold,
+        found.zero_area,
+        found.volume,
+        found.area,
+        found.components,
+        found.euler,
+        run::crosses_itself(mesh),
+        bodies.join(",")
+    )
+}
+
+/// The shells of a mesh.
+fn bodies(mesh: &Mesh) -> Vec<Mesh> {
+    let mut sets = crate::judge::surface::Sets::new(mesh.positions.len());
+    for &[a, b, c] in &mesh.triangles {
+        sets.join(a as usize, b as usize);
+        sets.join(b as usize, c as usize);
+    }
+    let mut of: std::collections::BTreeMap<usize, Vec<[u32; 3]>> = std::collections::BTreeMap::new();
+    for triangle in &mesh.triangles {
+        of.entry(sets.find(triangle[0] as usize)).or_default().push(*triangle);
+    }
+    of.into_values().map(|triangles| Mesh::new(mesh.positions.clone(), triangles)).collect()
+}

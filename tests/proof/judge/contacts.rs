@@ -1,0 +1,251 @@
+//! The topology that a solid has where its surface touches itself, whatever way a mesh of it is connected there: along an
+//! edge and in a vertex, touching material stays apart. Two meshes of one solid agree in it.
+
+use std::collections::HashMap;
+
+use trisect::Mesh;
+
+use super::surface::Sets;
+use super::vector::{Point, cross, dot, extent, length, minus, plus, unit};
+
+/// Topology of a surface whose contacts are parted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Topology {
+    pub(crate) components: usize,
+    pub(crate) euler: i64,
+}
+
+/// What [`parted`] finds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Parted {
+    pub(crate) topology: Topology,
+    /// Somewhere an edge lies on the inner side of a face: material is pinched there too, and the faces are not parted.
+    pub(crate) pinched: bool,
+}
+
+/// A face after its sides are split at the vertices that lie on them.
+struct Face {
+    corners: Vec<usize>,
+    triangle: [usize; 3],
+    normal: Point,
+}
+
+/// Where a face meets an edge: the face, its side, and whether the side runs from the edge's first vertex to its second.
+struct Side {
+    face: usize,
+    side: usize,
+    forward: bool,
+    /// Angle of the face round the edge.
+    angle: f64,
+}
+
+/// The topology of `mesh` with its contacts parted. Vertices nearer than `reach` times the size of the mesh are one. Exact
+/// where features are larger and contacts closer than that; `None` if the surface is not closed after joining them, or if
+/// faces lie on one another.
+pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
+    if mesh.triangles.is_empty() {
+        return Some(Parted { topology: Topology::default(), pinched: false });
+    }
+    let [low, high] = extent(&mesh.positions);
+    let near = reach * (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+    let (points, of) = joined(&mesh.positions, near);
+    let faces: Vec<Face> =
+        mesh.triangles.iter().filter_map(|t| face(t.map(|v| of[v as usize]), &points, near)).collect();
+    let mut edges: HashMap<(usize, usize), Vec<Side>> = HashMap::new();
+    let mut first = Vec::new();
+    let mut corners = 0;
+    for (index, face) in faces.iter().enumerate() {
+        first.push(corners);
+        corners += face.corners.len();
+        for side in 0..face.corners.len() {
+            let (u, v) = (face.corners[side], face.corners[(side + 1) % face.corners.len()]);
+            let (from, to) = (u.min(v), u.max(v));
+            let forward = u < v;
+            let angle = angle_round(points[from], points[to], face.normal, forward);
+            edges.entry((from, to)).or_default().push(Side { face: index, side, forward, angle });
+        }
+    }
+    let pinched = edges.iter().any(|(edge, sides)| is_pinched(*edge, sides, &faces, &points, near));
+    let (mut fans, mut bodies) = (Sets::new(corners), Sets::new(faces.len()));
+    let mut pairs = 0;
+    for sides in edges.values_mut() {
+        for (a, b) in wedges(sides)? {
+            pairs += 1;
+            bodies.join(a.face, b.face);
+            let corner =
+                |of: &Side, next: usize| first[of.face] + (of.side + next) % faces[of.face].corners.len();
+            fans.join(corner(a, 0), corner(b, 1));
+            fans.join(corner(a, 1), corner(b, 0));
+        }
+    }
+    let euler = fans.count() as i64 - pairs + faces.len() as i64;
+    Some(Parted { topology: Topology { components: bodies.count(), euler }, pinched })
+}
+
+/// One point for those nearer than `near`, and the number of each vertex's.
+fn joined(positions: &[Point], near: f64) -> (Vec<Point>, Vec<usize>) {
+    let mut points: Vec<Point> = Vec::new();
+    // In order along x, so that only a few have to be looked at.
+    let mut order: Vec<usize> = (0..positions.len()).collect();
+    order.sort_by(|&i, &j| positions[i][0].total_cmp(&positions[j][0]));
+    let mut of = vec![0; positions.len()];
+    for &i in &order {
+        let p = positions[i];
+        let candidates = points.iter().enumerate().rev().take_while(|(_, q)| p[0] - q[0] <= near);
+        let found = candidates.into_iter().find(|(_, q)| length(minus(p, **q)) <= near).map(|(at, _)| at);
+        of[i] = found.unwrap_or_else(|| {
+            points.push(p);
+            points.len() - 1
+        });
+    }
+    (points, of)
+}
+
+/// A triangle with the points on its sides as corners; nothing if it is flat.
+fn face(triangle: [usize; 3], points: &[Point], near: f64) -> Option<Face> {
+    let [a, b, c] = triangle.map(|v| points[v]);
+    let normal = cross(minus(b, a), minus(c, a));
+    let longest = length(minus(b, a)).max(length(minus(c, b))).max(length(minus(a, c)));
+    // What is flat is left out: on both sides of it the same points lie on its sides.
+    if length(normal) <= 2.0 * near * longest {
+        return None;
+    }
+    let [low, high] = extent(&[a, b, c]);
+    let close: Vec<usize> = (0..points.len())
+        .filter(|v| {
+            !triangle.contains(v)
+                && (0..3).all(|k| points[*v][k] >= low[k] - near && points[*v][k] <= high[k] + near)
+        })
+        .collect();
+    let mut corners = Vec::new();
+    for side in 0..3 {
+        let (from, to) = (triangle[side], triangle[(side + 1) % 3]);
+        corners.push(from);
+        let along = minus(points[to], points[from]);
+        let squared = dot(along, along);
+        let mut on: Vec<(f64, usize)> = close
+            .iter()
+            .map(|&v| (dot(minus(points[v], points[from]), along) / squared, v))
+            .filter(|&(t, v)| {
+                t > 0.0 && t < 1.0 && length(minus(points[v], plus(points[from], along, t))) <= 2.0 * near
+            })
+            .collect();
+        on.sort_by(|a, b| a.0.total_cmp(&b.0));
+        corners.extend(on.into_iter().map(|(_, v)| v));
+    }
+    Some(Face { corners, triangle, normal: unit(normal) })
+}
+
+/// The angle at which a face leaves an edge, looking from its end to its beginning.
+fn angle_round(from: Point, to: Point, normal: Point, forward: bool) -> f64 {
+    let axis = unit(minus(to, from));
+    // Some direction across the edge to count from.
+    let least = (0..3).fold(0, |least, k| if axis[k].abs() < axis[least].abs() { k } else { least });
+    let mut helper = [0.0; 3];
+    helper[least] = 1.0;
+    let across = unit(cross(axis, helper));
+    let up = cross(axis, across);
+    let inward = cross(normal, if forward { axis } else { axis.map(|x| -x) });
+    dot(inward, up).atan2(dot(inward, across))
+}
+
+/// Whether an edge lies on the inner side of some face, not only touching its rim.
+fn is_pinched(edge: (usize, usize), sides: &[Side], faces: &[Face], points: &[Point], near: f64) -> bool {
+    let (from, to) = (points[edge.0], points[edge.1]);
+    faces.iter().any(|face| {
+        let [a, b, c] = face.triangle.map(|v| points[v]);
+        if [from, to].iter().any(|&p| dot(minus(p, a), face.normal).abs() > near) {
+            return false;
+        }
+        // The part of the edge that is within the triangle.
+        let (mut begin, mut end) = (0.0f64, 1.0f64);
+        for (p, q) in [(a, b), (b, c), (c, a)] {
+            let inward = unit(cross(face.normal, minus(q, p)));
+            let depth = |at: Point| dot(minus(at, p), inward) - 4.0 * near;
+            let (s, t) = (depth(from), depth(to));
+            if s <= 0.0 && t <= 0.0 {
+                return false;
+            }
+            if s < 0.0 {
+                begin = begin.max(s / (s - t));
+            } else if t < 0.0 {
+                end = end.min(s / (s - t));
+            }
+        }
+        let axis = unit(minus(to, from));
+        let is_inside = |side: &Side| {
+            let inward = cross(faces[side.face].normal, if side.forward { axis } else { axis.map(|x| -x) });
+            dot(inward, face.normal) < 1e-7
+        };
+        begin < end && sides.iter().any(is_inside)
+    })
+}
+
+/// The pairs of faces that bound one wedge of material; `None` if they do not alternate.
+fn wedges(sides: &mut [Side]) -> Option<Vec<(&Side, &Side)>> {
+    if sides.len() == 2 {
+        return (sides[0].forward != sides[1].forward).then(|| vec![(&sides[0], &sides[1])]);
+    }
+    sides.sort_by(|a, b| a.angle.total_cmp(&b.angle));
+    let count = sides.len();
+    let apart = |i: usize| {
+        let turn = sides[(i + 1) % count].angle - sides[i].angle;
+        turn.rem_euclid(std::f64::consts::TAU) > 1e-7
+    };
+    let alternate = (0..count).all(|i| sides[i].forward != sides[(i + 1) % count].forward && apart(i));
+    if count % 2 == 1 || !alternate {
+        return None;
+    }
+    // A face that runs with the edge has its material behind it, in the sense of growing angles before it.
+    let start = usize::from(sides[0].forward);
+    Some(
+        (0..count / 2)
+            .map(|k| (&sides[(start + 2 * k) % count], &sides[(start + 2 * k + 1) % count]))
+            .collect(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::judge::cells::Cells;
+
+    #[test]
+    fn cells_are_parted_as_counted() {
+        for bits in 0..256 {
+            let cells = Cells::new([0; 3], [2; 3], |[x, y, z]| bits >> (x + 2 * y + 4 * z) & 1 == 1);
+            let surface = cells.surface();
+            let topology = Topology { components: surface.components, euler: surface.euler };
+            assert_eq!(parted(&surface.mesh, 1e-9), Some(Parted { topology, pinched: false }), "{bits}");
+        }
+    }
+
+    #[test]
+    fn hanging_vertices_are_found() {
+        // Boxes of different lengths that touch along a part of an edge, as one mesh and apart.
+        let boxed = |low, high| trisect::primitives::cuboid(low, high).expect("a box");
+        let mut mesh = boxed([0.0; 3], [1.0, 1.0, 3.0]);
+        mesh.append(&boxed([1.0, 1.0, 1.0], [2.0, 2.0, 5.0])).expect("small");
+        let topology = Topology { components: 2, euler: 4 };
+        assert_eq!(parted(&mesh, 1e-9), Some(Parted { topology, pinched: false }));
+    }
+
+    #[test]
+    fn an_edge_on_the_inner_side_of_a_face_is_a_pinch() {
+        // A roof whose ridge, turned down, touches the floor; and the same a little higher.
+        for (depth, pinched) in [(1.0, true), (0.9, false)] {
+            let notched = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [2.0, 1.0 - depth], [0.0, 1.0]];
+            let mesh = trisect::primitives::extrusion(&notched, &[], 1.0);
+            let Ok(mesh) = mesh else { continue };
+            assert_eq!(parted(&mesh, 1e-9).map(|parted| parted.pinched), Some(pinched));
+        }
+    }
+
+    #[test]
+    fn walls_of_no_thickness_are_not_a_topology() {
+        let boxed = |low, high| trisect::primitives::cuboid(low, high).expect("a box");
+        let mut mesh = boxed([0.0; 3], [1.0; 3]);
+        mesh.append(&boxed([1.0, 0.0, 0.0], [2.0, 1.0, 1.0])).expect("small");
+        assert_eq!(parted(&mesh, 1e-9), None);
+    }
+}
