@@ -115,6 +115,8 @@ mod tests {
             let flat = 10f64.powf(number(6.0) - 6.0);
             let triangles: Vec<[DVec3; 3]> = (0..5)
                 .map(|_| [0; 3].map(|_| DVec3::new(number(0.1), number(0.1), 0.3 + number(0.1) * flat)))
+                // All facing the same way, as on a surface.
+                .map(|[a, b, c]| if (b - a).cross(c - a).z < 0.0 { [a, c, b] } else { [a, b, c] })
                 .collect();
             let disc = Disc::around(&triangles);
             for _ in 0..20 {
