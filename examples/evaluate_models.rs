@@ -1,15 +1,15 @@
 //! Evaluates model files and writes what they describe: `cargo run --release --example evaluate_models -- OUT MODEL...`
 //!
-//! For every model a mesh (OBJ) and a section through the middle of its bounds (PNG) are written to the folder OUT.
+//! For every model a mesh (OBJ), its picture (PNG) and a section through the middle of its bounds (PNG) are written to the folder OUT.
 #![allow(clippy::print_stdout, reason = "an example reports on standard output")]
 
-use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Instant;
 
 use trisect::Control;
-use trisect::field::{Section, SectionPicture};
+use trisect::field::Section;
 use trisect::model::{Evaluation, Model};
+use trisect::render::View;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
@@ -33,24 +33,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             start.elapsed().as_secs_f64(),
             found.extraction
         );
-        let mut text = String::new();
-        for [x, y, z] in &found.mesh.positions {
-            writeln!(text, "v {x:?} {y:?} {z:?}")?;
-        }
-        for triangle in &found.mesh.triangles {
-            let [a, b, c] = triangle.map(|vertex| vertex + 1);
-            writeln!(text, "f {a} {b} {c}")?;
-        }
-        std::fs::write(Path::new(&out).join(format!("{name}.obj")), text)?;
+        found.mesh.save(Path::new(&out).join(format!("{name}.obj")))?;
+        let mut view = View::default();
+        (view.width, view.height) = (480, 360);
+        trisect::render::mesh(&found.mesh, &view, None)
+            .save_png(Path::new(&out).join(format!("{name}.png")))?;
         if let Some([low, high]) = evaluation.bounds(&model)? {
             let room = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max) * 0.08;
             let (low, high) = (low.map(|x| x - room), high.map(|x| x + room));
             let middle = (low[2] + high[2]) / 2.0;
             let section = Section::across(2, middle, low, high)?;
             let field = evaluation.field(&model)?;
-            let picture = SectionPicture::of(&field, &section, 480, None, &Control::new())?;
-            let file = std::fs::File::create(Path::new(&out).join(format!("{name}-section.png")))?;
-            picture.write_png(std::io::BufWriter::new(file))?;
+            let picture = section.picture(&field, 480, None, &Control::new())?;
+            picture.save_png(Path::new(&out).join(format!("{name}-section.png")))?;
         }
     }
     Ok(())

@@ -146,6 +146,7 @@ fn atom_of_choporov_2010() {
     });
 }
 
+#[cfg(feature = "parametric")]
 #[test]
 fn contours_of_choporov_2017() {
     let exact = [("polygon.json", 11.0), ("bezier-contour.json", f64::NAN), ("naca0011.json", f64::NAN)];
@@ -161,6 +162,7 @@ fn contours_of_choporov_2017() {
     }
 }
 
+#[cfg(feature = "parametric")]
 /// The area inside the Bezier curves of a contour model: half the integral of x dy - y dx, by the midpoint rule.
 fn bezier_area(name: &str) -> f64 {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/models").join(name);
@@ -191,19 +193,6 @@ fn bezier_area(name: &str) -> f64 {
 }
 
 #[test]
-fn naca_profile_with_holes() {
-    let whole = Evaluation::new().contours(&example("naca0011.json"), 0.0).expect("naca").area();
-    let drilled =
-        Evaluation::new().tolerance(2e-3).contours(&example("naca0011-holes.json"), 0.0).expect("holes");
-    let expected = whole - 6.0 * 3.0 - std::f64::consts::PI * 1.5 * 1.5 - 4.0;
-    println!("area {} expected {expected}, {} contours", drilled.area(), drilled.loops.len());
-    assert_eq!(drilled.loops.len(), 4);
-    assert!((drilled.area() - expected).abs() < 1e-3 * expected);
-    let mesh = Evaluation::new().run(&example("naca0011-holes.json")).expect("holes").mesh;
-    assert_eq!(manifold(&mesh), (1, 3));
-}
-
-#[test]
 fn torpedo_of_choporov_2017() {
     solid("torpedo.json", 5e-4, (1, 0), [0.0, -1.0, -1.0], [4.0, 1.0, 1.0], |x, y, z| {
         let r = if x <= 1.0 {
@@ -223,28 +212,40 @@ fn hybrid_bracket_is_one_piece_with_its_holes() {
     assert_eq!(manifold(&found.mesh), (1, 2));
 }
 
-/// Stands in for parametric patches: whatever they are, a closed mesh.
-struct StandIn;
+/// A kind of leaf of the caller's own.
+struct Brick;
 
-impl LeafKind for StandIn {
-    fn mesh(&self, value: &serde_json::Value, tolerance: f64, _: &Path) -> Result<Mesh, Error> {
-        assert!(tolerance > 0.0 && value["patches"].as_array().is_some_and(|list| list.len() == 6));
-        Ok(shapes::cuboid([0.0, -3.0, -0.4], [8.0, 3.0, 0.5]))
+impl LeafKind for Brick {
+    fn mesh(
+        &self,
+        value: &serde_json::Value,
+        tolerance: Option<f64>,
+        _: &Path,
+        _: &Control,
+    ) -> Result<Mesh, Error> {
+        assert_eq!(tolerance, Some(0.05));
+        let length = value["length"].as_f64().ok_or_else(|| Error::Model("`length` is missing".into()))?;
+        Ok(shapes::cuboid([0.0; 3], [length, 1.0, 1.0]))
     }
 }
 
 #[test]
-fn patches_have_their_place() {
-    let model = example("aircraft-with-engines.json");
-    let error = Evaluation::new().run(&model).expect_err("nobody evaluates patches");
-    assert!(error.to_string().contains("`body`") && error.to_string().contains("patches"), "{error}");
-    let evaluation = Evaluation::new().tolerance(0.05).leaf_kind("patches", Arc::new(StandIn));
-    let mesh = evaluation.run(&model).expect("a stand-in aircraft").mesh;
-    assert_eq!(manifold(&mesh), (1, 0));
-    // The box, and what of the engines sticks out of it.
-    assert!(volume(&mesh) > 8.0 * 6.0 * 0.9 && volume(&mesh) < 8.0 * 6.0 * 0.9 + 10.0);
-    let alone = evaluation.field(&example("aircraft.json")).expect("a field");
-    assert!((alone.at([4.0, 0.0, 0.0]) - 0.4).abs() < 1e-15);
+fn callers_may_add_kinds_of_leaves() {
+    let text = |length: &str| {
+        format!(
+            r#"{{"kind": "union", "operands": [{{"kind": "x-brick"{length}}},
+                {{"kind": "x-brick", "length": 1, "transform": [{{"translate": [0, 2, 0]}}]}}]}}"#
+        )
+    };
+    let model = parse(&text(r#", "length": 4"#)).expect("a model");
+    let error = Evaluation::new().run(&model).expect_err("nobody evaluates bricks");
+    assert!(error.to_string().contains("`x-brick` cannot be evaluated here"), "{error}");
+    let evaluation = Evaluation::new().tolerance(0.05).leaf_kind("x-brick", Arc::new(Brick));
+    assert_eq!(volume(&evaluation.run(&model).expect("two bricks").mesh), 5.0);
+    let field = evaluation.field(&model).expect("a field");
+    assert!((field.at([0.25, 0.5, 0.5]) > 0.0) && (field.at([2.0, 2.5, 0.5]) < 0.0));
+    let error = evaluation.run(&parse(&text("")).expect("a model")).expect_err("no length");
+    assert!(error.to_string().contains("node /operands/0: model: `length` is missing"), "{error}");
 }
 
 fn parse(text: &str) -> Result<Model, Error> {
@@ -310,10 +311,6 @@ fn bad_models_are_refused_by_name_and_place() {
     );
     fails(r#"{"kind": "torus", "radius": 1, "tube": 2}"#, &["crosses itself"]);
     fails(r#"{"kind": "contour", "polygons": [[[0, 0], [1, 0]]], "extrude": 1}"#, &["at least 3"]);
-    fails(
-        r#"{"kind": "contour", "bezier": [[[[0, 0], [1, 0]], [[2, 0], [0, 0]]]], "extrude": 1}"#,
-        &["does not end where the next one begins"],
-    );
     fails(r#"{"kind": "sphere", "radius": 1, "system": "R9"}"#, &["unknown system"]);
     let mut nested = r#"{"kind": "sphere", "radius": 1}"#.to_owned();
     for _ in 0..500 {

@@ -6,6 +6,9 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use trisect::io::Format;
 
+#[cfg(feature = "parametric")]
+use super::field_arguments::CurveVerb;
+use super::field_arguments::{Eval, SampleGrid, Slice};
 use super::values;
 
 const EXIT_CODES: &str = "\
@@ -104,6 +107,25 @@ pub(crate) enum Verb {
                             -o a.glb -o a.ply\n  trisect convert a.glb --png a.png"
     )]
     Convert(Convert),
+    /// Evaluate a model file to a closed mesh
+    #[command(
+        after_help = "Examples:\n  trisect eval model.json -o out.glb --png out.png\n  trisect eval plate.json \
+                            --contours plate.svg"
+    )]
+    Eval(Eval),
+    /// Draw a plane section of a model, of a mesh's signed distance, or of a formula
+    #[command(
+        after_help = "Examples:\n  trisect slice model.json -o z0.png\n  trisect slice part.stl --axis y --at 2.5 -o \
+                            y.png\n  trisect slice --formula '1 - x^2 - y^2' --bounds=-2,-2,-1,2,2,1 -o disc.png"
+    )]
+    Slice(Slice),
+    /// Sample a model, a mesh's signed distance, or a formula on a grid
+    #[command(after_help = "Example:\n  trisect grid part.stl --spacing 0.5 --band 2 -o part.npy")]
+    Grid(SampleGrid),
+    /// Join, mesh, convert and draw curves
+    #[cfg(feature = "parametric")]
+    #[command(subcommand)]
+    Curve(CurveVerb),
 }
 
 impl Verb {
@@ -117,6 +139,11 @@ impl Verb {
             Self::Check(_) => "check",
             Self::Info(_) => "info",
             Self::Convert(_) => "convert",
+            Self::Eval(_) => "eval",
+            Self::Slice(_) => "slice",
+            Self::Grid(_) => "grid",
+            #[cfg(feature = "parametric")]
+            Self::Curve(verb) => verb.name(),
         }
     }
 }

@@ -120,7 +120,7 @@ fn write(
         trisect::render::mesh(mesh, &output::view(drawing, format), colours.as_deref())
     };
     let options = output::write_options(&arguments.writing, &session.limits);
-    let product = Product { mesh, options, picture: &picture };
+    let product = Product { mesh, options, picture: &picture, documents: &[] };
     let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
     session.note("outputs", outputs);
     for warning in warnings {

@@ -81,7 +81,7 @@ pub(crate) fn run(
         trisect::render::mesh(&mesh, &output::view(drawing, Some(format)), colours.as_deref())
     };
     let options = output::write_options(&writing, &session.limits);
-    let product = Product { mesh: &mesh, options, picture: &picture };
+    let product = Product { mesh: &mesh, options, picture: &picture, documents: &[] };
     let (outputs, warnings) = output::write_all(&targets, &product, &session.limits)?;
     session.note("outputs", outputs);
     for warning in warnings {

@@ -1,252 +1,121 @@
-//! `trisect curve`: joining two curves into one, curves as polygons, curves as pictures. Plain functions from parsed
-//! arguments and the text of input files to the text of output files; reading and writing files is the caller's.
+//! `curve join`, `curve mesh`, `curve convert`, `curve draw`: files in, files out.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use serde_json::{Value, json};
-use trisect::parametric::json::{AnyCurve, bezier_to_json, bspline_to_json, curve, parse};
-use trisect::parametric::svg::{Ink, Picture, curves_of_path, path_data};
-use trisect::parametric::{
-    Curve, CurveJoin, CurveMeshing, GeometryError, JoinMetric, JoinReport, JointAt, NurbsCurve, Operand,
-    Refinement, SharedCurve,
-};
+use trisect::Error;
 
-/// What `curve join` was asked for.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct JoinArguments {
-    /// Minimise the change of the control points instead of that of the curves (`--metric discrete`).
-    pub(crate) discrete: bool,
-    /// Leave one curve as it is (`--keep first`, `--keep second`).
-    pub(crate) keep: Option<Operand>,
-    /// Leave the outer ends where they are (`--fix-ends`).
-    pub(crate) fix_ends: bool,
-    /// Keep position and derivatives (`--keep-at first:0.4:1`, any number of times).
-    pub(crate) keep_at: Vec<KeptAt>,
-    /// Where the joint comes to lie (`--joint 0.5`, `--joint lengths`, `--joint best`); 0.5 without.
-    pub(crate) joint: Option<JointAt>,
-    /// Raise the degree at least so far (`--degree`).
-    pub(crate) degree: usize,
-}
+use super::curve_text::{self, JoinArguments};
+use super::documents::{self, Document};
+use super::fault::{Exit, Fault};
+use super::field_arguments::{CurveConvert, CurveDraw, CurveJoin, CurveMesh, CurveVerb, Metric};
+use super::operands;
+use super::report;
+use super::session::Session;
 
-/// One `--keep-at`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct KeptAt {
-    operand: Operand,
-    parameter: f64,
-    order: usize,
-}
-
-impl std::str::FromStr for KeptAt {
-    type Err = String;
-
-    /// `first:0.4` (position) or `second:0.4:2` (position and two derivatives).
-    fn from_str(text: &str) -> Result<Self, String> {
-        let mut parts = text.split(':');
-        let operand = parts.next().unwrap_or("").parse::<OperandName>()?.0;
-        let parameter = parts.next().ok_or("a parameter is missing; write first:0.4 or first:0.4:1")?;
-        let parameter = parameter.parse().map_err(|_| format!("{parameter} is not a number"))?;
-        let order = match parts.next() {
-            None => 0,
-            Some(order) => order.parse().map_err(|_| format!("{order} is not a number of derivatives"))?,
-        };
-        match parts.next() {
-            None => Ok(Self { operand, parameter, order }),
-            Some(rest) => Err(format!("{rest} after the number of derivatives")),
-        }
+/// Runs a verb on curves.
+pub(crate) fn run(verb: &CurveVerb, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    match verb {
+        CurveVerb::Join(arguments) => join(arguments, session),
+        CurveVerb::Mesh(arguments) => mesh(arguments, session),
+        CurveVerb::Convert(arguments) => convert(arguments, session),
+        CurveVerb::Draw(arguments) => draw(arguments, session),
     }
 }
 
-/// `first` or `second`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct OperandName(pub(crate) Operand);
-
-impl std::str::FromStr for OperandName {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "first" => Ok(Self(Operand::First)),
-            "second" => Ok(Self(Operand::Second)),
-            other => Err(format!("{other} is neither first nor second")),
-        }
-    }
-}
-
-/// `0.5`, `lengths` or `best`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct JointName(pub(crate) JointAt);
-
-impl std::str::FromStr for JointName {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "lengths" => Ok(Self(JointAt::Lengths)),
-            "best" => Ok(Self(JointAt::Best)),
-            number => match number.parse() {
-                Ok(parameter) => Ok(Self(JointAt::Parameter(parameter))),
-                Err(_) => Err(format!("{number} is neither a number nor lengths nor best")),
-            },
-        }
-    }
-}
-
-/// What `curve join` delivers.
-#[derive(Clone, Debug)]
-pub(crate) struct JoinOutput {
-    /// The joined curve, as JSON.
-    pub(crate) curve: Value,
-    /// Metric, deviations and constraints, as JSON.
-    pub(crate) report: Value,
-    /// One line for people.
-    pub(crate) summary: String,
-    /// Both curves and the joined one with its control polygon, as SVG; for curves of space their view along z.
-    pub(crate) picture: String,
-}
-
-/// Joins the curves described by two JSON texts.
-///
-/// # Errors
-/// Those of reading, named by operand; those of [`CurveJoin::join_splines`].
-pub(crate) fn join(
-    first: &str,
-    second: &str,
-    arguments: &JoinArguments,
-) -> Result<JoinOutput, trisect::Error> {
-    let read = |text: &str, operand: usize, name: &str| {
-        parse(text)
-            .and_then(|value| curve(&value))
-            .map_err(|fault| trisect::Error::from(fault).of_operand(operand, name))
+/// An input's text; faults name the input.
+fn read(files: &[&PathBuf], session: &Session<'_>) -> Result<Vec<String>, Fault> {
+    let text = |(index, path): (usize, &&PathBuf)| {
+        operands::text(path, &session.limits)
+            .map_err(|error| Fault::from(error.of_operand(index, path.display().to_string())))
     };
-    match (read(first, 0, "first curve")?, read(second, 1, "second curve")?) {
-        (AnyCurve::Plane(p), AnyCurve::Plane(q)) => Ok(join_read(&p, &q, arguments)?),
-        (AnyCurve::Space(p), AnyCurve::Space(q)) => Ok(join_read(&p, &q, arguments)?),
-        _ => Err(trisect::Error::InvalidArgument("one curve is plane, the other in space".into())),
-    }
+    files.iter().enumerate().map(text).collect()
 }
 
-fn join_read<const D: usize>(
-    first: &SharedCurve<D>,
-    second: &SharedCurve<D>,
-    arguments: &JoinArguments,
-) -> Result<JoinOutput, GeometryError> {
-    let mut join = CurveJoin::new().degree(arguments.degree);
-    if arguments.discrete {
-        join = join.metric(JoinMetric::Discrete);
+fn join(arguments: &CurveJoin, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    let common = session.common;
+    if arguments.output.is_none() && arguments.svg.is_none() && !common.json && common.report.is_none() {
+        return Err(Fault::usage(
+            "nowhere to put the result: add -o FILE (or -o - for standard output, --svg FILE, --json, --report FILE)",
+        ));
     }
-    if let Some(operand) = arguments.keep {
-        join = join.keep(operand);
+    let places = [&arguments.output, &arguments.svg];
+    documents::check(places.into_iter().flatten().map(PathBuf::as_path), common, &session.limits)?;
+    let start = Instant::now();
+    let texts = read(&[&arguments.first, &arguments.second], session)?;
+    session.took("read", start);
+    let start = Instant::now();
+    let wanted = JoinArguments {
+        discrete: arguments.metric == Metric::Discrete,
+        keep: arguments.keep.map(|name| name.0),
+        fix_ends: arguments.fix_ends,
+        keep_at: arguments.keep_at.clone(),
+        joint: arguments.joint.map(|name| name.0),
+        degree: arguments.degree,
+    };
+    let names = [&arguments.first, &arguments.second].map(|path| path.display().to_string());
+    let joined = curve_text::join([&texts[0], &texts[1]], &names, &wanted)?;
+    session.took("run", start);
+    session.note("join", joined.report);
+    session.note("curve", joined.curve.clone());
+    let mut made = Vec::new();
+    if let Some(path) = &arguments.output {
+        made.push(json_document(path, &joined.curve));
     }
-    if arguments.fix_ends {
-        join = join.fix_ends();
+    if let Some(path) = &arguments.svg {
+        made.push(Document { path: path.clone(), format: "svg", bytes: joined.picture.into_bytes() });
     }
-    for kept in &arguments.keep_at {
-        join = join.keep_at(kept.operand, kept.parameter, kept.order);
-    }
-    if let Some(joint) = arguments.joint {
-        join = join.joint(joint);
-    }
-    let (p, q) = (first.to_nurbs(), second.to_nurbs());
-    let joined = join.join_splines(&p, &q)?;
-    let mut picture = Picture::new();
-    picture.curve(&viewed(&p)?, Ink::First)?;
-    picture.curve(&viewed(&q)?, Ink::Second)?;
-    let shown = viewed(&joined.curve)?;
-    picture.control_polygon(shown.control(), Ink::Faint);
-    picture.curve(&shown, Ink::Main)?;
-    Ok(JoinOutput {
-        curve: spline_to_json(&joined.curve),
-        report: report_to_json(&joined.report),
-        summary: summary(&joined.report),
-        picture: picture.svg(900.0),
-    })
+    write(&made, &joined.summary, session)
 }
 
-/// A curve without inner knots as a Bezier curve, which it is.
-fn spline_to_json<const D: usize>(spline: &NurbsCurve<D>) -> Value {
-    match trisect::parametric::Bezier::new(spline.control()) {
-        Ok(bezier) if bezier.degree() == spline.degree() => bezier_to_json(&bezier),
-        _ => bspline_to_json(spline),
-    }
+fn mesh(arguments: &CurveMesh, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    documents::check([arguments.output.as_path()], session.common, &session.limits)?;
+    let texts = read(&[&arguments.file], session)?;
+    let start = Instant::now();
+    let (polyline, nodes) =
+        curve_text::mesh(&texts[0], arguments.tolerance, arguments.nodes, arguments.halving)
+            .map_err(|error| named(error, &arguments.file))?;
+    let seconds = session.took("run", start);
+    session.note("nodes", nodes);
+    let said = format!("{} ({})", report::counted(nodes, "node"), report::time(seconds));
+    write(&[json_document(&arguments.output, &polyline)], &said, session)
 }
 
-/// The curve seen along z.
-fn viewed<const D: usize>(curve: &NurbsCurve<D>) -> Result<NurbsCurve<2>, GeometryError> {
-    let points: Vec<[f64; 2]> = curve.control().iter().map(|p| [p[0], p[1]]).collect();
-    match curve.weights() {
-        None => NurbsCurve::bspline(curve.degree(), curve.knots(), &points),
-        Some(weights) => NurbsCurve::nurbs(curve.degree(), curve.knots(), &points, weights),
-    }
+fn convert(arguments: &CurveConvert, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    documents::check([arguments.output.as_path()], session.common, &session.limits)?;
+    let texts = read(&[&arguments.file], session)?;
+    let (text, format) =
+        curve_text::convert(&texts[0], arguments.tolerance).map_err(|error| named(error, &arguments.file))?;
+    let bytes = (text + "\n").into_bytes();
+    write(&[Document { path: arguments.output.clone(), format, bytes }], "converted", session)
 }
 
-fn report_to_json(report: &JoinReport) -> Value {
-    let constraints = report
-        .constraints
-        .iter()
-        .map(|c| json!({ "name": c.name, "residual": c.residual, "follows_from": c.follows_from }));
-    json!({
-        "joint": report.joint,
-        "discrete_metric": report.discrete,
-        "integral_metric": report.integral,
-        "largest_deviation": report.largest_deviation,
-        "freedom": report.freedom,
-        "constraints": constraints.collect::<Vec<_>>(),
-    })
+fn draw(arguments: &CurveDraw, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    documents::check([arguments.output.as_path()], session.common, &session.limits)?;
+    let files: Vec<&PathBuf> = arguments.files.iter().collect();
+    let texts = read(&files, session)?;
+    let names: Vec<String> = arguments.files.iter().map(|path| path.display().to_string()).collect();
+    let bytes = curve_text::draw(&texts, &names)?.into_bytes();
+    let said = format!("{} drawn", report::counted(texts.len(), "curve"));
+    write(&[Document { path: arguments.output.clone(), format: "svg", bytes }], &said, session)
 }
 
-fn summary(report: &JoinReport) -> String {
-    let [first, second] = report.largest_deviation;
-    let mut text = format!(
-        "joined at {}: integral metric {:.6}, discrete metric {:.6}, largest deviation {first:.6} and {second:.6}",
-        report.joint, report.integral, report.discrete
-    );
-    for constraint in report.constraints.iter().filter(|c| !c.follows_from.is_empty()) {
-        text += &format!("; {} follows from {}", constraint.name, constraint.follows_from.join(", "));
-    }
-    text
+fn named(error: Error, path: &Path) -> Fault {
+    error.of_operand(0, path.display().to_string()).into()
 }
 
-/// A curve as a polygon within `tolerance` (`curve mesh`): JSON of a polyline, and how many nodes it has.
-///
-/// # Errors
-/// Those of reading and of [`CurveMeshing::mesh`].
-pub(crate) fn mesh(
-    text: &str,
-    tolerance: f64,
-    nodes: usize,
-    halving: bool,
-) -> Result<(Value, usize), trisect::Error> {
-    let refinement = if halving { Refinement::Halving } else { Refinement::Levelled };
-    let meshing = CurveMeshing::new(tolerance).initial_nodes(nodes.max(2)).refinement(refinement);
-    fn polyline<const D: usize>(
-        curve: &dyn Curve<D>,
-        meshing: &CurveMeshing,
-    ) -> Result<(Value, usize), GeometryError> {
-        let mut points = meshing.mesh(curve)?.points;
-        if curve.is_closed() {
-            points.pop();
-        }
-        let lists: Vec<Vec<f64>> = points.iter().map(|p| p.to_vec()).collect();
-        Ok((json!({ "type": "polyline", "closed": curve.is_closed(), "points": lists }), points.len()))
-    }
-    let value = parse(text)?;
-    Ok(match curve(&value)? {
-        AnyCurve::Plane(curve) => polyline(curve.as_ref(), &meshing)?,
-        AnyCurve::Space(curve) => polyline(curve.as_ref(), &meshing)?,
-    })
+fn json_document(path: &Path, value: &Value) -> Document {
+    Document { path: path.to_path_buf(), format: "json", bytes: format!("{value:#}\n").into_bytes() }
 }
 
-/// A plane curve, given as JSON or as SVG path data, in the other form (`curve convert`).
-///
-/// # Errors
-/// Those of reading; curves of space have no SVG form.
-pub(crate) fn convert(text: &str, tolerance: f64) -> Result<String, trisect::Error> {
-    if !text.trim_start().starts_with('{') {
-        let found = curves_of_path(text)?;
-        let all = found.closed.iter().chain(&found.open);
-        let curves: Vec<Value> = all.map(|c| bspline_to_json(&c.to_nurbs())).collect();
-        return Ok(json!({ "curves": curves }).to_string());
-    }
-    match curve(&parse(text)?)? {
-        AnyCurve::Plane(curve) => Ok(path_data(curve.as_ref(), tolerance)?),
-        AnyCurve::Space(_) => Err(trisect::Error::InvalidArgument("a curve of space has no SVG path".into())),
-    }
+fn write(made: &[Document], said: &str, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    let start = Instant::now();
+    let outputs = documents::write(made, &session.limits)?;
+    session.took("write", start);
+    session.note("outputs", json!(outputs));
+    let names: Vec<String> = made.iter().map(|document| document.path.display().to_string()).collect();
+    let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
+    session.console.say(&format!("{said}{arrow}"));
+    Ok(Exit::Fine)
 }

@@ -1,43 +1,161 @@
-//! `trisect eval`: a model file evaluated to a mesh, or to contours.
+//! `eval`: a model file evaluated to a mesh, or to contours.
 
-use std::path::PathBuf;
+use std::path::Path;
+use std::time::Instant;
 
 use serde_json::{Value, json};
+use trisect::Solid;
 use trisect::field::Contours;
 use trisect::model::{Evaluated, Evaluation, Model};
-use trisect::{Control, Error};
 
-/// What is asked of `eval`.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct EvalRequest {
-    /// The model file.
-    pub(crate) model: PathBuf,
-    /// Overrides every tolerance in the model.
-    pub(crate) tolerance: Option<f64>,
-}
+use super::arguments::Colours;
+use super::documents::{self, Document};
+use super::fault::{Exit, Fault};
+use super::field_arguments::Eval;
+use super::operands;
+use super::output::{self, Product, Target};
+use super::report::{self, Measures};
+use super::requests::STANDARD;
+use super::session::Session;
 
-/// The model's result as a closed mesh; writing and drawing it is the caller's.
-pub(crate) fn eval(request: &EvalRequest, control: &Control) -> Result<Evaluated, Error> {
-    let model = Model::load(&request.model)?;
-    evaluation(request, control).run(&model)
-}
-
-/// The boundary of the model's result in the plane z = `height`.
-pub(crate) fn contours(request: &EvalRequest, height: f64, control: &Control) -> Result<Contours, Error> {
-    let model = Model::load(&request.model)?;
-    evaluation(request, control).contours(&model, height)
-}
-
-fn evaluation(request: &EvalRequest, control: &Control) -> Evaluation {
-    let evaluation = Evaluation::new().control(control.clone());
-    match request.tolerance {
-        Some(tolerance) => evaluation.tolerance(tolerance),
-        None => evaluation,
+/// Evaluates a model.
+pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    let targets = output::targets(&arguments.writing, &arguments.drawing, session.common)?;
+    let common = session.common;
+    let wanted = !targets.is_empty() || common.json || common.report.is_some();
+    if !wanted && arguments.contours.is_none() && !arguments.dry_run {
+        return Err(Fault::usage(
+            "nowhere to put the result: add -o FILE (or -o - for standard output, --png FILE, --contours FILE, --json, \
+             --report FILE, --dry-run)",
+        ));
     }
+    let format = arguments.contours.as_deref().map(contour_format).transpose()?;
+    let places = targets.iter().map(|target| target.path.as_path()).chain(arguments.contours.as_deref());
+    if !arguments.dry_run {
+        documents::check(places, common, &session.limits)?;
+    }
+
+    let control = session.control();
+    let start = Instant::now();
+    let standard = arguments.model == Path::new(STANDARD);
+    let name = if standard { "standard input".to_owned() } else { arguments.model.display().to_string() };
+    session.console.stage(&format!("reading {name}"), 0.0);
+    let folder = arguments.model.parent().filter(|_| !standard).unwrap_or(Path::new(""));
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let model = Model::parse(&operands::text(&arguments.model, &session.limits)?, folder)?;
+    session.took("read", start);
+    let files: Vec<String> = model.files().iter().map(|file| file.display().to_string()).collect();
+    session
+        .note("model", json!({ "file": name, "nodes": model.names().collect::<Vec<_>>(), "files": files }));
+    if arguments.dry_run {
+        return dry_run(&model, &name, session);
+    }
+
+    let start = Instant::now();
+    let mut evaluation = Evaluation::new().control(control);
+    if let Some(tolerance) = arguments.tolerance {
+        evaluation = evaluation.tolerance(tolerance);
+    }
+    let mut parts = Vec::new();
+    let mut drawn = Vec::new();
+    if let (Some(path), Some(format)) = (&arguments.contours, format) {
+        let contours = evaluation.contours(&model, arguments.contour_height)?;
+        parts.push(format!(
+            "{} of {}, area {}",
+            report::counted(contours.loops.len(), "contour"),
+            report::counted(contours.len(), "point"),
+            report::short(contours.area())
+        ));
+        session.note(
+            "contours",
+            json!({ "height": arguments.contour_height, "count": contours.loops.len(),
+                    "points": contours.len(), "area": contours.area() }),
+        );
+        let bytes = if format == "svg" { svg(&contours) } else { polygons(&contours) }.into_bytes();
+        drawn.push(Document { path: path.clone(), format, bytes });
+    }
+    // Contours alone need no mesh.
+    let found = if wanted || drawn.is_empty() { Some(evaluation.run(&model)?) } else { None };
+    let solid = found.as_ref().map(|found| Solid::try_from(found.mesh.clone())).transpose()?;
+    let seconds = session.took("run", start);
+    if let (Some(found), Some(solid)) = (&found, &solid) {
+        let measures = Measures::of_solid(solid);
+        let mut result = measures.to_json();
+        result.insert("extraction".into(), extraction(found));
+        session.note("result", result);
+        parts.push(measures.line());
+        for warning in &found.warnings {
+            session.warn(warning.clone());
+        }
+    }
+    write(arguments, &targets, solid.as_ref(), &drawn, session)?;
+    let names: Vec<String> = targets
+        .iter()
+        .map(Target::name)
+        .chain(drawn.iter().map(|document| document.path.display().to_string()))
+        .collect();
+    let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
+    session.console.say(&format!("{name}: {} ({}){arrow}", parts.join("; "), report::time(seconds)));
+    if let Some(extracted) = found.as_ref().and_then(|found| found.extraction) {
+        session.console.detail(&format!(
+            "extracted over {} cells; largest deviation found {:.3e}, tolerance {:.3e}",
+            extracted.cells, extracted.deviation, extracted.tolerance
+        ));
+    }
+    Ok(Exit::Fine)
 }
 
-/// The `extraction` object of the report; null for a result of exact operations alone.
-pub(crate) fn extraction_json(found: &Evaluated) -> Value {
+fn dry_run(model: &Model, name: &str, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    for file in model.files() {
+        std::fs::metadata(&file).map_err(|source| trisect::Error::File {
+            action: "read",
+            path: file.clone(),
+            source,
+        })?;
+    }
+    session.note("dry_run", true);
+    session.console.say(&format!(
+        "dry run: {name} is a model with {} and {}",
+        report::counted(model.names().count(), "named node"),
+        report::counted(model.files().len(), "mesh file"),
+    ));
+    Ok(Exit::Fine)
+}
+
+fn write(
+    arguments: &Eval,
+    targets: &[Target],
+    solid: Option<&Solid>,
+    drawn: &[Document],
+    session: &mut Session<'_>,
+) -> Result<(), Fault> {
+    let start = Instant::now();
+    session.console.stage("writing", 1.0);
+    let outputs = if let Some(solid) = solid {
+        let mesh = solid.mesh();
+        let drawing = &arguments.drawing;
+        let picture = || {
+            let operands = mesh.triangles.iter().map(|_| 0);
+            let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), mesh, operands);
+            trisect::render::mesh(mesh, &output::view(drawing, None), colours.as_deref())
+        };
+        let options = output::write_options(&arguments.writing, &session.limits);
+        let product = Product { mesh, options, picture: &picture, documents: drawn };
+        let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
+        for warning in warnings {
+            session.warn(warning);
+        }
+        outputs
+    } else {
+        documents::write(drawn, &session.limits)?
+    };
+    session.note("outputs", outputs);
+    session.took("write", start);
+    Ok(())
+}
+
+/// What the report says of an extraction; null for a result of exact operations alone.
+fn extraction(found: &Evaluated) -> Value {
     found.extraction.map_or(Value::Null, |report| {
         json!({
             "tolerance": report.tolerance,
@@ -48,12 +166,45 @@ pub(crate) fn extraction_json(found: &Evaluated) -> Value {
     })
 }
 
-/// One line about an extraction, for people.
-pub(crate) fn extraction_line(found: &Evaluated) -> Option<String> {
-    found.extraction.map(|report| {
-        format!(
-            "extracted over {} cells; largest deviation found {:.3e}, tolerance {:.3e}",
-            report.cells, report.deviation, report.tolerance
-        )
-    })
+fn contour_format(path: &Path) -> Result<&'static str, Fault> {
+    let ending = path.extension().map(std::ffi::OsStr::to_ascii_lowercase);
+    match ending.as_deref().and_then(std::ffi::OsStr::to_str) {
+        Some("svg") => Ok("svg"),
+        Some("json") => Ok("json"),
+        _ => Err(Fault::usage(format!("contours are written as *.svg or *.json, not {}", path.display()))),
+    }
+}
+
+/// As a node of a model file.
+fn polygons(contours: &Contours) -> String {
+    json!({ "kind": "contour", "polygons": contours.loops }).to_string() + "\n"
+}
+
+/// One path; y upwards, as in the model.
+fn svg(contours: &Contours) -> String {
+    let points = || contours.loops.iter().flatten();
+    let bound = |axis: usize, start: f64, pick: fn(f64, f64) -> f64| {
+        if contours.is_empty() { 0.0 } else { points().fold(start, |bound, point| pick(bound, point[axis])) }
+    };
+    let low = [0, 1].map(|axis| bound(axis, f64::INFINITY, f64::min));
+    let high = [0, 1].map(|axis| bound(axis, f64::NEG_INFINITY, f64::max));
+    let margin = (high[0] - low[0]).max(high[1] - low[1]).max(1e-9) * 0.04;
+    let mut data = String::new();
+    for polygon in &contours.loops {
+        for (k, [x, y]) in polygon.iter().enumerate() {
+            data += &format!("{}{x} {} ", if k == 0 { "M" } else { "L" }, 0.0 - y);
+        }
+        data += "Z ";
+    }
+    let (width, height) = (high[0] - low[0] + 2.0 * margin, high[1] - low[1] + 2.0 * margin);
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"800\" height=\"{:.0}\" viewBox=\"{} {} {width} {height}\">\n\
+         <path d=\"{}\" fill=\"#d9722e\" fill-opacity=\"0.25\" fill-rule=\"evenodd\" stroke=\"#1b1b1b\" \
+         stroke-width=\"{}\"/>\n</svg>\n",
+        800.0 * height / width,
+        low[0] - margin,
+        -high[1] - margin,
+        data.trim_end(),
+        width.max(height) / 600.0,
+    )
 }

@@ -100,6 +100,10 @@ impl Fault {
                     object.insert("file".into(), name.as_str().into());
                     error = Some(source);
                 }
+                Error::InNode { node, source } => {
+                    object.insert("node".into(), node.as_str().into());
+                    error = Some(source);
+                }
                 Error::Malformed { format, place, .. } => {
                     object.insert("format".into(), format.to_string().to_lowercase().into());
                     object.insert("place".into(), place.as_str().into());

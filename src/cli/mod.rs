@@ -4,7 +4,15 @@ mod arguments;
 mod check;
 mod combine;
 mod convert;
+#[cfg(feature = "parametric")]
+mod curve;
+#[cfg(feature = "parametric")]
+mod curve_text;
+mod documents;
+mod eval;
 mod fault;
+mod field_arguments;
+mod grid;
 mod info;
 mod limits;
 mod operands;
@@ -13,6 +21,8 @@ mod progress;
 mod report;
 mod requests;
 mod session;
+mod slice;
+mod source;
 mod stage;
 mod values;
 
@@ -82,6 +92,11 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Check(check) => check::run(check, matches, &mut session),
             Verb::Info(info) => info::run(info, matches, &mut session),
             Verb::Convert(convert) => convert::run(convert, matches, &mut session),
+            Verb::Eval(eval) => eval::run(eval, &mut session),
+            Verb::Slice(slice) => slice::run(slice, matches, &mut session),
+            Verb::Grid(grid) => grid::run(grid, matches, &mut session),
+            #[cfg(feature = "parametric")]
+            Verb::Curve(verb) => curve::run(verb, &mut session),
         }
     });
     session.end(result)
@@ -155,13 +170,17 @@ mod tests {
     fn every_verb_and_option_is_documented() {
         let text = include_str!("../../docs/program.md");
         let command = Arguments::command();
-        for verb in command.get_subcommands() {
-            assert!(text.contains(&format!("`{}`", verb.get_name())), "{}", verb.get_name());
-            for name in
+        let mut verbs: Vec<(String, &clap::Command)> =
+            command.get_subcommands().map(|verb| (verb.get_name().to_owned(), verb)).collect();
+        while let Some((name, verb)) = verbs.pop() {
+            assert!(text.contains(&format!("`{name}`")), "{name}");
+            for option in
                 command.get_arguments().chain(verb.get_arguments()).filter_map(|option| option.get_long())
             {
-                assert!(text.contains(&format!("`--{name}")), "{}: --{name}", verb.get_name());
+                assert!(text.contains(&format!("`--{option}")), "{name}: --{option}");
             }
+            let inner = verb.get_subcommands();
+            verbs.extend(inner.map(|inner| (format!("{name} {}", inner.get_name()), inner)));
         }
     }
 

@@ -76,6 +76,17 @@ fn file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Error> {
     bytes.map_err(|source| Error::File { action: "read", path: path.to_path_buf(), source })
 }
 
+/// A text file, or standard input.
+pub(crate) fn text(path: &Path, limits: &Limits) -> Result<String, Error> {
+    let standard = path == Path::new(super::requests::STANDARD);
+    let bytes = if standard { limits.while_waiting(standard_input)? } else { file(path, limits)? };
+    String::from_utf8(bytes).map_err(|_| Error::File {
+        action: "read",
+        path: if standard { "standard input".into() } else { path.to_path_buf() },
+        source: std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not text (UTF-8)"),
+    })
+}
+
 fn standard_input() -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     match std::io::stdin().lock().read_to_end(&mut bytes) {

@@ -10,6 +10,7 @@ use trisect::render::{self, Picture};
 use trisect::{Error, Failure, Mesh};
 
 use super::arguments::{Colours, Common, Drawing, Up, Writing};
+use super::documents::{self, Document};
 use super::fault::Fault;
 use super::limits::Limits;
 use super::requests::STANDARD;
@@ -58,6 +59,8 @@ pub(crate) struct Product<'a> {
     pub(crate) options: io::WriteOptions,
     /// Draws the picture, when one is asked for.
     pub(crate) picture: &'a dyn Fn() -> Picture,
+    /// What else is written with it.
+    pub(crate) documents: &'a [Document],
 }
 
 /// The outputs a command line asks for.
@@ -175,6 +178,9 @@ pub(crate) fn write_all(
         stages.push(stage);
         staged.push(index);
     }
+    for document in product.documents {
+        stages.extend(documents::staged(document, limits)?);
+    }
     for (_, target) in streams {
         match write_stream(target, product).map_err(|error| failed(target, error)) {
             Ok(said) => {
@@ -190,6 +196,7 @@ pub(crate) fn write_all(
     let described = targets.iter().zip(sizes).map(|(target, bytes)| {
         json!({ "file": target.path.display().to_string(), "format": target.format(), "bytes": bytes })
     });
+    let described = described.chain(product.documents.iter().map(documents::described));
     Ok((described.collect(), warnings))
 }
 
@@ -226,7 +233,7 @@ fn write_stream(target: &Target, product: &Product<'_>) -> Result<Vec<String>, E
 }
 
 /// An existing thing that is not a file: writing beside it and renaming would destroy it.
-fn is_device(path: &Path) -> bool {
+pub(crate) fn is_device(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|what| !what.is_file() && !what.is_dir())
 }
 
@@ -288,8 +295,13 @@ pub(crate) fn write_report(path: &Path, report: &Value, limits: &Limits) -> Resu
 
 /// Prints text on standard output; a reader that went away is no failure.
 pub(crate) fn print(text: &str) -> Result<(), Fault> {
+    print_bytes(text.as_bytes())
+}
+
+/// Writes bytes to standard output; a reader that went away is no failure.
+pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), Fault> {
     let mut out = std_io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std_io::ErrorKind::BrokenPipe => {
             Err(Fault::output("standard output", error))
         }

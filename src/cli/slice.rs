@@ -1,103 +1,59 @@
-//! `trisect slice`: a picture of a plane section of a model, a mesh's distance, or a formula.
+//! `slice`: a picture of a plane section of a model, of a mesh's signed distance, or of a formula.
 
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::time::Instant;
 
-use trisect::field::{Expression, Formula, Graph, Section, SectionPicture, SignRule, SignedDistance, System};
-use trisect::model::{Evaluation, Model};
-use trisect::{Control, Error, Mesh};
+use clap::ArgMatches;
+use serde_json::json;
+use trisect::field::Section;
 
-/// What is pictured.
-#[derive(Clone, Debug)]
-pub(crate) enum SliceSource {
-    /// A model file.
-    Model(PathBuf),
-    /// The signed distance of a mesh already read, by a sign rule.
-    Mesh(Box<Mesh>, SignRule),
-    /// A formula's text.
-    Formula(String),
-}
+use super::documents::{self, Document};
+use super::fault::{Exit, Fault};
+use super::field_arguments::{Axis, Slice};
+use super::report;
+use super::session::Session;
+use super::source;
 
-/// What is asked of `slice`.
-#[derive(Clone, Debug)]
-pub(crate) struct SliceRequest {
-    pub(crate) source: SliceSource,
-    /// Across x, y or z (0, 1, 2).
-    pub(crate) axis: usize,
-    /// Where along the axis; in the middle of the bounds if not given.
-    pub(crate) position: Option<f64>,
-    /// The part of space pictured; if not given, the solid's own bounds and a tenth more.
-    pub(crate) bounds: Option<[[f64; 3]; 2]>,
-    /// Pixels across.
-    pub(crate) width: u32,
-    /// Step between lines of equal value.
-    pub(crate) bands: Option<f64>,
-}
+/// Draws a section.
+pub(crate) fn run(arguments: &Slice, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    documents::check([arguments.output.as_path()], session.common, &session.limits)?;
+    let control = session.control();
+    let start = Instant::now();
+    let field = source::field(&arguments.source, matches, session, &control)?;
+    session.took("read", start);
 
-/// Draws the section.
-pub(crate) fn slice(request: &SliceRequest, control: &Control) -> Result<SectionPicture, Error> {
-    let (field, own_bounds) = field(&request.source, control)?;
-    let bounds = match (request.bounds, own_bounds) {
-        (Some(bounds), _) => bounds,
-        (None, Some([low, high])) => {
-            let room = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max) * 0.1;
-            [low.map(|x| x - room), high.map(|x| x + room)]
-        }
-        (None, None) => {
-            let found = field.positive_bounds(None, control)?;
-            found.ok_or_else(|| {
-                Error::Field("the field is positive nowhere: say which part to picture".into())
-            })?
-        }
+    let start = Instant::now();
+    let axis = match arguments.axis {
+        Axis::X => 0,
+        Axis::Y => 1,
+        Axis::Z => 2,
     };
-    let middle = |axis: usize| (bounds[0][axis] + bounds[1][axis]) / 2.0;
-    let position = request.position.unwrap_or_else(|| middle(request.axis.min(2)));
-    let section = Section::across(request.axis, position, bounds[0], bounds[1])?;
-    SectionPicture::of(&field, &section, request.width, request.bands, control)
-}
+    let [low, high] = field.bounds;
+    let position = arguments.at.unwrap_or(low[axis] * 0.5 + high[axis] * 0.5);
+    let section = Section::across(axis, position, low, high)?;
+    let picture = section.picture(&field.expression, arguments.width, arguments.bands, &control)?;
+    let seconds = session.took("run", start);
 
-type Bounds = Option<[[f64; 3]; 2]>;
-
-fn field(source: &SliceSource, control: &Control) -> Result<(Expression, Bounds), Error> {
-    match source {
-        SliceSource::Model(path) => {
-            let model = Model::load(path)?;
-            let evaluation = Evaluation::new().control(control.clone());
-            Ok((evaluation.field(&model)?, evaluation.bounds(&model)?))
-        }
-        SliceSource::Mesh(mesh, rule) => {
-            let distance = SignedDistance::of_mesh(mesh, *rule);
-            let bounds = distance.tree().bounds();
-            let mut graph = Graph::new();
-            let root = graph.leaf(Arc::new(distance));
-            Ok((Expression::new(graph, root), bounds))
-        }
-        SliceSource::Formula(text) => {
-            let field = Formula::parse(text)?.compile(System::default(), &[], &[])?;
-            Ok((field, None))
-        }
-    }
-}
-
-/// Writes the picture beside its place first, so that a failure leaves no half of it.
-pub(crate) fn write(picture: &SectionPicture, path: &Path) -> Result<(), Error> {
-    let fault = |action: &'static str| move |source| Error::File { action, path: path.to_owned(), source };
-    let mut name = path.as_os_str().to_owned();
-    name.push(".part");
-    let part = PathBuf::from(name);
-    let written = std::fs::File::create(&part).and_then(|file| {
-        let mut writer = BufWriter::new(file);
-        picture.write_png(&mut writer)?;
-        writer.flush()
-    });
-    let result = match written {
-        Ok(()) => std::fs::rename(&part, path).map_err(fault("replace")),
-        Err(error) => Err(fault("write")(error)),
-    };
-    if result.is_err() {
-        // Nothing more can be done about a file that cannot be removed.
-        let _ = std::fs::remove_file(&part);
-    }
-    result
+    let start = Instant::now();
+    let mut bytes = Vec::new();
+    picture.write_png(&mut bytes).map_err(|error| Fault::output(&arguments.output, error))?;
+    let document = Document { path: arguments.output.clone(), format: "png", bytes };
+    let outputs = documents::write(&[document], &session.limits)?;
+    session.took("write", start);
+    let name = ["x", "y", "z"][axis];
+    session.note(
+        "section",
+        json!({ "of": field.name, "axis": name, "at": position, "bounds": field.bounds,
+                "size": [picture.width(), picture.height()] }),
+    );
+    session.note("outputs", outputs);
+    session.console.say(&format!(
+        "{}: section at {name} = {}, {} x {} pixels ({}) -> {}",
+        field.name,
+        report::short(position),
+        picture.width(),
+        picture.height(),
+        report::time(seconds),
+        arguments.output.display()
+    ));
+    Ok(Exit::Fine)
 }

@@ -35,6 +35,33 @@ pub(crate) fn distance(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A length that is positive.
+pub(crate) fn length(text: &str) -> Result<f64, String> {
+    match numbers::<1>(text) {
+        Ok([length]) if length > 0.0 => Ok(length),
+        Ok(_) => Err("must be more than zero".into()),
+        Err(error) => Err(error.replace("1 numbers separated by commas", "one number")),
+    }
+}
+
+/// A number.
+pub(crate) fn number(text: &str) -> Result<f64, String> {
+    match numbers::<1>(text) {
+        Ok([number]) => Ok(number),
+        Err(error) => Err(error.replace("1 numbers separated by commas", "one number")),
+    }
+}
+
+/// Two opposite corners of a box: `x,y,z,x,y,z`, the lower one first.
+pub(crate) fn corners(text: &str) -> Result<[[f64; 3]; 2], String> {
+    let [a, b, c, d, e, f] = numbers(text)?;
+    let (low, high) = ([a, b, c], [d, e, f]);
+    match (0..3).all(|axis| low[axis] < high[axis]) {
+        true => Ok([low, high]),
+        false => Err("the first corner must be below the second along every axis".into()),
+    }
+}
+
 /// `s` or `x,y,z`, none of them zero.
 pub(crate) fn scale(text: &str) -> Result<[f64; 3], String> {
     let factors = match numbers::<1>(text) {

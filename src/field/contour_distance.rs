@@ -145,13 +145,9 @@ impl ContourDistance {
         }
     }
 
-    /// Calls `visit` with the outward normal of every edge near a disc.
-    pub(super) fn edges_near(&self, centre: [f64; 2], radius: f64, mut visit: impl FnMut([f64; 2])) {
+    /// Calls `visit` with the outward normal of every edge near a disc, until it answers no.
+    pub(super) fn edges_near(&self, centre: [f64; 2], radius: f64, mut visit: impl FnMut([f64; 2]) -> bool) {
         let centre = glam::DVec3::new(centre[0], centre[1], 0.0);
-        let mut count = 0;
-        self.tree.triangles_near(centre, radius, |edge| {
-            count += 1;
-            visit(if count <= 64 { self.normal(edge) } else { [0.0; 2] });
-        });
+        self.tree.triangles_near(centre, radius, |edge| visit(self.normal(edge)));
     }
 }

@@ -1,6 +1,7 @@
 //! Signed distance of a mesh.
 
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec3;
 
@@ -67,7 +68,12 @@ pub struct SignedDistance {
     winding: OnceLock<FastWinding>,
     rule: SignRule,
     size: f64,
+    /// Tells meshes apart.
+    number: u64,
 }
+
+/// How many meshes there have been.
+static COUNT: AtomicU64 = AtomicU64::new(0);
 
 /// Queries answered one after the other from each other's nearest triangle.
 const RUN: usize = 512;
@@ -88,7 +94,8 @@ impl SignedDistance {
         let size = tree.bounds().map_or(0.0, |[low, high]| {
             DVec3::from_array(low).abs().max(DVec3::from_array(high).abs()).max_element()
         });
-        Self { tree, normals, winding: OnceLock::new(), rule, size }
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        Self { tree, normals, winding: OnceLock::new(), rule, size, number }
     }
 
     /// The same surface with another sign rule.
@@ -118,7 +125,16 @@ impl SignedDistance {
     }
 
     pub(crate) fn measure_from(&self, query: [f64; 3], guess: Option<u32>) -> Option<SignedDistanceAt> {
-        let closest = self.tree.closest_from(query, guess)?;
+        Some(self.measured(query, self.tree.closest_from(query, guess)?))
+    }
+
+    /// A number that no other mesh of this process has; clones, which have the same surface, share it.
+    pub(crate) fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// The distance and its gradient, from the nearest point.
+    pub(crate) fn measured(&self, query: [f64; 3], closest: Closest) -> SignedDistanceAt {
         let distance = self.sign(query, &closest);
         let away = DVec3::from_array(query) - DVec3::from_array(closest.point);
         let gradient = if distance > 0.0 {
@@ -128,7 +144,7 @@ impl SignedDistance {
         } else {
             -self.normals.of(closest.triangle, closest.feature).normalize_or_zero()
         };
-        Some(SignedDistanceAt { distance, gradient: gradient.to_array(), closest })
+        SignedDistanceAt { distance, gradient: gradient.to_array(), closest }
     }
 
     /// Where `query` is, by the sign rule.

@@ -1,10 +1,14 @@
 //! Distances as leaves of expressions.
 
+use std::cell::Cell;
+
 use glam::DVec3;
+use smallvec::SmallVec;
 
 use super::expression::Leaf;
 use super::interval::Interval;
 use super::{ContourDistance, SignedDistance};
+use crate::spatial::{Closest, Feature};
 
 /// Bounds of a function that changes by at most 1 per unit of length, over a box, from its value at the centre.
 fn lipschitz(value: f64, low: [f64; 3], high: [f64; 3], axes: usize) -> Interval {
@@ -17,23 +21,76 @@ fn centre(low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| low[axis] * 0.5 + high[axis] * 0.5)
 }
 
-/// More triangles than this near a box, and its gradient is taken to point anywhere.
+/// More faces than this near a box, and its gradient is taken to point anywhere.
 const FEW: usize = 64;
+
+/// Bounds of all directions between the given ones: of every unit vector that is a sum of them with positive factors, as
+/// the gradient of a distance is next to an edge or a vertex. A cone round their mean that holds all of them holds
+/// those sums. Nothing if a direction is unknown (zero) or the cone is no smaller than a half-space.
+fn directions_between(directions: &[DVec3]) -> Option<[Interval; 3]> {
+    let axis = directions.iter().sum::<DVec3>().try_normalize()?;
+    let least = directions.iter().map(|direction| direction.dot(axis)).fold(1.0, f64::min);
+    let cosine = least - 1e-12;
+    if !(cosine > 0.0) {
+        return None;
+    }
+    let sine = (1.0 - cosine * cosine).sqrt();
+    let highest = |along: f64| {
+        if along >= cosine { 1.0 } else { along * cosine + (1.0 - along * along).max(0.0).sqrt() * sine }
+    };
+    Some(std::array::from_fn(|k| {
+        let (low, high) = (-highest(-axis[k]), highest(axis[k]));
+        Interval::new((low - 1e-12).max(-1.0), (high + 1e-12).min(1.0))
+    }))
+}
+
+/// A nearest point with the number of its mesh and its query.
+type Answer = (u64, [f64; 3], Closest);
+
+thread_local! {
+    /// The last nearest points found on this thread. Neighbouring queries start from them, and several questions about
+    /// one point are answered once.
+    static LAST: Cell<[Option<Answer>; 4]> = const { Cell::new([None; 4]) };
+}
+
+impl SignedDistance {
+    /// The nearest point, found with the help of what was found last on this thread.
+    fn nearest(&self, point: [f64; 3]) -> Option<Closest> {
+        let mut known = LAST.get();
+        let number = self.number();
+        let slot = known.iter().position(|entry| entry.is_some_and(|entry| entry.0 == number));
+        let last = slot.and_then(|slot| known[slot]);
+        if let Some((_, at, closest)) = last
+            && at.map(f64::to_bits) == point.map(f64::to_bits)
+        {
+            return Some(closest);
+        }
+        let closest = self.tree().closest_from(point, last.map(|last| last.2.triangle))?;
+        known[slot.unwrap_or(number as usize % known.len())] = Some((number, point, closest));
+        LAST.set(known);
+        Some(closest)
+    }
+}
 
 impl Leaf for SignedDistance {
     fn value(&self, point: [f64; 3]) -> f64 {
-        self.at(point)
+        self.nearest(point).map_or_else(|| self.at(point), |closest| self.sign(point, &closest))
     }
 
     fn gradient(&self, point: [f64; 3]) -> (f64, [f64; 3]) {
-        self.measure(point)
-            .map_or_else(|| (self.at(point), [0.0; 3]), |found| (found.distance, found.gradient))
+        self.nearest(point).map_or_else(
+            || (self.at(point), [0.0; 3]),
+            |closest| {
+                let found = self.measured(point, closest);
+                (found.distance, found.gradient)
+            },
+        )
     }
 
     fn bounds(&self, low: [f64; 3], high: [f64; 3]) -> Interval {
         let centre = centre(low, high);
         if centre.iter().all(|x| x.is_finite()) {
-            lipschitz(self.at(centre), low, high, 3)
+            lipschitz(Leaf::value(self, centre), low, high, 3)
         } else {
             self.outside_bounds(low, high)
         }
@@ -42,25 +99,20 @@ impl Leaf for SignedDistance {
     fn gradient_bounds(&self, low: [f64; 3], high: [f64; 3]) -> [Interval; 3] {
         let anything = [Interval::new(-1.0, 1.0); 3];
         let middle = DVec3::from_array(centre(low, high));
-        let Some(found) = self.tree().closest(middle.to_array()) else { return anything };
+        let Some(found) = self.nearest(middle.to_array()) else { return anything };
         let half = (DVec3::from_array(high) - middle).length();
         // Nearest points of the whole box lie within this ball: the distance grows by at most half, the query moves
         // by at most half.
         let radius = (found.squared_distance.sqrt() + 2.0 * half) * (1.0 + 1e-9);
-        let mut count = 0;
-        let mut hull: Option<[Interval; 3]> = None;
+        let mut inward: SmallVec<[DVec3; FEW]> = SmallVec::new();
+        let mut known = true;
         self.tree().triangles_near(middle, radius, |triangle| {
-            count += 1;
-            if count <= FEW {
-                let normal = self.normal(triangle, crate::spatial::Feature::Face);
-                let inward = normal.map(|x| Interval::new(-x, -x));
-                hull = Some(hull.map_or(inward, |all| std::array::from_fn(|k| all[k].hull(inward[k]))));
-            }
+            let normal = -DVec3::from_array(self.normal(triangle, Feature::Face));
+            known &= inward.len() < FEW && normal != DVec3::ZERO;
+            inward.push(normal);
+            known
         });
-        match hull {
-            Some(hull) if count <= FEW => hull,
-            _ => anything,
-        }
+        if known { directions_between(&inward).unwrap_or(anything) } else { anything }
     }
 }
 
@@ -104,18 +156,44 @@ impl Leaf for ContourDistance {
         let middle = centre(low, high);
         let half = (0..2).map(|axis| (high[axis] - middle[axis]).powi(2)).sum::<f64>().sqrt();
         let radius = (self.at([middle[0], middle[1]]).abs() + 2.0 * half) * (1.0 + 1e-9);
-        let mut count = 0;
-        let mut hull: Option<[Interval; 2]> = None;
-        self.edges_near([middle[0], middle[1]], radius, |normal| {
-            count += 1;
-            if count <= FEW {
-                let inward = normal.map(|x| Interval::new(-x, -x));
-                hull = Some(hull.map_or(inward, |all| std::array::from_fn(|k| all[k].hull(inward[k]))));
-            }
+        let mut inward: SmallVec<[DVec3; FEW]> = SmallVec::new();
+        let mut known = true;
+        self.edges_near([middle[0], middle[1]], radius, |[x, y]| {
+            known &= inward.len() < FEW && [x, y] != [0.0; 2];
+            inward.push(DVec3::new(-x, -y, 0.0));
+            known
         });
-        match hull {
-            Some([x, y]) if count <= FEW => [x, y, Interval::new(0.0, 0.0)],
+        match directions_between(&inward) {
+            Some([x, y, _]) if known => [x, y, Interval::new(0.0, 0.0)],
             _ => anything,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_next_to_an_edge_are_bounded() {
+        use rand::{RngExt, SeedableRng};
+        let mut random = rand::rngs::ChaCha8Rng::seed_from_u64(17);
+        for _ in 0..2000 {
+            let mut direction = || {
+                let mut x = || 2.0 * random.random::<f64>() - 1.0;
+                (DVec3::new(x(), x(), x()) + DVec3::Z).normalize()
+            };
+            let all = [direction(), direction(), direction()];
+            let Some(bounds) = directions_between(&all) else { continue };
+            for _ in 0..20 {
+                let between = all.iter().map(|d| *d * random.random::<f64>()).sum::<DVec3>().normalize();
+                assert!((0..3).all(|k| bounds[k].contains(between[k])), "{all:?} {between} {bounds:?}");
+            }
+        }
+        // The sharp edge of a blade: the gradient beside it lies in neither face's direction, nor in the box of both.
+        assert!(directions_between(&[DVec3::Z, -DVec3::Z]).is_none());
+        let exact = directions_between(&[DVec3::Z, DVec3::Z]).expect("one direction");
+        assert!(exact[2].low > 1.0 - 1e-11 && exact[0].high < 1e-5);
+        assert!(directions_between(&[]).is_none());
     }
 }

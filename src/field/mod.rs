@@ -18,9 +18,11 @@ mod grid;
 mod interval;
 mod leaf;
 mod number;
-mod picture;
 mod pseudonormal;
 mod rfunction;
+mod section;
+#[cfg(feature = "render")]
+mod section_picture;
 mod work;
 
 pub use contour_distance::{ContourDistance, Contours};
@@ -32,5 +34,5 @@ pub(crate) use formula::named_system;
 pub use formula::{Formula, FormulaError};
 pub use grid::{Grid, GridFormat};
 pub use interval::Interval;
-pub use picture::{Section, SectionPicture};
 pub use rfunction::System;
+pub use section::Section;

@@ -1,4 +1,4 @@
-//! Model files: solids composed of meshes, primitives, formulas and contours, as JSON.
+//! Model files: solids composed of meshes, primitives, formulas, curves and patches, as JSON.
 //!
 //! `docs/models.md` describes the file. A [`Model`] is read and checked as a whole, then evaluated: operations marked
 //! `exact` run on meshes, those marked `field` on R-functions, with one extraction at the end.
@@ -23,7 +23,8 @@
 
 mod contour;
 mod evaluate;
-mod load;
+#[cfg(feature = "parametric")]
+mod parametric;
 mod parse;
 mod primitive;
 mod transform;
@@ -35,9 +36,26 @@ pub use evaluate::{Evaluated, Evaluation, ExtractionReport, LeafKind};
 
 use crate::Error;
 use crate::boolean::Operation;
-use crate::field::{Contours, Formula, System};
+use crate::field::{Formula, System};
+#[cfg(not(feature = "parametric"))]
+use crate::{Control, Mesh};
+use contour::Outline;
 use glam::DAffine3;
+#[cfg(feature = "parametric")]
+use parametric::Parametric;
 use primitive::Primitive;
+
+/// No solid is parametric in a build without the feature.
+#[cfg(not(feature = "parametric"))]
+#[derive(Clone, Debug)]
+enum Parametric {}
+
+#[cfg(not(feature = "parametric"))]
+impl Parametric {
+    fn mesh(&self, _: Option<f64>, _: &Control) -> Result<Mesh, Error> {
+        match *self {}
+    }
+}
 
 /// A model: named and unnamed nodes, one of which is the result.
 #[derive(Clone, Debug)]
@@ -96,8 +114,15 @@ enum Kind {
         /// Nodes the formula uses by name.
         uses: Vec<(String, usize)>,
     },
-    Contour(Contours),
-    /// A leaf that something outside this module evaluates.
+    /// A plane region, the same at every height.
+    Contour(Outline),
+    /// Patches, or a region moved.
+    #[cfg_attr(
+        not(feature = "parametric"),
+        allow(dead_code, reason = "nothing is parametric in such a build")
+    )]
+    Parametric(Parametric),
+    /// A leaf of a kind of the caller's own.
     Custom {
         kind: String,
         value: serde_json::Value,
@@ -153,7 +178,17 @@ impl Model {
             Kind::Operation(_, operands) => operands.clone(),
             Kind::Complement(operand) | Kind::Reference(_, operand) => vec![*operand],
             Kind::Formula { uses, .. } => uses.iter().map(|used| used.1).collect(),
-            Kind::Mesh(_) | Kind::Primitive(_) | Kind::Contour(_) | Kind::Custom { .. } => Vec::new(),
+            Kind::Mesh(_)
+            | Kind::Primitive(_)
+            | Kind::Contour(_)
+            | Kind::Parametric(_)
+            | Kind::Custom { .. } => Vec::new(),
         }
     }
+}
+
+/// What is said of a kind that this build cannot read.
+#[cfg(not(feature = "parametric"))]
+fn without_parametric(kind: &str) -> Error {
+    Error::Model(format!("`{kind}` needs a build with the feature `parametric`"))
 }

@@ -14,17 +14,20 @@ use crate::field::{Formula, System, named_system};
 
 /// Longest chain of nodes in nodes.
 const DEEPEST: usize = 400;
-/// Kinds that are evaluated by a [`LeafKind`](super::LeafKind).
-pub(super) const CUSTOM: [&str; 1] = ["patches"];
+/// How the names of kinds begin that a [`LeafKind`](super::LeafKind) evaluates.
+const CUSTOM: &str = "x-";
+/// Kinds of solids that are described as in `docs/parametric.md`.
+const PARAMETRIC: [&str; 4] = ["patches", "extrusion", "revolution", "sweep"];
 const KINDS: &str = "union, intersection, difference, xor, complement, mesh, box, sphere, cylinder, cone, torus, \
-                     formula, contour, patches";
+                     formula, contour, region, patches, extrusion, revolution, sweep, parametric";
 
-struct Reading {
+struct Reading<'a> {
     nodes: Vec<Node>,
     names: BTreeMap<String, usize>,
+    folder: &'a Path,
 }
 
-fn fault(what: impl Into<String>) -> Error {
+pub(super) fn fault(what: impl Into<String>) -> Error {
     Error::Model(what.into())
 }
 
@@ -46,7 +49,7 @@ pub(super) fn model(text: &str, folder: &Path) -> Result<Model, Error> {
     let Value::Object(mut object) = value else {
         return Err(fault("a model is an object: a node, or { \"nodes\": {...}, \"result\": ... }"));
     };
-    let mut reading = Reading { nodes: Vec::new(), names: BTreeMap::new() };
+    let mut reading = Reading { nodes: Vec::new(), names: BTreeMap::new(), folder };
     let mut defaults = Defaults::default();
     let result = if object.contains_key("result") || object.contains_key("nodes") {
         defaults = defaults_of(&mut object)?;
@@ -154,7 +157,7 @@ enum Text {
     Lines(Vec<String>),
 }
 
-impl Reading {
+impl Reading<'_> {
     fn placeholder(&mut self, label: &str) -> usize {
         self.nodes.push(Node::new(label.to_owned(), Kind::Reference(String::new(), usize::MAX)));
         self.nodes.len() - 1
@@ -172,10 +175,11 @@ impl Reading {
     fn node(&mut self, value: Value, label: &str, path: &str) -> Result<Node, Error> {
         match value {
             Value::String(text) => {
-                let kind = if self.names.contains_key(&text) || !looks_like_file(&text) {
-                    Kind::Reference(text, usize::MAX)
-                } else {
-                    Kind::Mesh(text.into())
+                let kind = match extension(&text) {
+                    _ if self.names.contains_key(&text) => Kind::Reference(text, usize::MAX),
+                    Some("json") => self.described(&text).map_err(within(label))?,
+                    Some(_) => Kind::Mesh(text.into()),
+                    None => Kind::Reference(text, usize::MAX),
                 };
                 Ok(Node::new(label.to_owned(), kind))
             }
@@ -220,12 +224,6 @@ impl Reading {
             checked_bounds(node.bounds)?;
             Ok(node)
         };
-        // A contour has a tolerance of its own.
-        let contour_tolerance = if object.get("kind").and_then(Value::as_str) == Some("contour") {
-            object.remove("tolerance")
-        } else {
-            None
-        };
         let mut node = common(&mut object).map_err(within(label))?;
         let kind: Option<String> = take(&mut object, "kind").map_err(within(label))?;
         let operation: Option<String> = take(&mut object, "operation").map_err(within(label))?;
@@ -247,9 +245,6 @@ impl Reading {
                 return Err(fault("a node has a `kind` or an `operation`, not both").in_node(label));
             }
         };
-        if let Some(tolerance) = contour_tolerance {
-            object.insert("tolerance".to_owned(), tolerance);
-        }
         node.kind = self.kind(&name, object, label, path)?;
         Ok(node)
     }
@@ -287,9 +282,22 @@ impl Reading {
             }
             "contour" => {
                 let fields = Value::Object(std::mem::take(&mut object));
-                Kind::Contour(contour::parse(fields).map_err(|what| fault(what).in_node(label))?)
+                Kind::Contour(contour::contour(fields).map_err(within(label))?)
             }
-            kind if CUSTOM.contains(&kind) => {
+            "region" => {
+                let region = object.remove("region");
+                let region = region.ok_or_else(|| fault("`region` is missing").in_node(label))?;
+                region_of(region).map_err(within(label))?
+            }
+            "parametric" => {
+                let file: Option<String> = take(&mut object, "file").map_err(within(label))?;
+                let file = file.ok_or_else(|| fault("`file` is missing").in_node(label))?;
+                self.described(&file).map_err(within(label))?
+            }
+            kind if PARAMETRIC.contains(&kind) => {
+                solid_of(kind, std::mem::take(&mut object)).map_err(within(label))?
+            }
+            kind if kind.starts_with(CUSTOM) => {
                 let value = Value::Object(std::mem::take(&mut object));
                 Kind::Custom { kind: kind.to_owned(), value }
             }
@@ -299,6 +307,18 @@ impl Reading {
             Some(key) => Err(fault(format!("unknown key `{key}` for the kind `{name}`")).in_node(label)),
             None => Ok(kind),
         }
+    }
+
+    /// The solid or region described by a JSON file.
+    #[cfg(feature = "parametric")]
+    fn described(&self, file: &str) -> Result<Kind, Error> {
+        super::parametric::file(self.folder, file)
+    }
+
+    #[cfg(not(feature = "parametric"))]
+    fn described(&self, file: &str) -> Result<Kind, Error> {
+        let _ = self.folder;
+        Err(super::without_parametric(file))
     }
 
     fn operation(
@@ -360,9 +380,28 @@ impl Node {
     }
 }
 
-fn looks_like_file(text: &str) -> bool {
-    let extension = Path::new(text).extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-    matches!(extension.as_deref(), Some("obj" | "gltf" | "glb" | "stl" | "ply" | "off"))
+#[cfg(feature = "parametric")]
+use super::parametric::solid_of;
+
+#[cfg(not(feature = "parametric"))]
+fn solid_of(kind: &str, _: Map<String, Value>) -> Result<Kind, Error> {
+    Err(super::without_parametric(kind))
+}
+
+#[cfg(feature = "parametric")]
+fn region_of(description: Value) -> Result<Kind, Error> {
+    Ok(super::parametric::region_of(description))
+}
+
+#[cfg(not(feature = "parametric"))]
+fn region_of(_: Value) -> Result<Kind, Error> {
+    Err(super::without_parametric("region"))
+}
+
+/// The ending of a name that looks like a mesh file or a description of a solid.
+fn extension(text: &str) -> Option<&'static str> {
+    let ending = Path::new(text).extension()?.to_str()?.to_ascii_lowercase();
+    ["json", "obj", "gltf", "glb", "stl", "ply", "off"].into_iter().find(|known| *known == ending)
 }
 
 /// Looks up all names.
@@ -373,8 +412,7 @@ fn resolve(model: &mut Model) -> Result<(), Error> {
             Kind::Reference(name, target) => match names.get(name) {
                 Some(&index) => *target = index,
                 None => {
-                    let what =
-                        format!("there is no node named `{name}`, and it is not the name of a mesh file");
+                    let what = format!("there is no node named `{name}`, and it is not the name of a file");
                     return Err(fault(what).in_node(&node.label));
                 }
             },

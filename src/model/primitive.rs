@@ -1,10 +1,10 @@
 //! Primitive solids: as functions and as meshes. All are centred on `center`, with their axis along z.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use serde::Deserialize;
 
-use crate::Mesh;
 use crate::field::{Graph, NodeId, System};
+use crate::{Error, Mesh, primitives};
 
 #[derive(Clone, Debug)]
 pub(super) enum Primitive {
@@ -212,39 +212,43 @@ impl Primitive {
         }
     }
 
+    /// The length of the diagonal of the box round the primitive.
+    pub(super) fn diagonal(&self) -> f64 {
+        let size = match self {
+            Self::Box { low, high } => *high - *low,
+            Self::Sphere { radius, .. } => DVec3::splat(2.0 * radius),
+            Self::Cone { bottom, top, height, .. } => {
+                let width = 2.0 * bottom.max(*top);
+                DVec3::new(width, width, *height)
+            }
+            Self::Torus { radius, tube, .. } => {
+                let width = 2.0 * (radius + tube);
+                DVec3::new(width, width, 2.0 * tube)
+            }
+        };
+        size.length()
+    }
+
     /// A closed mesh whose flat facets are within `tolerance` of the round surface, corners on it.
-    pub(super) fn mesh(&self, tolerance: f64) -> Mesh {
-        match self {
-            Self::Box { low, high } => cuboid(*low, *high),
+    pub(super) fn mesh(&self, tolerance: f64) -> Result<Mesh, Error> {
+        // Where a surface bends both ways each bend may use half of the tolerance.
+        let half = tolerance * 0.5;
+        Ok(match self {
+            Self::Box { low, high } => primitives::cuboid(low.to_array(), high.to_array())?,
             Self::Sphere { center, radius } => {
-                let steps = segments(*radius, tolerance * 0.5).div_ceil(2).max(3);
-                let profile: Vec<DVec2> = (0..=steps)
-                    .map(|k| {
-                        let angle = std::f64::consts::PI * f64::from(k) / f64::from(steps);
-                        DVec2::new(radius * angle.sin(), -radius * angle.cos())
-                    })
-                    .collect();
-                revolved(&profile, false, segments(*radius, tolerance * 0.5), *center)
+                let slices = segments(*radius, half);
+                primitives::uv_sphere(*radius, slices, slices.div_ceil(2))?.translated(center.to_array())
             }
             Self::Cone { center, bottom, top, height } => {
-                let half = height * 0.5;
-                let mut profile: Vec<DVec2> =
-                    [(0.0, -half), (*bottom, -half), (*top, half), (0.0, half)].map(DVec2::from).to_vec();
-                // A pointed end has its point once.
-                profile.dedup();
-                revolved(&profile, false, segments(bottom.max(*top), tolerance), *center)
+                let slices = segments(bottom.max(*top), tolerance);
+                primitives::frustum(*bottom, *top, *height, slices)?
+                    .translated((*center - DVec3::new(0.0, 0.0, height * 0.5)).to_array())
             }
             Self::Torus { center, radius, tube } => {
-                let steps = segments(*tube, tolerance * 0.5);
-                let profile: Vec<DVec2> = (0..steps)
-                    .map(|k| {
-                        let angle = std::f64::consts::TAU * f64::from(k) / f64::from(steps);
-                        DVec2::new(radius + tube * angle.cos(), tube * angle.sin())
-                    })
-                    .collect();
-                revolved(&profile, true, segments(radius + tube, tolerance * 0.5), *center)
+                primitives::torus(*radius, *tube, segments(radius + tube, half), segments(*tube, half))?
+                    .translated(center.to_array())
             }
-        }
+        })
     }
 }
 
@@ -252,49 +256,4 @@ impl Primitive {
 fn segments(radius: f64, tolerance: f64) -> u32 {
     let half_angle = (1.0 - (tolerance / radius).min(0.5)).acos();
     (std::f64::consts::PI / half_angle).ceil().clamp(8.0, 4096.0) as u32
-}
-
-fn cuboid(low: DVec3, high: DVec3) -> Mesh {
-    let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
-    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = faces.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    Mesh::new((0..8).map(corner).collect(), triangles)
-}
-
-/// The profile (distance from the axis, height), with the solid on its left, turned about the z axis. Ends of an open
-/// profile are on the axis.
-fn revolved(profile: &[DVec2], closed: bool, count: u32, center: DVec3) -> Mesh {
-    let mut mesh = Mesh::default();
-    // The first vertex of each profile point, and whether it is a whole ring.
-    let mut rings: Vec<(u32, bool)> = Vec::new();
-    for (index, point) in profile.iter().enumerate() {
-        let first = mesh.positions.len() as u32;
-        let on_axis = point.x == 0.0 || (!closed && (index == 0 || index + 1 == profile.len()));
-        if on_axis {
-            mesh.positions.push((center + DVec3::new(0.0, 0.0, point.y)).to_array());
-        } else {
-            mesh.positions.extend((0..count).map(|k| {
-                let (sine, cosine) = (std::f64::consts::TAU * f64::from(k) / f64::from(count)).sin_cos();
-                (center + DVec3::new(point.x * cosine, point.x * sine, point.y)).to_array()
-            }));
-        }
-        rings.push((first, !on_axis));
-    }
-    let pairs = if closed { profile.len() } else { profile.len() - 1 };
-    for k in 0..pairs {
-        let ((a, ring_a), (b, ring_b)) = (rings[k], rings[(k + 1) % profile.len()]);
-        for step in 0..count {
-            let next = (step + 1) % count;
-            match (ring_a, ring_b) {
-                (true, true) => {
-                    mesh.triangles.push([a + step, a + next, b + next]);
-                    mesh.triangles.push([a + step, b + next, b + step]);
-                }
-                (true, false) => mesh.triangles.push([a + step, a + next, b]),
-                (false, true) => mesh.triangles.push([a, b + next, b + step]),
-                (false, false) => {}
-            }
-        }
-    }
-    mesh
 }

@@ -58,28 +58,32 @@ impl TriangleTree {
     /// Best first: nearer boxes are opened first, and boxes farther than the best answer never.
     fn search(&self, query: DVec3, best: &mut Closest) {
         let around = self.frame.around(query);
+        let local = self.frame.local(query);
         let squared_scale = self.frame.scale() * self.frame.scale();
         let bound_of = |best: &Closest| ((best.squared_distance * squared_scale) as f32).next_up() * SLACK;
         let mut bound = bound_of(best);
-        let mut stack: SmallVec<[(f32, Child); 128]> = SmallVec::new();
-        stack.push((0.0, Child::Node(0)));
-        while let Some((distance, child)) = stack.pop() {
+        let mut stack: SmallVec<[(f32, u32); 128]> = SmallVec::new();
+        stack.push((0.0, 0));
+        while let Some((distance, index)) = stack.pop() {
             if distance > bound {
                 continue;
             }
-            match child {
-                Child::Leaf(leaf) => {
-                    if self.improve(query, leaf, best) {
-                        bound = bound_of(best);
-                    }
-                }
-                Child::Node(index) => {
-                    let node = &self.tree.nodes[index as usize];
-                    let distances = node.squared_distances(&around.low, &around.high);
-                    push_sorted(&mut stack, node, distances, bound);
-                }
-                Child::None => {}
+            // Most nodes that boxes let through are stopped by the flatter disc.
+            if self.discs[index as usize].squared_distance(local) > best.squared_distance * squared_scale {
+                continue;
             }
+            let node = &self.tree.nodes[index as usize];
+            let distances = node.squared_distances(&around.low, &around.high);
+            // Triangles at once, other nodes later, the nearest first.
+            for (lane, &distance) in distances.iter().enumerate() {
+                if let Child::Leaf(leaf) = node.child(lane)
+                    && distance <= bound
+                    && self.improve(query, leaf, best)
+                {
+                    bound = bound_of(best);
+                }
+            }
+            push_sorted(&mut stack, node, distances, bound);
         }
     }
 
@@ -150,17 +154,18 @@ impl TriangleTree {
     }
 }
 
-/// Pushes the children within `bound`, farthest first.
+/// Pushes the child nodes within `bound`, farthest first.
 fn push_sorted(
-    stack: &mut SmallVec<[(f32, Child); 128]>,
+    stack: &mut SmallVec<[(f32, u32); 128]>,
     node: &WideNode,
     distances: [f32; LANES],
     bound: f32,
 ) {
     let first = stack.len();
     for (lane, &distance) in distances.iter().enumerate() {
-        let child = node.child(lane);
-        if distance <= bound && child != Child::None {
+        if let Child::Node(child) = node.child(lane)
+            && distance <= bound
+        {
             let mut at = stack.len();
             stack.push((distance, child));
             while at > first && stack[at - 1].0 < distance {

@@ -14,6 +14,7 @@ mod box_tree;
 mod build;
 mod closest;
 mod crossing;
+mod disc;
 mod fast_winding;
 mod frame;
 mod local_frame;

@@ -201,6 +201,11 @@ impl Tape {
         self.code.len()
     }
 
+    /// Whether there is a leaf, such as the distance of a mesh.
+    pub(crate) fn has_leaf(&self) -> bool {
+        self.code.iter().any(|instruction| matches!(instruction, Instruction::Leaf(..)))
+    }
+
     /// Number of minima, maxima and absolute values.
     pub(crate) fn branchings(&self) -> usize {
         self.branchings as usize

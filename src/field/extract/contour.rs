@@ -13,7 +13,7 @@ use smallvec::SmallVec;
 use super::faces::{Corners, Face, edge_between};
 use super::lattice::{DEEPEST, Key, Lattice, directed, key, moved, undirected, unkey};
 use super::loops::stretches;
-use super::octree::{Judgement, Settings, probe, value_at};
+use super::octree::{Judgement, Settings, probe, usual_resolution, value_at};
 use super::solve::{crossing, deviation, kink};
 use crate::field::expression::{Scratch, Tape};
 use crate::field::{Contours, Expression, work};
@@ -52,7 +52,8 @@ impl ContourExtraction {
         self
     }
 
-    /// Parts of the region at least this wide are found for certain. Default: a 64th of the longer side.
+    /// Parts of the region at least this wide are found for certain. Default: as of
+    /// [`Extraction::resolution`](super::Extraction::resolution).
     #[must_use]
     pub fn resolution(mut self, resolution: f64) -> Self {
         self.resolution = Some(resolution);
@@ -91,7 +92,9 @@ impl ContourExtraction {
         let settings = Settings {
             lattice,
             tolerance: self.tolerance,
-            resolution: self.resolution.unwrap_or(extent / 64.0),
+            resolution: self
+                .resolution
+                .unwrap_or_else(|| usual_resolution(field.tape(), extent, self.tolerance)),
             control: &self.control,
         };
         let squares = subdivide(field.tape(), &settings)?;

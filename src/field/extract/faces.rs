@@ -28,6 +28,11 @@ impl Corners {
         Self(points.map(key).collect())
     }
 
+    /// Adds the corners of cubes, and returns those that were not known.
+    pub(super) fn extend(&mut self, cubes: impl Iterator<Item = Cube>) -> Vec<Key> {
+        cubes.flat_map(Cube::points).map(key).filter(|&point| self.0.insert(point)).collect()
+    }
+
     fn contains(&self, point: [u32; 3]) -> bool {
         self.0.contains(&key(point))
     }

@@ -6,7 +6,7 @@ use glam::DVec3;
 pub(super) const DEEPEST: u32 = 19;
 
 /// A cube of the octree: its lowest corner and its side, in units of the finest cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Cube {
     pub(super) corner: [u32; 3],
     pub(super) size: u32,

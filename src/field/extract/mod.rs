@@ -12,7 +12,8 @@
 //!
 //! # What is promised
 //! - **Closed and 2-manifold, always**: every face of a cube has one line, seen alike from both sides; every cube
-//!   fills its loop with a disc.
+//!   fills its loop with a disc. Should bounds have been wrong and a cube held to be empty have a cut face, it is looked
+//!   at again.
 //! - **No self-crossings**, up to the rounding of coordinates: each patch stays in its cube, and patches in one cube do
 //!   not cross.
 //! - Deterministic: the same bytes for any number of threads.
@@ -20,6 +21,7 @@
 //! What is *not* promised: parts of the solid thinner than [`Extraction::resolution`] may be missed or joined, and the
 //! tolerance is checked at sample points (the largest deviation found is in the report), not proven.
 
+mod boundaries;
 mod contour;
 mod faces;
 mod lattice;
@@ -32,14 +34,20 @@ mod tables;
 mod tetrahedra;
 
 use glam::DVec3;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Expression;
 use crate::{Control, Error, Mesh};
 pub use contour::ContourExtraction;
-use lattice::{DEEPEST, Lattice};
+use faces::Corners;
+use lattice::{Cube, DEEPEST, Lattice};
+use octree::Leaf;
+use tables::Tables;
 
 /// How often cells are divided again after their neighbours are known.
 const ROUNDS: usize = 6;
+/// How often cubes are looked at again that were held to be empty, but have a cut face.
+const OPENINGS: usize = 16;
 
 /// Settings of an extraction.
 #[derive(Clone, Debug)]
@@ -86,7 +94,8 @@ impl Extraction {
     }
 
     /// Parts of the solid at least this thick are found for certain where the field is given by formulas. Default: a
-    /// 64th of the longest side of the box.
+    /// 64th of the longest side of the box, and for fields with distances of meshes or polygons no more than four
+    /// times the tolerance.
     #[must_use]
     pub fn resolution(mut self, resolution: f64) -> Self {
         self.resolution = Some(resolution);
@@ -147,36 +156,68 @@ impl Extraction {
             return Err(Error::InvalidArgument(what));
         }
         let lattice = Lattice::around(low, high, depth as u32);
-        let resolution = positive(self.resolution.unwrap_or(extent / 64.0), "resolution")?;
         let field = if self.clip { self.clipped(field) } else { field.clone() }.sign_form();
+        let usual = octree::usual_resolution(field.tape(), extent, tolerance);
+        let resolution = positive(self.resolution.unwrap_or(usual), "resolution")?;
         let settings = octree::Settings { lattice, tolerance, resolution, control: &self.control };
         let mut leaves = octree::subdivide(field.tape(), &settings)?;
-        for round in 0.. {
+        let mut corners = Corners::of(leaves.iter().map(|leaf| leaf.cube));
+        let mut values = FxHashMap::default();
+        // The cells to look at: all, or those whose neighbours have changed since they were looked at.
+        let mut changed: Option<FxHashSet<Cube>> = None;
+        // Whether the field is known at all corners.
+        let mut known = false;
+        let (mut refinements, mut openings) = (0, 0);
+        loop {
             if let Some(leaf) = leaves.iter().find(|leaf| leaf.inside && at_edge(&lattice, leaf.cube)) {
                 let place = leaf.cube.points().into_iter().find(|&point| lattice.on_boundary(point));
                 return Err(tables::unbounded(lattice.place(place.unwrap_or(leaf.cube.corner)).to_array()));
             }
-            let tables = tables::Tables::new(&leaves, lattice, tolerance, &self.control)?;
-            let (mesh, deviations) = surface::assemble(&tables, &self.control)?;
-            let (cells, divided) = (tables.cells.len(), tables.divided.clone());
-            let finest = tables.cells.iter().map(|leaf| leaf.cube.size).min().unwrap_or(lattice.count);
-            // Finer neighbours may have shown what a cell's own corners did not.
-            let mut coarse =
-                divided.iter().zip(&deviations).map(|(&divided, &error)| divided || error > tolerance);
-            let wanted: Vec<bool> =
-                leaves.iter().map(|leaf| leaf.tape.is_some() && coarse.next().unwrap_or(false)).collect();
-            if round < ROUNDS && octree::refine(&mut leaves, |leaf| wanted[leaf], &settings)? {
+            let looked_at = |leaf: &Leaf| {
+                leaf.tape.is_some() && changed.as_ref().is_none_or(|changed| changed.contains(&leaf.cube))
+            };
+            let chosen: Vec<usize> = (0..leaves.len()).filter(|&index| looked_at(&leaves[index])).collect();
+            let cells = chosen.iter().map(|&index| &leaves[index]).collect();
+            let control = &self.control;
+            let tables = Tables::new(cells, &corners, &mut values, known, lattice, tolerance, control)?;
+            if changed.is_none() && !tables.one_sided.is_empty() && openings < OPENINGS {
+                let faces = tables.one_sided;
+                octree::reopen(&mut leaves, &faces, field.tape());
+                openings += 1;
+                known = false;
                 continue;
             }
+            let (mesh, deviations) = surface::assemble(&tables, &self.control)?;
+            let divided = tables.divided;
+            // Finer neighbours may have shown what a cell's own corners did not.
+            let mut wanted = vec![false; leaves.len()];
+            for (&index, (&divided, &error)) in chosen.iter().zip(divided.iter().zip(&deviations)) {
+                wanted[index] = leaves[index].cube.size > 1 && (divided || error > tolerance);
+            }
+            if refinements < ROUNDS && wanted.contains(&true) {
+                let first = octree::refine(&mut leaves, |leaf| wanted[leaf], &settings)?;
+                let new_points = corners.extend(leaves[first..].iter().map(|leaf| leaf.cube));
+                let mut cubes = octree::touching(&leaves, &new_points, &lattice);
+                cubes.extend(leaves[first..].iter().map(|leaf| leaf.cube));
+                changed = Some(cubes);
+                refinements += 1;
+                known = false;
+                continue;
+            }
+            // The surface is put together only from all cells.
+            if changed.take().is_some() {
+                known = true;
+                continue;
+            }
+            let finest = chosen.iter().map(|&index| leaves[index].cube.size).min().unwrap_or(lattice.count);
             return Ok(Extracted {
                 mesh,
-                cells,
+                cells: chosen.len(),
                 divided_cells: divided.iter().filter(|&&divided| divided).count(),
                 smallest_cell: f64::from(finest) * lattice.step(),
                 deviation: deviations.iter().copied().fold(0.0, f64::max),
             });
         }
-        Err(Error::Field("the extraction did not settle".into()))
     }
 
     /// The field, cut off at the box.
@@ -196,6 +237,6 @@ impl Extraction {
     }
 }
 
-fn at_edge(lattice: &Lattice, cube: lattice::Cube) -> bool {
+fn at_edge(lattice: &Lattice, cube: Cube) -> bool {
     cube.corner.iter().any(|&x| x == 0 || x + cube.size == lattice.count)
 }

@@ -4,9 +4,11 @@
 use std::sync::Arc;
 
 use glam::DVec3;
+use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
 
-use super::lattice::{Cube, Lattice};
+use super::faces::Face;
+use super::lattice::{Cube, Key, Lattice, unkey};
 use super::loops::{Segment, chain, stretches};
 use super::patch::{Cell, Corner};
 use super::solve::{crossing, deviation, kink, sample};
@@ -34,6 +36,13 @@ pub(super) struct Settings<'a> {
     pub(super) control: &'a Control,
 }
 
+/// The resolution where nobody asks for one. Bounds of formulas find small parts by themselves; those of distances
+/// tell little where a thin part has faces both ways.
+pub(super) fn usual_resolution(tape: &Tape, extent: f64, tolerance: f64) -> f64 {
+    let coarse = extent / 64.0;
+    if tape.has_leaf() { coarse.min(4.0 * tolerance) } else { coarse }
+}
+
 /// What becomes of a box.
 pub(super) enum Judgement {
     Empty { inside: bool },
@@ -49,12 +58,13 @@ pub(super) fn subdivide(tape: &Arc<Tape>, settings: &Settings<'_>) -> Result<Vec
     Ok(leaves)
 }
 
-/// Divides the leaves that `wanted` picks, unless they are as small as can be. Tells whether there was one.
+/// Divides the leaves that `wanted` picks, unless they are as small as can be. Returns the position of the first new
+/// leaf; all after it are new.
 pub(super) fn refine(
     leaves: &mut Vec<Leaf>,
     wanted: impl Fn(usize) -> bool,
     settings: &Settings<'_>,
-) -> Result<bool, Error> {
+) -> Result<usize, Error> {
     let mut level = Vec::new();
     let mut kept = Vec::with_capacity(leaves.len());
     for (index, leaf) in leaves.drain(..).enumerate() {
@@ -66,9 +76,52 @@ pub(super) fn refine(
         }
     }
     *leaves = kept;
-    let found = !level.is_empty();
+    let first = leaves.len();
     divide(level, leaves, settings)?;
-    Ok(found)
+    Ok(first)
+}
+
+/// The cells that have one of the points on their boundary.
+pub(super) fn touching(leaves: &[Leaf], points: &[Key], lattice: &Lattice) -> FxHashSet<Cube> {
+    let cells: FxHashSet<Cube> =
+        leaves.iter().filter(|leaf| leaf.tape.is_some()).map(|leaf| leaf.cube).collect();
+    let mut found = FxHashSet::default();
+    for &point in points {
+        let point = unkey(point);
+        // The finest cubes round the point, and the cubes that hold them.
+        for octant in 0..8 {
+            let lower: [u32; 3] = std::array::from_fn(|axis| octant >> axis & 1);
+            if (0..3).any(|axis| point[axis] < lower[axis] || point[axis] - lower[axis] >= lattice.count) {
+                continue;
+            }
+            let unit: [u32; 3] = std::array::from_fn(|axis| point[axis] - lower[axis]);
+            let sizes = (0..=lattice.count.trailing_zeros()).map(|level| 1u32 << level);
+            let holding = sizes.map(|size| Cube { corner: unit.map(|x| x & !(size - 1)), size });
+            found.extend(holding.into_iter().find(|cube| cells.contains(cube)));
+        }
+    }
+    found
+}
+
+/// Makes cells of the leaves that were held to be empty although the surface cuts one of the faces.
+pub(super) fn reopen(leaves: &mut [Leaf], faces: &[Face], tape: &Arc<Tape>) {
+    for leaf in leaves.iter_mut().filter(|leaf| leaf.tape.is_none()) {
+        let Cube { corner, size } = leaf.cube;
+        let holds = |face: &Face| {
+            (0..3).all(|axis| {
+                let (low, high) = (corner[axis], corner[axis] + size);
+                if axis == face.axis {
+                    face.corner[axis] == low || face.corner[axis] == high
+                } else {
+                    low <= face.corner[axis] && face.corner[axis] + face.size <= high
+                }
+            })
+        };
+        if faces.iter().any(holds) {
+            leaf.tape = Some(Arc::clone(tape));
+            leaf.inside = false;
+        }
+    }
 }
 
 fn divide(

@@ -1,9 +1,8 @@
 //! Patches of all cells put together.
 
 use glam::DVec3;
-use smallvec::SmallVec;
 
-use super::faces::Face;
+use super::boundaries::Side;
 use super::lattice::{Key, unkey};
 use super::loops::{Segment, chain, stretches};
 use super::octree::{corners_of, value_at};
@@ -70,8 +69,8 @@ fn piece(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<Piec
 /// The patches of a cell whose faces are cut in one line each.
 fn patched(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<Piece, Error> {
     let mut segments = Vec::new();
-    for (face, outline) in tables.boundary(cell) {
-        lines(tables, face, &outline, &mut segments);
+    for side in tables.boundaries.of(cell) {
+        lines(tables, side, &mut segments);
     }
     let (low, high) = tables.lattice.corners(tables.cells[cell].cube);
     let shape = Cell { tape: tables.tape(cell)?, low, high, tolerance: tables.tolerance };
@@ -94,19 +93,23 @@ fn patched(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<Pi
 }
 
 /// The lines in which the surface cuts a face, directed so that the inside is on the right seen from outside.
-fn lines(tables: &Tables<'_>, face: Face, outline: &[Key], segments: &mut Vec<Segment>) {
+fn lines(tables: &Tables<'_>, side: Side<'_>, segments: &mut Vec<Segment>) {
+    let Side { face, points: outline, inside } = side;
+    // Most faces are not cut.
+    if inside.iter().all(|&point| point == inside[0]) {
+        return;
+    }
     let next = |k: usize| outline[(k + 1) % outline.len()];
     match tables.line(face) {
         None => {}
         Some(FaceLine::Plain { kink }) => {
-            let inside: SmallVec<[bool; 8]> = outline.iter().map(|&point| tables.is_inside(point)).collect();
-            for (enter, exit) in stretches(&inside) {
+            for (enter, exit) in stretches(inside) {
                 let from = tables.on_edge(outline[enter], next(enter));
                 let to = tables.on_edge(outline[exit], next(exit));
                 segments.push(Segment { from, to, kink: *kink });
             }
         }
-        Some(FaceLine::Fanned { inside, spokes }) => {
+        Some(FaceLine::Fanned { inside: middle, spokes }) => {
             for k in 0..outline.len() {
                 let (a, b) = (outline[k], next(k));
                 let vertex = |edge: usize| match edge {
@@ -114,7 +117,7 @@ fn lines(tables: &Tables<'_>, face: Face, outline: &[Key], segments: &mut Vec<Se
                     1 => spoke(spokes, b),
                     _ => spoke(spokes, a),
                 };
-                let signs = [tables.is_inside(a), tables.is_inside(b), *inside];
+                let signs = [inside[k], inside[(k + 1) % outline.len()], *middle];
                 for (enter, exit) in stretches(&signs) {
                     segments.push(Segment { from: vertex(enter), to: vertex(exit), kink: None });
                 }
@@ -137,18 +140,18 @@ fn tetrahedral(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Resul
     let mut piece = Piece::default();
     // Vertices between the cell's middle and a lattice point or the middle of a face.
     let mut within: Vec<(Place, u32)> = Vec::new();
-    for (face, outline) in tables.boundary(cell) {
+    for Side { face, points: outline, inside } in tables.boundaries.of(cell) {
         let (face_low, face_high) = tables.span(face);
         let face_middle = (face_low + face_high) * 0.5;
         let fan = tables.line(face);
         let face_inside = match fan {
-            Some(FaceLine::Fanned { inside, .. }) => *inside,
-            _ => tables.is_inside(outline[0]),
+            Some(FaceLine::Fanned { inside: middle, .. }) => *middle,
+            _ => inside[0],
         };
         for k in 0..outline.len() {
             let (a, b) = (outline[k], outline[(k + 1) % outline.len()]);
             let corners =
-                [(0, tables.is_inside(a)), (1, tables.is_inside(b)), (2, face_inside), (3, value > 0.0)];
+                [(0, inside[k]), (1, inside[(k + 1) % outline.len()]), (2, face_inside), (3, value > 0.0)];
             let cut = |p: u32, q: u32| {
                 let (p, q) = (p.min(q), p.max(q));
                 let outer = match p {

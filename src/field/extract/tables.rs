@@ -4,7 +4,8 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
-use super::faces::{Corners, Face, Outline, edge_between};
+use super::boundaries::{Boundaries, Side};
+use super::faces::{Corners, Face, edge_between};
 use super::lattice::{Key, Lattice, directed, moved, undirected, unkey};
 use super::loops::{Segment, chain, stretches};
 use super::octree::{Leaf, value_at};
@@ -17,12 +18,16 @@ use crate::{Control, Error};
 pub(super) struct Tables<'a> {
     pub(super) lattice: Lattice,
     pub(super) tolerance: f64,
-    pub(super) corners: Corners,
+    pub(super) corners: &'a Corners,
     /// Leaves that are not certainly empty.
     pub(super) cells: Vec<&'a Leaf>,
+    pub(super) boundaries: Boundaries,
     /// Cells that are divided into tetrahedra, by position in `cells`.
     pub(super) divided: Vec<bool>,
-    values: FxHashMap<Key, f64>,
+    /// Cut faces that only one of the cells has.
+    pub(super) one_sided: Vec<Face>,
+    /// The field at corners of cells, of earlier rounds too.
+    values: &'a mut FxHashMap<Key, f64>,
     /// Numbers of the crossed edges' vertices.
     edges: FxHashMap<u64, u32>,
     faces: FxHashMap<u64, FaceLine>,
@@ -60,26 +65,36 @@ struct SharedFace {
 }
 
 impl<'a> Tables<'a> {
+    /// Tables of the given cells. `corners` are those of all leaves, `values` the field at them as far as it is known:
+    /// at all points of the cells, or perhaps not.
     pub(super) fn new(
-        leaves: &'a [Leaf],
+        cells: Vec<&'a Leaf>,
+        corners: &'a Corners,
+        values: &'a mut FxHashMap<Key, f64>,
+        known: bool,
         lattice: Lattice,
         tolerance: f64,
         control: &Control,
     ) -> Result<Self, Error> {
-        let corners = Corners::of(leaves.iter().map(|leaf| leaf.cube));
-        let cells: Vec<&Leaf> = leaves.iter().filter(|leaf| leaf.tape.is_some()).collect();
         let mut tables = Self {
             lattice,
             tolerance,
             corners,
             divided: vec![false; cells.len()],
+            one_sided: Vec::new(),
+            boundaries: Boundaries::default(),
             cells,
-            values: FxHashMap::default(),
+            values,
             edges: FxHashMap::default(),
             faces: FxHashMap::default(),
             places: Vec::new(),
         };
-        tables.find_values(control)?;
+        tables.boundaries = Boundaries::new(&tables.cells, corners, control)?;
+        let _account = control.reserve(tables.boundaries.memory())?;
+        if !known {
+            tables.find_values(control)?;
+        }
+        tables.boundaries.find_signs(tables.values, control)?;
         let (edges, faces) = tables.find_crossed(control)?;
         tables.place_edges(&edges, control)?;
         tables.place_lines(&faces, control)?;
@@ -109,25 +124,14 @@ impl<'a> Tables<'a> {
         self.faces.get(&directed(super::lattice::key(face.corner), face.axis))
     }
 
-    /// The faces of a cell with their outlines, counter-clockwise seen from outside the cell.
-    pub(super) fn boundary(&self, cell: usize) -> impl Iterator<Item = (Face, Outline)> {
-        let faces = self.corners.faces(self.cells[cell].cube);
-        faces.into_iter().map(|(face, upper)| {
-            let mut points = self.corners.outline(face);
-            if !upper {
-                points.reverse();
-            }
-            (face, points)
-        })
-    }
-
     /// Evaluates the field at every point of the cells' boundaries.
     fn find_values(&mut self, control: &Control) -> Result<(), Error> {
         let pieces = work::pieces(self.cells.len(), 64, control, "points", |range| {
             let mut points: Vec<(Key, u32)> = Vec::new();
             for cell in range {
-                for (_, outline) in self.boundary(cell) {
-                    points.extend(outline.into_iter().map(|point| (point, cell as u32)));
+                for side in self.boundaries.of(cell) {
+                    let unknown = side.points.iter().filter(|&point| !self.values.contains_key(point));
+                    points.extend(unknown.map(|&point| (point, cell as u32)));
                 }
             }
             Ok(first_of_each(points, |point| point.0))
@@ -166,6 +170,9 @@ impl<'a> Tables<'a> {
         let edges = first_of_each(edges, |edge| edge.0);
         let name = |shared: &SharedFace| directed(super::lattice::key(shared.face.corner), shared.face.axis);
         faces.sort_by_key(|shared| (name(shared), shared.cell));
+        let same = |a: &SharedFace, b: &SharedFace| name(a) == name(b);
+        let alone = faces.chunk_by(same).filter(|run| run.len() == 1).map(|run| run[0].face);
+        self.one_sided = alone.collect();
         faces.dedup_by(|later, first| {
             let same = name(later) == name(first);
             first.fanned |= same && later.fanned;
@@ -187,9 +194,8 @@ impl<'a> Tables<'a> {
                 names.len() - 1
             }) as u32
         };
-        for (face, outline) in self.boundary(cell) {
-            let inside: SmallVec<[bool; 8]> = outline.iter().map(|&point| self.is_inside(point)).collect();
-            let stretches = stretches(&inside);
+        for Side { face, points: outline, inside } in self.boundaries.of(cell) {
+            let stretches = stretches(inside);
             if stretches.is_empty() {
                 continue;
             }

@@ -2,78 +2,25 @@
 
 use glam::DVec3;
 
-use super::{Expression, work};
+use super::{Expression, Section, work};
+use crate::render::Picture;
 use crate::{Control, Error};
 
-/// A rectangle in space to be pictured: a corner and the two sides from it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section {
-    /// The lower left corner.
-    pub corner: [f64; 3],
-    /// From the lower left to the lower right corner.
-    pub right: [f64; 3],
-    /// From the lower left to the upper left corner.
-    pub up: [f64; 3],
-}
-
 impl Section {
-    /// The section of the box `low..high` by the plane at `position` along `axis` (0, 1, 2 for x, y, z). The picture
-    /// shows x to the right, or y where the section is across x; z up, or y where it is across z.
-    ///
-    /// # Errors
-    /// [`Error::InvalidArgument`] if there is no such axis or the box is empty or not finite.
-    pub fn across(axis: usize, position: f64, low: [f64; 3], high: [f64; 3]) -> Result<Self, Error> {
-        if axis > 2 {
-            return Err(Error::InvalidArgument(format!(
-                "there is no axis {axis}; 0, 1 and 2 are x, y and z"
-            )));
-        }
-        let (u, v) = [(1, 2), (0, 2), (0, 1)][axis];
-        let proper = |k: usize| low[k] < high[k] && low[k].is_finite() && high[k].is_finite();
-        if !(proper(u) && proper(v) && position.is_finite()) {
-            let what = format!("the box from {low:?} to {high:?} is empty or not finite");
-            return Err(Error::InvalidArgument(what));
-        }
-        let mut corner = low;
-        corner[axis] = position;
-        let side = |k: usize| {
-            let mut side = [0.0; 3];
-            side[k] = high[k] - low[k];
-            side
-        };
-        Ok(Self { corner, right: side(u), up: side(v) })
-    }
-}
-
-/// A picture of a section: red, green and blue, row by row from the top.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SectionPicture {
-    /// Pixels across.
-    pub width: u32,
-    /// Pixels down.
-    pub height: u32,
-    /// Three bytes a pixel.
-    pub pixels: Vec<u8>,
-}
-
-/// Widest picture.
-const WIDEST: u32 = 16_384;
-
-impl SectionPicture {
     /// Pictures `field` on `section`, `width` pixels across. Inside is warm, outside is cold, undefined is grey; `bands`
     /// is the step between lines of equal value, chosen for about ten steps if not given. The zero line is dark, as
     /// wide as three pixels, and true to a fraction of a pixel.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] for a width of 0 or above 16384, or a degenerate section; the limits of `control`.
-    pub fn of(
+    pub fn picture(
+        &self,
         field: &Expression,
-        section: &Section,
         width: u32,
         bands: Option<f64>,
         control: &Control,
-    ) -> Result<Self, Error> {
-        let [corner, right, up] = [section.corner, section.right, section.up].map(DVec3::from_array);
+    ) -> Result<Picture, Error> {
+        let [corner, right, up] = [self.corner, self.right, self.up].map(DVec3::from_array);
         let aspect = up.length() / right.length();
         let height = (f64::from(width) * aspect).round();
         if width == 0 || width > WIDEST || !(height >= 1.0 && height <= f64::from(WIDEST)) {
@@ -103,23 +50,17 @@ impl SectionPicture {
         .concat();
         let step = bands.unwrap_or_else(|| pleasant_step(&samples));
         let pixel = right.length() / f64::from(width);
-        let pixels = samples.iter().flat_map(|&(value, slope)| colour(value, slope, step, pixel)).collect();
-        Ok(Self { width, height, pixels })
-    }
-
-    /// The picture as PNG.
-    ///
-    /// # Errors
-    /// What the writer says.
-    #[cfg(feature = "render")]
-    pub fn write_png(&self, writer: impl std::io::Write) -> std::io::Result<()> {
-        let mut encoder = png::Encoder::new(writer, self.width, self.height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        let mut writer = encoder.write_header().map_err(std::io::Error::other)?;
-        writer.write_image_data(&self.pixels).map_err(std::io::Error::other)
+        let mut picture = Picture::new(width, height, [0; 3]);
+        for (number, &(value, slope)) in samples.iter().enumerate() {
+            let (column, row) = (number % width as usize, number / width as usize);
+            picture.set(column as i64, row as i64, colour(value, slope, step, pixel));
+        }
+        Ok(picture)
     }
 }
+
+/// Widest picture.
+const WIDEST: u32 = 16_384;
 
 /// A round step of which about ten make up the larger of the typical values.
 fn pleasant_step(samples: &[(f64, f64)]) -> f64 {

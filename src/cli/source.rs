@@ -1,0 +1,83 @@
+//! Functions of space as `slice` and `grid` take them: of a model, of a mesh, of a formula.
+
+use std::sync::Arc;
+
+use clap::ArgMatches;
+use trisect::Control;
+use trisect::field::{Expression, Formula, Graph, SignedDistance, System};
+use trisect::model::{Evaluation, Model};
+
+use super::fault::Fault;
+use super::field_arguments::Source;
+use super::operands;
+use super::requests;
+use super::session::Session;
+
+/// A function of space and where to look at it.
+pub(crate) struct Field {
+    pub(crate) expression: Expression,
+    /// The distance itself, if the function is a mesh's.
+    pub(crate) distance: Option<Arc<SignedDistance>>,
+    pub(crate) bounds: [[f64; 3]; 2],
+    /// What it is the function of, for messages.
+    pub(crate) name: String,
+}
+
+/// Reads what the command line names.
+pub(crate) fn field(
+    source: &Source,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+    control: &Control,
+) -> Result<Field, Fault> {
+    let mut distance = None;
+    let (expression, own, name) = if let Some(text) = &source.formula {
+        let formula = Formula::parse(text).map_err(trisect::Error::from)?;
+        let expression = formula.compile(System::default(), &[], &[]).map_err(trisect::Error::from)?;
+        (expression, None, "the formula".to_owned())
+    } else if let Some(path) = source.files.iter().find(|path| is_json(path)) {
+        let requests = requests::placed_requests(matches)?;
+        if requests.iter().any(|request| !request.transforms.is_empty()) || source.reading.format.is_some() {
+            return Err(Fault::usage("a model file takes neither transforms nor --format"));
+        }
+        let model = Model::load(path)?;
+        let evaluation = Evaluation::new().control(control.clone());
+        let expression = evaluation.field(&model)?;
+        let own = if source.bounds.is_some() { None } else { evaluation.bounds(&model)? };
+        (expression, own, path.display().to_string())
+    } else {
+        let mut requests = requests::requests(matches, source.reading.format)?;
+        let request = requests.pop().ok_or_else(|| Fault::usage("a file or --formula is needed"))?;
+        let input = operands::read(&request, &session.limits, control)
+            .map_err(|error| error.of_operand(0, request.name()))?;
+        for warning in &input.warnings {
+            session.warn(format!("{}: {warning}", request.name()));
+        }
+        let found = Arc::new(SignedDistance::of_mesh(&input.mesh, source.sign.rule()));
+        let mut graph = Graph::new();
+        let root = graph.leaf(Arc::<SignedDistance>::clone(&found));
+        let own = found.tree().bounds();
+        distance = Some(found);
+        (Expression::new(graph, root), own, request.name())
+    };
+    let bounds = match (source.bounds, own) {
+        (Some(bounds), _) => bounds,
+        (None, Some(own)) => widened(own),
+        (None, None) => {
+            let found = expression.positive_bounds(None, control)?;
+            widened(found.ok_or_else(|| {
+                trisect::Error::Field(format!("{name} is positive nowhere: say by --bounds where to look"))
+            })?)
+        }
+    };
+    Ok(Field { expression, distance, bounds, name })
+}
+
+fn is_json(path: &std::path::Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
+}
+
+fn widened([low, high]: [[f64; 3]; 2]) -> [[f64; 3]; 2] {
+    let room = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max) * 0.1;
+    [low.map(|x| x - room), high.map(|x| x + room)]
+}
