@@ -78,15 +78,24 @@ impl<'a> Runner<'a> {
         first: impl FnOnce() -> A + Send,
         second: impl FnOnce() -> B + Send,
     ) -> (A, B) {
-        if self.is_parallel() { join(first, second) } else { (first(), second()) }
+        if self.is_parallel() { join(usize::MAX, first, second) } else { (first(), second()) }
     }
 }
 
-/// Runs both, at once where another thread is free.
-pub(crate) fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
+/// Units of work (triangles, say) below which waking another thread costs more than it saves.
+const WORTH_A_THREAD: usize = 1 << 13;
+
+/// Runs both, at once where another thread is free and there is enough `work` to do.
+pub(crate) fn join<A: Send, B: Send>(
+    work: usize,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
     #[cfg(feature = "parallel")]
-    return rayon::join(a, b);
-    #[cfg(not(feature = "parallel"))]
+    if work >= WORTH_A_THREAD {
+        return rayon::join(a, b);
+    }
+    let _ = work;
     (a(), b())
 }
 
@@ -97,11 +106,10 @@ pub(crate) fn map_chunks<T: Sync, R: Send>(
     work: impl Fn(&[T]) -> R + Send + Sync,
 ) -> Vec<R> {
     #[cfg(feature = "parallel")]
-    {
+    if items.len() > length {
         use rayon::prelude::*;
-        items.par_chunks(length).map(work).collect()
+        return items.par_chunks(length).map(work).collect();
     }
-    #[cfg(not(feature = "parallel"))]
     items.chunks(length).map(work).collect()
 }
 

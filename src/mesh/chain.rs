@@ -160,7 +160,8 @@ fn weigh(ends: &[u32], start: u32, entries: &mut [u32]) -> Balance {
         let (left, right) = ends.split_at(ends.len() / 2);
         let middle = left[left.len() - 1];
         let (left_entries, right_entries) = entries.split_at_mut((middle - start) as usize);
-        let (a, b) = join(|| weigh(left, start, left_entries), || weigh(right, middle, right_entries));
+        let (a, b) =
+            join(usize::MAX, || weigh(left, start, left_entries), || weigh(right, middle, right_entries));
         return Balance { closed: a.closed && b.closed, edge_manifold: a.edge_manifold && b.edge_manifold };
     }
     let mut balance = Balance { closed: true, edge_manifold: true };

@@ -221,6 +221,7 @@ impl TryFrom<Mesh> for Solid {
             return Err(Error::InvalidArgument(format!("face groups: {fault}")));
         }
         let (examined, (bounds, volume)) = join(
+            triangles,
             || chain::examine(&mesh.triangles, vertices),
             || {
                 let bounds = finite_bounds(&mesh.positions);

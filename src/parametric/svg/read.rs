@@ -35,8 +35,11 @@ pub fn read_paths(text: &str) -> Result<(Vec<SvgPath>, usize)> {
     let mut passed_over = 0;
     let mut pending = vec![(root, svgtypes::Transform::default())];
     while let Some((node, outer)) = pending.pop() {
-        let position = document.text_pos_at(node.range().start);
-        let place = || format!("line {}, column {}", position.row, position.col);
+        // Counts lines from the start of the file: for faults only.
+        let place = || {
+            let position = document.text_pos_at(node.range().start);
+            format!("line {}, column {}", position.row, position.col)
+        };
         let own: svgtypes::Transform = match node.attribute("transform") {
             None => svgtypes::Transform::default(),
             Some(text) => text.parse().map_err(|error: svgtypes::Error| GeometryError::Svg {
