@@ -67,8 +67,8 @@ fn triangle_box(operands: &Operands<'_>, frame: &Frame, side: usize, triangle: u
 /// The near triangles of each side that pass a grid cell which the other side passes, too.
 fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> [Vec<u32>; 2] {
     let near = [operands.near(0), operands.near(1)];
-    // Cells a few triangles wide.
-    let resolution = ((near[0].len().max(near[1].len()) as f64).sqrt() / 2.0) as u32;
+    // Cells up to two triangles wide: most triangles are in one or two of them.
+    let resolution = ((near[0].len().max(near[1].len()) as f64).sqrt() / 3.0) as u32;
     let mut grid = Occupancy::new(resolution);
     // Each vertex once, unless most of them belong to no near triangle.
     let cells_of_vertices = |side: usize| -> Vec<Cell> {

@@ -41,10 +41,10 @@ struct Cells {
 }
 
 impl Occupancy {
-    /// An empty grid with about `resolution` cells along each axis of the region the frame was made for.
+    /// An empty grid with at most `resolution` cells along each axis of the region the frame was made for.
     pub(crate) fn new(resolution: u32) -> Self {
         // The region lies in -1..1 up to a factor of two; what is outside falls into the outermost cells.
-        let resolution = (2 * resolution).next_power_of_two().clamp(8, MAX_RESOLUTION);
+        let resolution = (1 << (2 * resolution).max(1).ilog2()).clamp(8, MAX_RESOLUTION);
         let bits = vec![0; (resolution as usize).pow(3) / 64];
         Self { bits, resolution, shift: resolution.trailing_zeros() }
     }
