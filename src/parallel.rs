@@ -83,6 +83,7 @@ impl<'a> Runner<'a> {
 }
 
 /// Units of work (triangles, say) below which waking another thread costs more than it saves.
+#[cfg(feature = "parallel")]
 const WORTH_A_THREAD: usize = 1 << 13;
 
 /// Runs both, at once where another thread is free and there is enough `work` to do.
