@@ -57,7 +57,7 @@ pub struct Evaluated {
     pub warnings: Vec<String>,
 }
 
-/// See [`Extracted`].
+/// What an extraction reports: see [`Extracted`](crate::field::Extracted).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExtractionReport {
     /// The tolerance used.
