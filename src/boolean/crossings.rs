@@ -40,7 +40,11 @@ pub(super) struct Crossings {
 }
 
 /// Memory for one intersecting pair while its crossings are numbered.
-const BYTES_PER_PAIR: u64 = (size_of::<PairCrossing>() + 2 * size_of::<(Crossing, u32)>() + 64) as u64;
+const BYTES_PER_PAIR: u64 = (size_of::<PairCrossing>()
+    + 2 * size_of::<u128>()
+    + 2 * size_of::<u32>()
+    + 2 * size_of::<Crossing>()
+    + size_of::<Segment>()) as u64;
 
 /// So many vertices and nodes can be numbered by 32 bits, with room for copies.
 const MOST_POINTS: usize = 0xf000_0000;
@@ -153,6 +157,7 @@ fn number_nodes(found: &[PairCrossing], runner: Runner<'_>) -> Result<Crossings,
         }
         node_of[place] = nodes.len() as u32 - 1;
     }
+    drop(order);
     // Triangle of A, triangle of B, and place.
     let mut order: Vec<u128> = found
         .iter()

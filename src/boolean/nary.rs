@@ -37,8 +37,12 @@ impl<'a> Partial<'a> {
     }
 
     /// Both, as bodies of their own.
-    fn beside<'b>(self, other: Partial<'_>) -> Partial<'b> {
+    fn beside<'b>(self, other: Partial<'_>) -> Result<Partial<'b>, Error> {
         let [first, second] = [self.solid.mesh(), other.solid.mesh()];
+        let vertices = first.positions.len() + second.positions.len();
+        if vertices > u32::MAX as usize {
+            return Err(Error::TooLarge { what: format!("{vertices} vertices in one result") });
+        }
         let offset = first.positions.len() as u32;
         let positions = [first.positions.as_slice(), &second.positions].concat();
         let moved = second.triangles.iter().map(|corners| corners.map(|v| v + offset));
@@ -46,13 +50,13 @@ impl<'a> Partial<'a> {
         let origins = |origins: &Origins, mesh: &Mesh| -> Vec<Origin> {
             (0..mesh.triangles.len() as u32).map(|t| origins.of(t)).collect()
         };
-        Partial {
+        Ok(Partial {
             origins: Origins::List([origins(&self.origins, first), origins(&other.origins, second)].concat()),
             solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(positions, triangles))),
             groups: [self.groups, other.groups].concat(),
             ties: self.ties + other.ties,
             may_be_inverted: self.may_be_inverted || other.may_be_inverted,
-        }
+        })
     }
 }
 
@@ -170,7 +174,7 @@ impl Engine<'_> {
         if pair::touch_from_opposite_sides(&a.solid, &b.solid, self.runner)? {
             self.combine(Operation::Union, &left, &right)
         } else {
-            Ok(left.beside(right))
+            left.beside(right)
         }
     }
 
