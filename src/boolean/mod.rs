@@ -32,6 +32,8 @@ mod operands;
 mod outcome;
 mod overlap;
 mod pair;
+mod plane_faces;
+mod planes;
 mod self_crossings;
 mod sheets;
 mod tidy;

@@ -98,7 +98,8 @@ pub(super) fn add_up(cutter: &Cutter<'_>, parts: &[Part], sheet: &Sheet) -> Opti
     let mut boundary = Vec::new();
     for &(side, triangle) in sheet {
         let part = parts.iter().find(|part| part.side == side)?;
-        cutter.boundary(*part, &cutter.faces[side].face(triangle)?, &mut boundary);
+        boundary.clear();
+        cutter.add_boundary(*part, &cutter.faces[side].face(triangle)?, &mut boundary);
         edges.extend(boundary.iter().map(|&edge| (edge, 1)));
     }
     let mut points: Vec<u32> = edges.iter().flat_map(|(edge, _)| *edge).collect();

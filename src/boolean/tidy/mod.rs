@@ -7,7 +7,6 @@
 
 pub(crate) mod manifold;
 mod patch;
-mod planes;
 mod remove;
 mod shared_edges;
 mod short_edges;
@@ -17,6 +16,7 @@ use super::assemble::NewTriangle;
 use super::cut::Cutter;
 use super::cut_faces::BitSet;
 use super::multiplicity::Part;
+use super::planes::Planes;
 use crate::Error;
 use crate::parallel::Runner;
 use patch::Patch;
@@ -35,11 +35,9 @@ pub(super) struct Tidied {
 
 /// Settings of tidying.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Settings<'a> {
+pub(super) struct Settings {
     /// Whether vertices that nobody needs are removed.
     pub(super) remove_vertices: bool,
-    /// For each side the group of every triangle; faces of different groups are not merged. Empty: one group.
-    pub(super) groups: [&'a [u32]; 2],
     /// The size of rounding: edges and heights up to this are not worth a triangle.
     pub(super) rounding: f64,
     /// Whether to look even where nothing points to work.
@@ -49,13 +47,14 @@ pub(super) struct Settings<'a> {
 /// Tidies the pieces of a result; `None` where there is nothing to do.
 pub(super) fn tidy(
     cutter: &Cutter<'_>,
+    planes: &Planes<'_>,
     parts: &[Part],
     pieces: &[NewTriangle],
-    settings: &Settings<'_>,
+    settings: &Settings,
     runner: Runner<'_>,
 ) -> Result<Option<Tidied>, Error> {
-    let planes = planes::Planes { operands: cutter.operands, groups: settings.groups };
-    let mut candidates = if settings.remove_vertices { planes.removable_nodes(cutter) } else { Vec::new() };
+    let first_node = cutter.operands.vertex_count();
+    let mut candidates: Vec<u32> = cutter.plane_faces.left().iter().map(|node| first_node + node).collect();
     let regular =
         !settings.always && cutter.identification.is_empty() && candidates.is_empty() && !has_repeats(cutter);
     if regular {
@@ -70,11 +69,11 @@ pub(super) fn tidy(
         separate(&mut patch, cutter, &mut candidates);
         runner.control.check()?;
         if settings.remove_vertices {
-            zero_area::flip(&mut patch, &planes, 0.0);
-            remove::remove(&mut patch, &planes, candidates.clone(), runner.control)?;
+            zero_area::flip(&mut patch, 0.0);
+            remove::remove(&mut patch, planes, candidates.clone(), runner.control)?;
         }
-        short_edges::collapse(&mut patch, &planes, settings.rounding);
-        zero_area::flip(&mut patch, &planes, settings.rounding);
+        short_edges::collapse(&mut patch, settings.rounding);
+        zero_area::flip(&mut patch, settings.rounding);
         if round + 1 == ROUNDS || !zero_area::any_flat(&patch) {
             break;
         }
