@@ -132,8 +132,16 @@ impl<'a> Operands<'a> {
             Sign::Negative => false,
             Sign::Zero => {
                 self.ties.fetch_add(1, Ordering::Relaxed);
-                let points = [a, b, c, d].map(|corner| self.perturbed(corner));
-                perturbed::orient3d_of_tie(points.each_ref()) == Sign::Positive
+                let corners = [a, b, c, d];
+                perturbed::linear_filter(
+                    corners.map(|corner| &corner.position),
+                    corners.map(|corner| self.first_direction(corner.id)),
+                    |i| jitter(u64::from(corners[i].id)),
+                )
+                .unwrap_or_else(|| {
+                    let points = corners.map(|corner| self.perturbed(corner));
+                    perturbed::orient3d_of_tie_exact(points.each_ref())
+                }) == Sign::Positive
             }
         }
     }
@@ -143,14 +151,22 @@ impl<'a> Operands<'a> {
         self.directions.get().map(Directions::stuck).filter(|stuck| !stuck.is_empty())
     }
 
+    /// The direction a vertex moves along to first order.
+    #[inline]
+    fn first_direction(&self, vertex: u32) -> [i32; 3] {
+        if vertex >= self.first_of_b {
+            return [0; 3];
+        }
+        let directions = self.directions.get_or_init(|| Directions::new(&self.sides[0], &self.near[0]));
+        directions.of(vertex).map(|component| self.sense * component)
+    }
+
     /// A corner with the directions it is perturbed along.
     pub(super) fn perturbed(&self, corner: &Corner) -> PerturbedPoint {
-        let first = if corner.id < self.first_of_b {
-            let directions = self.directions.get_or_init(|| Directions::new(&self.sides[0], &self.near[0]));
-            directions.of(corner.id).map(|component| self.sense * component)
-        } else {
-            [0; 3]
-        };
-        PerturbedPoint { position: corner.position, first, second: jitter(u64::from(corner.id)) }
+        PerturbedPoint {
+            position: corner.position,
+            first: self.first_direction(corner.id),
+            second: jitter(u64::from(corner.id)),
+        }
     }
 }

@@ -1,9 +1,8 @@
-//! Edges in which the operands touch: the same subdivision for all faces.
+//! Edges in which surfaces touch: the same subdivision for all faces.
 //!
 //! Where both operands have the same edge, or part of it, the perturbation may let them cross somewhere along it: some faces
 //! then pass along the whole edge and others along its parts. Bodies that touch in an edge only come apart if all faces
-//! there meet in the same edges. So every edge between faces of different operands gets the vertices of the shorter such
-//! edges that run along it.
+//! there meet in the same edges. So every edge gets the vertices of the shorter edges that run along it.
 
 use rustc_hash::FxHashMap;
 
@@ -11,13 +10,13 @@ use super::super::cut::Cutter;
 use super::patch::{Face, Patch};
 use crate::exact::{Sign, collinear, orient3d};
 
-/// An edge between faces of both operands, from its lower point to its higher one.
+/// An edge, from its lower point to its higher one.
 type Edge = (u32, u32);
 
-/// Rounds of splitting: halves may be shared edges with vertices on them again.
+/// Rounds of splitting: halves may have vertices on them again.
 const ROUNDS: usize = 4;
 
-/// Splits the edges at which faces of both operands meet.
+/// Splits the edges along which shorter ones run.
 pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>) {
     for _ in 0..ROUNDS {
         let splits = splits(patch, cutter);
@@ -72,16 +71,20 @@ fn split_face(patch: &mut Patch<'_>, index: usize, splits: &FxHashMap<Edge, Vec<
 
 /// Edges to split, with the vertices on them from the lower end to the higher one.
 fn splits(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
-    let shared = shared_edges(patch);
+    let edges = edges(patch);
     // Each edge from both its ends, so that those at one point are together.
-    let mut from_points: Vec<(u32, u32)> = shared.iter().flat_map(|&(u, v)| [(u, v), (v, u)]).collect();
+    let mut from_points: Vec<u64> = edges.iter().flat_map(|&(u, v)| [pack(u, v), pack(v, u)]).collect();
     from_points.sort_unstable();
     let neighbours = |point: u32| {
-        let first = from_points.partition_point(|pair| pair.0 < point);
-        from_points[first..].iter().take_while(move |pair| pair.0 == point).map(|pair| pair.1)
+        let first = from_points.partition_point(|&pair| unpack(pair).0 < point);
+        from_points[first..]
+            .iter()
+            .map(|&pair| unpack(pair))
+            .take_while(move |pair| pair.0 == point)
+            .map(|pair| pair.1)
     };
     let mut splits = FxHashMap::default();
-    for &(u, v) in shared.iter().filter(|&&(u, v)| patch.is_complete(u) && patch.is_complete(v)) {
+    for &(u, v) in edges.iter().filter(|&&(u, v)| patch.is_complete(u) && patch.is_complete(v)) {
         // From vertex to vertex along the edge.
         let mut on: Vec<u32> = Vec::new();
         let mut next = 0;
@@ -105,30 +108,40 @@ fn splits(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
     splits
 }
 
-fn shared_edges(patch: &Patch<'_>) -> Vec<Edge> {
-    let mut sides: Vec<(u32, u32, u32)> = Vec::new();
+/// All edges, from the lower point to the higher one.
+fn edges(patch: &Patch<'_>) -> Vec<Edge> {
+    let mut sides: Vec<u64> = Vec::with_capacity(3 * patch.faces.len());
     for face in patch.faces.iter().filter(|face| face.alive) {
-        for k in 0..3 {
-            let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
-            sides.push((u.min(v), u.max(v), face.origin.operand));
-        }
+        let [a, b, c] = face.corners;
+        sides.extend([(a, b), (b, c), (c, a)].map(|(u, v)| pack(u.min(v), u.max(v))));
     }
     sides.sort_unstable();
-    sides
-        .chunk_by(|x, y| (x.0, x.1) == (y.0, y.1))
-        .filter(|group| group[0].2 != group[group.len() - 1].2)
-        .map(|group| (group[0].0, group[0].1))
-        .collect()
+    sides.dedup();
+    sides.into_iter().map(unpack).collect()
+}
+
+fn pack(u: u32, v: u32) -> u64 {
+    u64::from(u) << 32 | u64::from(v)
+}
+
+fn unpack(pair: u64) -> (u32, u32) {
+    ((pair >> 32) as u32, pair as u32)
 }
 
 /// Whether `x` lies on the segment from `u` to `v`, not at its ends: exactly as given, or before it was rounded. Both parts
 /// are shorter than the whole, so splitting comes to an end.
 fn lies_between(patch: &Patch<'_>, cutter: &Cutter<'_>, u: u32, x: u32, v: u32) -> bool {
     let (p, at, q) = (patch.position(u), patch.position(x), patch.position(v));
-    // Nearly always one look says no.
+    // Nearly always one look says no: rounding moves a point by less than a unit in the last place.
     let is_within = (0..3).all(|k| p[k].min(q[k]) <= at[k] && at[k] <= p[k].max(q[k]));
     let length = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|k| (q[k] - p[k]).powi(2)).sum::<f64>();
+    let [u_v, u_x]: [[f64; 3]; 2] = [q, at].map(|end| std::array::from_fn(|k| end[k] - p[k]));
+    let twice_area = (0..3)
+        .map(|k| (u_v[(k + 1) % 3] * u_x[(k + 2) % 3] - u_v[(k + 2) % 3] * u_x[(k + 1) % 3]).powi(2))
+        .sum::<f64>();
+    let is_off = twice_area > (2.0 * cutter.rounding).powi(2) * length(p, q);
     is_within
+        && !is_off
         && length(p, at).max(length(at, q)) < length(p, q)
         && (collinear(p, at, q) || were_on_one_line(cutter, [u, x, v]))
 }
