@@ -26,6 +26,7 @@ mod cut_edges;
 mod cut_faces;
 mod directions;
 mod identify;
+mod merge_order;
 mod multiplicity;
 mod nary;
 mod operands;

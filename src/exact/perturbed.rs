@@ -10,6 +10,8 @@
 //! Coefficients are computed one after the other, exactly; the lowest has an `f64` filter of its own, since it decides
 //! nearly every contact between flat faces.
 
+use std::cell::OnceCell;
+
 use super::lattice::Lattice;
 use super::orient::orient3d_exact;
 use super::{Integer, Sign};
@@ -81,11 +83,40 @@ pub(crate) fn linear_filter(
     linear_coefficient(positions, if alike { [0, 1, 2, 3].map(second) } else { first })
 }
 
-/// The coefficients of the perturbed determinant, lowest first, in units of `2^(3 e)` where `2^e` is the spacing of
-/// `lattice`; the infinitesimal is scaled by `2^e`.
-pub(super) fn coefficients(points: [&PerturbedPoint; 4], lattice: Lattice) -> [Integer; COEFFICIENTS] {
-    let rows = rows(points, |x| lattice.integer(x), |x| Integer::from(i64::from(x)));
-    EXPONENTS.map(|exponent| coefficient(&rows, exponent))
+/// The perturbed determinant as a polynomial in the infinitesimal, which is scaled by `2^e`: its coefficients are in units of
+/// `2^(3 e)` where `2^e` is the spacing of a lattice, and computed when they are asked for.
+pub(super) struct Polynomial {
+    rows: Rows<Integer>,
+    coefficients: [OnceCell<Integer>; COEFFICIENTS],
+}
+
+impl Polynomial {
+    pub(super) fn new(points: [&PerturbedPoint; 4], lattice: Lattice) -> Self {
+        let rows = rows(points, |x| lattice.integer(x), |x| Integer::from(i64::from(x)));
+        Self { rows, coefficients: Default::default() }
+    }
+
+    /// The coefficient of the power of that place in [`EXPONENTS`].
+    pub(super) fn coefficient(&self, place: usize) -> &Integer {
+        self.coefficients[place].get_or_init(|| coefficient(&self.rows, EXPONENTS[place]))
+    }
+
+    /// Whether the lowest coefficient that is not zero is positive.
+    pub(super) fn is_positive(&self) -> bool {
+        (0..COEFFICIENTS)
+            .map(|k| self.coefficient(k).signum())
+            .find(|&sign| sign != 0)
+            .is_some_and(|sign| sign > 0)
+    }
+}
+
+/// Number of coefficients that first directions alone give: those of the powers 0 to 3.
+pub(super) const LOW_COEFFICIENTS: usize = 4;
+
+/// The low coefficients of the perturbed determinant on a [tiny](Lattice::is_tiny) lattice, in the units of [`Polynomial`].
+pub(super) fn low_coefficients(points: [&PerturbedPoint; 4], lattice: Lattice) -> [i128; LOW_COEFFICIENTS] {
+    let rows = rows(points, |x| i128::from(lattice.small(x)), i128::from);
+    std::array::from_fn(|place| coefficient(&rows, EXPONENTS[place]))
 }
 
 /// The sign of the coefficient of the power of `eps` that belongs to some directions, if `f64` is certain: the sum of three

@@ -15,12 +15,15 @@ type Edge = (u32, u32);
 
 /// Rounds of splitting: halves may have vertices on them again.
 const ROUNDS: usize = 4;
+/// Splitting ends when the faces have become so many times as many.
+const MOST_GROWTH: usize = 4;
 
 /// Splits the edges along which shorter ones run.
 pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>) {
+    let most = MOST_GROWTH * patch.faces.len();
     for _ in 0..ROUNDS {
         let splits = splits(patch, cutter);
-        if splits.is_empty() {
+        if splits.is_empty() || patch.faces.len() > most {
             return;
         }
         for index in 0..patch.faces.len() {
@@ -69,29 +72,29 @@ fn split_face(patch: &mut Patch<'_>, index: usize, splits: &FxHashMap<Edge, Vec<
     }
 }
 
-/// Edges to split, with the vertices on them from the lower end to the higher one.
+/// Edges to split, with the vertices on them from the lower end to the higher one: edges of one operand along which edges of
+/// the other run.
 fn splits(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
     let edges = edges(patch);
     // Each edge from both its ends, so that those at one point are together.
-    let mut from_points: Vec<u64> = edges.iter().flat_map(|&(u, v)| [pack(u, v), pack(v, u)]).collect();
+    let mut from_points: Vec<(u32, u32, u8)> =
+        edges.iter().flat_map(|&((u, v), of)| [(u, v, of), (v, u, of)]).collect();
     from_points.sort_unstable();
     let neighbours = |point: u32| {
-        let first = from_points.partition_point(|&pair| unpack(pair).0 < point);
-        from_points[first..]
-            .iter()
-            .map(|&pair| unpack(pair))
-            .take_while(move |pair| pair.0 == point)
-            .map(|pair| pair.1)
+        let first = from_points.partition_point(|entry| entry.0 < point);
+        from_points[first..].iter().take_while(move |entry| entry.0 == point)
     };
     let mut splits = FxHashMap::default();
-    for &(u, v) in edges.iter().filter(|&&(u, v)| patch.is_complete(u) && patch.is_complete(v)) {
+    let complete = |&&((u, v), _): &&(Edge, u8)| patch.is_complete(u) && patch.is_complete(v);
+    for &((u, v), of) in edges.iter().filter(complete) {
         // From vertex to vertex along the edge.
         let mut on: Vec<u32> = Vec::new();
         let mut next = 0;
         let mut from = u;
         loop {
-            for x in neighbours(from) {
-                if x != u && x != v && !on.contains(&x) && lies_between(patch, cutter, u, x, v) {
+            for &(_, x, of_x) in neighbours(from) {
+                let may_touch = of | of_x == BOTH && x != u && x != v;
+                if may_touch && !on.contains(&x) && lies_between(patch, cutter, u, x, v) {
                     on.push(x);
                 }
             }
@@ -108,24 +111,21 @@ fn splits(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
     splits
 }
 
-/// All edges, from the lower point to the higher one.
-fn edges(patch: &Patch<'_>) -> Vec<Edge> {
-    let mut sides: Vec<u64> = Vec::with_capacity(3 * patch.faces.len());
+/// Faces of both operands.
+const BOTH: u8 = 3;
+
+/// All edges, from the lower point to the higher one, and whose faces are there: a bit for each operand.
+fn edges(patch: &Patch<'_>) -> Vec<(Edge, u8)> {
+    let mut sides: Vec<(Edge, u8)> = Vec::with_capacity(3 * patch.faces.len());
     for face in patch.faces.iter().filter(|face| face.alive) {
         let [a, b, c] = face.corners;
-        sides.extend([(a, b), (b, c), (c, a)].map(|(u, v)| pack(u.min(v), u.max(v))));
+        sides.extend([(a, b), (b, c), (c, a)].map(|(u, v)| ((u.min(v), u.max(v)), 1 << face.origin.operand)));
     }
     sides.sort_unstable();
-    sides.dedup();
-    sides.into_iter().map(unpack).collect()
-}
-
-fn pack(u: u32, v: u32) -> u64 {
-    u64::from(u) << 32 | u64::from(v)
-}
-
-fn unpack(pair: u64) -> (u32, u32) {
-    ((pair >> 32) as u32, pair as u32)
+    sides
+        .chunk_by(|x, y| x.0 == y.0)
+        .map(|group| (group[0].0, group[0].1 | group[group.len() - 1].1))
+        .collect()
 }
 
 /// Whether `x` lies on the segment from `u` to `v`, not at its ends: exactly as given, or before it was rounded. Both parts
