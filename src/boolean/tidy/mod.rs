@@ -5,6 +5,7 @@
 //! pair (make it 2-manifold), flip, remove, collapse. They work on a patch: the pieces of cut faces and the kept triangles
 //! round their points. All else keeps its bits and its order.
 
+mod lines;
 pub(crate) mod manifold;
 mod patch;
 mod remove;
@@ -85,6 +86,7 @@ pub(super) fn tidy(
 fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>, candidates: &mut Vec<u32>) {
     #[cfg(debug_assertions)]
     let boundary = patch.boundary();
+    lines::straighten(patch);
     zero_area::split_chain(patch);
     patch.cancel();
     if cutter.operands.ties() > 0 {

@@ -11,7 +11,7 @@ use super::patch::{Face, Patch};
 use crate::exact::{Sign, collinear, orient3d};
 
 /// An edge, from its lower point to its higher one.
-type Edge = (u32, u32);
+pub(super) type Edge = (u32, u32);
 
 /// Rounds of splitting: halves may have vertices on them again.
 const ROUNDS: usize = 4;
@@ -35,7 +35,7 @@ pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>) {
 
 /// Splits the sides of a face that are to be split. Diagonals are left alone, whatever else runs along them: they bound two
 /// triangles of this face and so do not matter to others.
-fn split_face(patch: &mut Patch<'_>, index: usize, splits: &FxHashMap<Edge, Vec<u32>>) {
+pub(super) fn split_face(patch: &mut Patch<'_>, index: usize, splits: &FxHashMap<Edge, Vec<u32>>) {
     let face = patch.faces[index];
     let on_side = |from: u32, to: u32| splits.get(&(from.min(to), from.max(to)));
     let is_split = |k: usize| on_side(face.corners[k], face.corners[(k + 1) % 3]).is_some();

@@ -17,7 +17,7 @@ struct Flip {
     d: u32,
 }
 
-fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
+pub(super) fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
     let face = &patch.faces[index as usize];
     let [a, b, c] = face.corners.map(|point| patch.position(point));
     face.alive && collinear(a, b, c)
@@ -183,7 +183,7 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
 }
 
 /// Makes one point of each pair.
-fn identify(patch: &mut Patch<'_>, pairs: &[(u32, u32)]) {
+pub(super) fn identify(patch: &mut Patch<'_>, pairs: &[(u32, u32)]) {
     let mut stands_for: FxHashMap<u32, u32> = FxHashMap::default();
     let root = |stands_for: &FxHashMap<u32, u32>, mut point: u32| {
         while let Some(&other) = stands_for.get(&point) {
