@@ -4,6 +4,7 @@
 use obvhs::aabb::Aabb;
 
 use super::operands::Operands;
+use super::refined_boxes::{self, Boxes, Corners};
 use crate::Error;
 use crate::control::Reservation;
 use crate::mesh::Bounds;
@@ -38,18 +39,23 @@ impl Candidates {
         let frame = Frame::of(common.low, common.high);
         let near = [operands.near(0), operands.near(1)];
         let culled = (near[0].len().min(near[1].len()) >= CULL_FROM).then(|| cull(operands, &frame, runner));
-        let items: usize =
-            (0..2).map(|side| culled.as_ref().map_or(near[side].len(), |culled| culled[side].len())).sum();
-        let memory = runner.control.reserve((items * BoxTree::BYTES_PER_ITEM) as u64)?;
-        let tree = |side: usize| {
+        let corners = |side: usize, t: u32| corners(operands, &frame, side, t);
+        let boxes = |side: usize| {
             let items = culled.as_ref().map_or(near[side], |culled| &culled[side]);
-            BoxTree::new(items, |t| triangle_box(operands, &frame, side, t))
+            Boxes::new(items, |t| corners(side, t))
         };
-        let (a, b) = runner.both(|| tree(0), || tree(1));
+        let (a, b) = runner.both(|| boxes(0), || boxes(1));
+        let common = Aabb { min: frame.point(&common.low), max: frame.point(&common.high) };
+        let [a, b] = refined_boxes::refine([a, b], &common, corners);
+        let items = a.boxes.len() + b.boxes.len();
+        let memory = runner.control.reserve((items * BoxTree::BYTES_PER_ITEM) as u64)?;
+        let tree = |boxes: Boxes| BoxTree::of_boxes(&boxes.triangles, boxes.boxes);
+        let (a, b) = runner.both(|| tree(a), || tree(b));
         Ok(Self { trees: [a, b], _memory: memory })
     }
 
-    /// Calls `visit` for all pairs of a triangle of A and one of B whose boxes meet.
+    /// Calls `visit` for all pairs of a triangle of A and one of B whose boxes meet; more than once where several of their
+    /// boxes do.
     pub(super) fn visit<T: Send>(
         &self,
         runner: Runner<'_>,
@@ -59,9 +65,9 @@ impl Candidates {
     }
 }
 
-fn triangle_box(operands: &Operands<'_>, frame: &Frame, side: usize, triangle: u32) -> Aabb {
+fn corners(operands: &Operands<'_>, frame: &Frame, side: usize, triangle: u32) -> Corners {
     let operand = &operands.sides[side];
-    frame.triangle(operand.triangles[triangle as usize].map(|v| &operand.positions[v as usize]))
+    operand.triangles[triangle as usize].map(|v| frame.point(&operand.positions[v as usize]))
 }
 
 /// The near triangles of each side that pass a grid cell which the other side passes, too.
@@ -80,10 +86,7 @@ fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> [Vec<u32>
     };
     let (of_a, of_b) = runner.both(|| cells_of_vertices(0), || cells_of_vertices(1));
     let of_vertices = [of_a, of_b];
-    let corners = |side: usize, t: u32| {
-        let operand = &operands.sides[side];
-        operand.triangles[t as usize].map(|v| frame.point(&operand.positions[v as usize]))
-    };
+    let corners = |side: usize, t: u32| corners(operands, frame, side, t);
     let cells = |grid: &Occupancy, side: usize, t: u32| {
         if of_vertices[side].is_empty() {
             return corners(side, t).map(|corner| grid.cell(corner));

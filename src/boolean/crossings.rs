@@ -167,6 +167,8 @@ fn number_nodes(found: &[PairCrossing], runner: Runner<'_>) -> Result<Crossings,
         })
         .collect();
     runner.sort(&mut order);
+    // A pair may have been found more than once.
+    order.dedup_by_key(|key| *key >> 64);
     let segments = order
         .iter()
         .map(|&key| {

@@ -35,6 +35,7 @@ mod overlap;
 mod pair;
 mod plane_faces;
 mod planes;
+mod refined_boxes;
 mod self_crossings;
 mod sheets;
 mod tidy;

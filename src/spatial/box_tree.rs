@@ -44,7 +44,11 @@ impl BoxTree {
 
     /// The tree of the given items.
     pub(crate) fn new(items: &[u32], box_of: impl Fn(u32) -> Aabb) -> Self {
-        let unsorted: Vec<Aabb> = items.iter().map(|&item| box_of(item)).collect();
+        Self::of_boxes(items, items.iter().map(|&item| box_of(item)).collect())
+    }
+
+    /// The tree of the given boxes; an item may have several.
+    pub(crate) fn of_boxes(items: &[u32], unsorted: Vec<Aabb>) -> Self {
         let mut bounds = Aabb { min: Vec3A::splat(f32::INFINITY), max: Vec3A::splat(f32::NEG_INFINITY) };
         for aabb in &unsorted {
             let centre = aabb.min + aabb.max;
