@@ -3,6 +3,7 @@
 
 use obvhs::aabb::Aabb;
 
+use super::capsule::Capsule;
 use super::operands::Operands;
 use super::refined_boxes::{self, Boxes, Corners};
 use crate::Error;
@@ -16,7 +17,11 @@ const CULL_FROM: usize = 2_000;
 
 /// The triangles of both operands that may meet the other, in hierarchies of boxes.
 pub(super) struct Candidates {
+    /// Hierarchies over places in the lists below.
     trees: [BoxTree; 2],
+    triangles: [Vec<u32>; 2],
+    /// Capsules in the boxes; empty where there are few needles.
+    capsules: [Vec<Capsule>; 2],
     _memory: Reservation,
 }
 
@@ -34,7 +39,13 @@ impl Candidates {
         runner.control.check()?;
         let Some(common) = common else {
             let nothing = runner.control.reserve(0)?;
-            return Ok(Self { trees: [BoxTree::empty(), BoxTree::empty()], _memory: nothing });
+            let trees = [BoxTree::empty(), BoxTree::empty()];
+            return Ok(Self {
+                trees,
+                triangles: Default::default(),
+                capsules: Default::default(),
+                _memory: nothing,
+            });
         };
         let frame = Frame::of(common.low, common.high);
         let near = [operands.near(0), operands.near(1)];
@@ -48,10 +59,17 @@ impl Candidates {
         let common = Aabb { min: frame.point(&common.low), max: frame.point(&common.high) };
         let [a, b] = refined_boxes::refine([a, b], &common, corners);
         let items = a.boxes.len() + b.boxes.len();
-        let memory = runner.control.reserve((items * BoxTree::BYTES_PER_ITEM) as u64)?;
-        let tree = |boxes: Boxes| BoxTree::of_boxes(&boxes.triangles, boxes.boxes);
-        let (a, b) = runner.both(|| tree(a), || tree(b));
-        Ok(Self { trees: [a, b], _memory: memory })
+        let bytes_per_item = BoxTree::BYTES_PER_ITEM
+            + size_of::<u32>()
+            + if a.capsules.is_empty() { 0 } else { size_of::<Capsule>() };
+        let memory = runner.control.reserve((items * bytes_per_item) as u64)?;
+        let (tree_a, tree_b) = runner.both(|| BoxTree::of_boxes(a.boxes), || BoxTree::of_boxes(b.boxes));
+        Ok(Self {
+            trees: [tree_a, tree_b],
+            triangles: [a.triangles, b.triangles],
+            capsules: [a.capsules, b.capsules],
+            _memory: memory,
+        })
     }
 
     /// Calls `visit` for all pairs of a triangle of A and one of B whose boxes meet; more than once where several of their
@@ -61,7 +79,16 @@ impl Candidates {
         runner: Runner<'_>,
         visit: impl Fn(u32, u32, &mut Vec<T>) + Sync,
     ) -> Result<Vec<T>, Error> {
-        visit_pairs(&self.trees[0], &self.trees[1], runner, visit)
+        let [of_a, of_b] = &self.triangles;
+        let [a, b] = &self.trees;
+        if self.capsules[0].is_empty() || self.capsules[1].is_empty() {
+            return visit_pairs(a, b, runner, |i, j, found| visit(of_a[i as usize], of_b[j as usize], found));
+        }
+        visit_pairs(a, b, runner, |i, j, found| {
+            if !self.capsules[0][i as usize].is_apart(&self.capsules[1][j as usize]) {
+                visit(of_a[i as usize], of_b[j as usize], found);
+            }
+        })
     }
 }
 

@@ -19,6 +19,7 @@
 
 mod assemble;
 mod candidates;
+mod capsule;
 mod certificate;
 mod crossings;
 mod cut;

@@ -6,8 +6,14 @@
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
+use super::capsule::{self, Capsule};
+
+/// Fewer pairs of triangles than this are not worth it.
+const FROM_PAIRS: usize = 1 << 14;
 /// Triangles are halved while their box is so many times as wide as the other operand's boxes usually are long.
 const WIDE: f32 = 2.0;
+/// So many boxes tell how long they usually are.
+const SAMPLE: usize = 1_000;
 /// At most so many times.
 const MOST_HALVINGS: u32 = 6;
 /// Parts of all triangles beside those, at most: so many, and so many for each triangle of both operands.
@@ -17,24 +23,49 @@ const PARTS_PER_TRIANGLE: usize = 2;
 /// Corners of a triangle in the frame of the boxes.
 pub(super) type Corners = [Vec3A; 3];
 
+/// Capsules pay if at least one of so many triangles is a needle.
+const NEEDLES_FROM: usize = 4;
+
 /// Boxes with the triangles they belong to.
 #[derive(Debug, Default)]
 pub(super) struct Boxes {
     pub(super) triangles: Vec<u32>,
     pub(super) boxes: Vec<Aabb>,
+    /// A capsule round what is in each box; empty where there are few needles.
+    pub(super) capsules: Vec<Capsule>,
 }
 
 impl Boxes {
     /// One box for each triangle.
     pub(super) fn new(triangles: &[u32], corners: impl Fn(u32) -> Corners) -> Self {
         let boxes = triangles.iter().map(|&t| box_of(&corners(t))).collect();
-        Self { triangles: triangles.to_vec(), boxes }
+        Self { triangles: triangles.to_vec(), boxes, capsules: Vec::new() }
     }
 
     /// How long boxes are on the average.
     fn usual_length(&self) -> f32 {
-        let sum: f64 = self.boxes.iter().map(|aabb| f64::from((aabb.max - aabb.min).max_element())).sum();
-        (sum / self.boxes.len().max(1) as f64) as f32
+        let sample = self.boxes.iter().step_by(self.boxes.len().div_ceil(SAMPLE).max(1));
+        let sum: f64 = sample.clone().map(|aabb| f64::from((aabb.max - aabb.min).max_element())).sum();
+        (sum / sample.len().max(1) as f64) as f32
+    }
+
+    /// Whether many triangles are needles.
+    fn has_needles(&self, corners: impl Fn(u32) -> Corners) -> bool {
+        let sample = self.triangles.iter().step_by(self.triangles.len().div_ceil(SAMPLE).max(1));
+        let needles = sample.clone().filter(|&&t| capsule::is_needle(&corners(t))).count();
+        needles * NEEDLES_FROM >= sample.len()
+    }
+
+    /// Puts a capsule round every triangle.
+    fn with_capsules(mut self, corners: impl Fn(u32) -> Corners) -> Self {
+        self.capsules = self.triangles.iter().map(|&t| Capsule::of(&corners(t))).collect();
+        self
+    }
+
+    fn push(&mut self, triangle: u32, aabb: Aabb, capsule: Option<Capsule>) {
+        self.triangles.push(triangle);
+        self.boxes.push(aabb);
+        self.capsules.extend(capsule);
     }
 
     /// Gives triangles that are large next to those of `other` several boxes. Parts outside `common` have none.
@@ -47,10 +78,9 @@ impl Boxes {
         let halvings = (room / wide).checked_ilog2().unwrap_or(0).min(MOST_HALVINGS);
         let mut refined = Self::default();
         let mut stack = Vec::new();
-        for (&triangle, aabb) in self.triangles.iter().zip(&self.boxes) {
+        for (place, (&triangle, aabb)) in self.triangles.iter().zip(&self.boxes).enumerate() {
             if width(aabb) <= widest || halvings == 0 {
-                refined.triangles.push(triangle);
-                refined.boxes.push(*aabb);
+                refined.push(triangle, *aabb, self.capsules.get(place).copied());
                 continue;
             }
             let whole = corners(triangle);
@@ -66,8 +96,8 @@ impl Boxes {
                     continue;
                 }
                 if halvings == 0 || width(&part_box) <= widest {
-                    refined.triangles.push(triangle);
-                    refined.boxes.push(part_box);
+                    let capsule = self.capsules.first().map(|_| Capsule::of(&part));
+                    refined.push(triangle, part_box, capsule);
                 } else {
                     stack.extend(halves(&part).map(|half| (half, halvings - 1)));
                 }
@@ -79,9 +109,20 @@ impl Boxes {
 
 /// Refines the boxes of both operands against each other. `common` is a box that holds all of interest.
 pub(super) fn refine(both: [Boxes; 2], common: &Aabb, corners: impl Fn(usize, u32) -> Corners) -> [Boxes; 2] {
-    let room = FEW_PARTS + PARTS_PER_TRIANGLE * (both[0].boxes.len() + both[1].boxes.len());
+    let counts = both.each_ref().map(|boxes| boxes.boxes.len());
+    if counts[0].saturating_mul(counts[1]) < FROM_PAIRS {
+        return both;
+    }
+    let room = FEW_PARTS + PARTS_PER_TRIANGLE * (counts[0] + counts[1]);
     let usual = both.each_ref().map(Boxes::usual_length);
+    let corners = &corners;
     let [a, b] = both;
+    let has_needles = a.has_needles(|t| corners(0, t)) || b.has_needles(|t| corners(1, t));
+    let [a, b] = if has_needles {
+        [a.with_capsules(|t| corners(0, t)), b.with_capsules(|t| corners(1, t))]
+    } else {
+        [a, b]
+    };
     [
         a.refined(usual[1], room, common, |t| corners(0, t)),
         b.refined(usual[0], room, common, |t| corners(1, t)),

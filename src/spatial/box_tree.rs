@@ -44,11 +44,13 @@ impl BoxTree {
 
     /// The tree of the given items.
     pub(crate) fn new(items: &[u32], box_of: impl Fn(u32) -> Aabb) -> Self {
-        Self::of_boxes(items, items.iter().map(|&item| box_of(item)).collect())
+        let mut tree = Self::of_boxes(items.iter().map(|&item| box_of(item)).collect());
+        tree.items.iter_mut().for_each(|item| *item = items[*item as usize]);
+        tree
     }
 
-    /// The tree of the given boxes; an item may have several.
-    pub(crate) fn of_boxes(items: &[u32], unsorted: Vec<Aabb>) -> Self {
+    /// The tree of the given boxes; items are places in their list.
+    pub(crate) fn of_boxes(unsorted: Vec<Aabb>) -> Self {
         let mut bounds = Aabb { min: Vec3A::splat(f32::INFINITY), max: Vec3A::splat(f32::NEG_INFINITY) };
         for aabb in &unsorted {
             let centre = aabb.min + aabb.max;
@@ -64,7 +66,7 @@ impl BoxTree {
             .collect();
         order.sort_unstable();
         let boxes: Vec<Aabb> = order.iter().map(|&key| unsorted[key as u32 as usize]).collect();
-        let items = order.iter().map(|&key| items[key as u32 as usize]).collect();
+        let items = order.iter().map(|&key| key as u32).collect();
 
         let mut nodes: Vec<Aabb> = boxes.chunks(LEAF).map(union).collect();
         let mut levels = vec![0];
