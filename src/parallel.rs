@@ -40,6 +40,15 @@ impl<'a> Runner<'a> {
         false
     }
 
+    /// How many threads loops may use.
+    pub(crate) fn threads(self) -> usize {
+        #[cfg(feature = "parallel")]
+        if self.parallel {
+            return rayon::current_num_threads();
+        }
+        1
+    }
+
     /// Cuts `0..count` into pieces of `grain` and returns what `piece` makes of each, in order. The limits are checked
     /// before every piece.
     pub(crate) fn pieces<T: Send>(

@@ -14,6 +14,10 @@ use crate::spatial::{BoxTree, Cell, Frame, Occupancy, visit_pairs};
 
 /// Below this many triangles near the other operand, ruling some out costs more than it saves.
 const CULL_FROM: usize = 2_000;
+/// So many grids are marked at once.
+const MOST_GRIDS: usize = 8;
+/// So many triangles are looked up in the grid at once.
+const TRIANGLES_PER_PIECE: usize = 1 << 14;
 
 /// The triangles of both operands that may meet the other, in hierarchies of boxes.
 pub(super) struct Candidates {
@@ -49,7 +53,9 @@ impl Candidates {
         };
         let frame = Frame::of(common.low, common.high);
         let near = [operands.near(0), operands.near(1)];
-        let culled = (near[0].len().min(near[1].len()) >= CULL_FROM).then(|| cull(operands, &frame, runner));
+        let culled = (near[0].len().min(near[1].len()) >= CULL_FROM)
+            .then(|| cull(operands, &frame, runner))
+            .transpose()?;
         let corners = |side: usize, t: u32| corners(operands, &frame, side, t);
         let boxes = |side: usize| {
             let items = culled.as_ref().map_or(near[side], |culled| &culled[side]);
@@ -98,11 +104,11 @@ fn corners(operands: &Operands<'_>, frame: &Frame, side: usize, triangle: u32) -
 }
 
 /// The near triangles of each side that pass a grid cell which the other side passes, too.
-fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> [Vec<u32>; 2] {
+fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> Result<[Vec<u32>; 2], Error> {
     let near = [operands.near(0), operands.near(1)];
     // Cells up to two triangles wide: most triangles are in one or two of them.
     let resolution = ((near[0].len().max(near[1].len()) as f64).sqrt() / 3.0) as u32;
-    let mut grid = Occupancy::new(resolution);
+    let grid = Occupancy::new(resolution);
     // Each vertex once, unless most of them belong to no near triangle.
     let cells_of_vertices = |side: usize| -> Vec<Cell> {
         let positions = operands.sides[side].positions;
@@ -120,17 +126,29 @@ fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> [Vec<u32>
         }
         operands.sides[side].triangles[t as usize].map(|v| of_vertices[side][v as usize])
     };
-    for &t in near[0] {
-        grid.mark(cells(&grid, 0, t), || corners(0, t));
-    }
-    let marked = |grid: &Occupancy, side: usize| -> Vec<u32> {
-        let is_marked = |t: &u32| grid.is_marked(cells(grid, side, *t), || corners(side, *t));
-        near[side].iter().copied().filter(is_marked).collect()
+    // Grids marked side by side are added up; which triangle is marked by whom does not matter.
+    let marked_by = |side: usize, triangles: &[u32]| -> Result<Occupancy, Error> {
+        let grain = triangles.len().div_ceil(runner.threads().min(MOST_GRIDS)).max(1);
+        let parts = runner.pieces(triangles.len(), grain, |range| {
+            let mut grid = grid.empty();
+            for &t in &triangles[range] {
+                grid.mark(cells(&grid, side, t), || corners(side, t));
+            }
+            grid
+        })?;
+        Ok(parts.into_iter().reduce(Occupancy::united).unwrap_or_else(|| grid.empty()))
     };
-    let of_b = marked(&grid, 1);
-    grid.clear();
-    for &t in &of_b {
-        grid.mark(cells(&grid, 1, t), || corners(1, t));
-    }
-    [marked(&grid, 0), of_b]
+    let passing = |grid: &Occupancy, side: usize| -> Result<Vec<u32>, Error> {
+        let is_marked = |t: &u32| grid.is_marked(cells(grid, side, *t), || corners(side, *t));
+        let grain = if runner.is_parallel() { TRIANGLES_PER_PIECE } else { near[side].len().max(1) };
+        let pieces = runner.pieces(near[side].len(), grain, |range| {
+            near[side][range].iter().copied().filter(is_marked).collect::<Vec<u32>>()
+        })?;
+        let mut pieces = pieces.into_iter();
+        let mut all = pieces.next().unwrap_or_default();
+        pieces.for_each(|piece| all.extend(piece));
+        Ok(all)
+    };
+    let of_b = passing(&marked_by(0, near[0])?, 1)?;
+    Ok([passing(&marked_by(1, &of_b)?, 0)?, of_b])
 }

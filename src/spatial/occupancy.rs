@@ -49,9 +49,15 @@ impl Occupancy {
         Self { bits, resolution, shift: resolution.trailing_zeros() }
     }
 
-    /// Unmarks all cells.
-    pub(crate) fn clear(&mut self) {
-        self.bits.fill(0);
+    /// A grid of the same cells, none of them marked.
+    pub(crate) fn empty(&self) -> Self {
+        Self { bits: vec![0; self.bits.len()], ..*self }
+    }
+
+    /// The cells marked in either of two grids of the same cells.
+    pub(crate) fn united(mut self, other: Self) -> Self {
+        self.bits.iter_mut().zip(other.bits).for_each(|(word, other)| *word |= other);
+        self
     }
 
     /// The cell of a point. Points outside the grid are in its outermost cells.
@@ -215,7 +221,7 @@ mod tests {
             grid.mark(cells(&grid, first), || first);
             let of_second = cells(&grid, second);
             assert!(grid.is_marked(of_second, || second), "{first:?} {second:?}");
-            grid.clear();
+            grid = grid.empty();
             assert!(!grid.is_marked(of_second, || second));
         }
     }
