@@ -19,7 +19,7 @@ pub(super) struct CutEdge {
 }
 
 /// All cut edges.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct CutEdges {
     pub(super) edges: Vec<CutEdge>,
     /// Node numbers, edge by edge, from the edge's low end to its high end.
@@ -74,6 +74,13 @@ impl CutEdges {
             })?
             .concat();
         Ok(Self { edges, nodes, edge_of_node, positions })
+    }
+
+    /// The same with points after the nodes.
+    pub(super) fn with_more_positions(&self, positions: &[[f64; 3]]) -> Self {
+        let mut more = self.clone();
+        more.positions.extend(positions);
+        more
     }
 
     /// The nodes of an edge, from its low end to its high end.

@@ -15,12 +15,14 @@ use super::multiplicity::Part;
 use super::operands::Operands;
 use super::outcome::Origin;
 use crate::Error;
-use crate::exact::{Sign, collinear, orient2d, orient3d};
+use crate::exact::perturbed::PerturbedPoint;
+use crate::exact::{Sign, collinear, orient2d, orient3d, position};
 use crate::parallel::Runner;
 use crate::polygon;
+use crate::spatial::{BoxTree, Frame};
 
 /// Faces of one plane that are added up: side and triangle.
-type Sheet = Vec<(usize, u32)>;
+pub(super) type Sheet = Vec<(usize, u32)>;
 
 /// The sets of faces to add up: those of A at vertices without a direction, with all faces of B they touch from the
 /// opposite side.
@@ -30,21 +32,24 @@ pub(super) fn touching_sheets(
     parts: &[Part],
     runner: Runner<'_>,
 ) -> Result<Vec<Sheet>, Error> {
-    let Some(stuck) = operands.vertices_without_direction() else { return Ok(Vec::new()) };
-    let [Some(part_a), Some(part_b)] = [0, 1].map(|side| parts.iter().find(|part| part.side == side)) else {
-        return Ok(Vec::new());
+    let is_asked_for: Box<dyn Fn(u32) -> bool + Sync> = if parts.len() > 2 {
+        if operands.ties() == 0 {
+            return Ok(Vec::new());
+        }
+        Box::new(|_| true)
+    } else {
+        let Some(stuck) = operands.vertices_without_direction() else { return Ok(Vec::new()) };
+        let near = operands.near(0).iter().copied();
+        let corners = |t: u32| operands.sides[0].triangles[t as usize];
+        let is_stuck: FxHashSet<u32> = near.filter(|&t| corners(t).iter().any(|v| stuck.contains(v))).collect();
+        Box::new(move |t| is_stuck.contains(&t))
     };
-    // A part turned over looks the other way.
-    let opposite_means = part_a.reversed == part_b.reversed;
-    let is_stuck: FxHashSet<u32> = operands
-        .near(0)
-        .iter()
-        .copied()
-        .filter(|&t| operands.sides[0].triangles[t as usize].iter().any(|v| stuck.contains(v)))
-        .collect();
+    let opposite_means = (parts.len() == 2).then(|| parts[0].reversed == parts[1].reversed);
     let mut parent: FxHashMap<(usize, u32), (usize, u32)> = FxHashMap::default();
     let touching = candidates.visit(runner, |s, t, found| {
-        if is_stuck.contains(&s) && touch(operands, s, t) == Some(opposite_means) {
+        if is_asked_for(s)
+            && touch(operands, s, t).is_some_and(|opposite| opposite_means.is_none_or(|means| means == opposite))
+        {
             found.push([s, t]);
         }
     })?;
@@ -90,57 +95,217 @@ pub(super) fn touch(operands: &Operands<'_>, s: u32, t: u32) -> Option<bool> {
     Some((orient2d(p, q, r) == Sign::Positive) != positive)
 }
 
-/// Adds up the faces of a sheet: the triangles left of them, or `None` where the shapes do not allow it (the faces are then
-/// cut one by one, which is closed as well).
-pub(super) fn add_up(cutter: &Cutter<'_>, parts: &[Part], sheet: &Sheet) -> Option<Vec<NewTriangle>> {
-    let operands = cutter.operands;
-    let mut edges: Vec<([u32; 2], i32)> = Vec::new();
-    let mut boundary = Vec::new();
-    for &(side, triangle) in sheet {
-        let part = parts.iter().find(|part| part.side == side)?;
-        cutter.boundary(*part, &cutter.faces[side].face(triangle)?, &mut boundary);
-        edges.extend(boundary.iter().map(|&edge| (edge, 1)));
+/// What is left of the faces of all sheets.
+#[derive(Debug, Default)]
+pub(super) struct Sums {
+    pub(super) pieces: Vec<NewTriangle>,
+    /// The faces that have been added up.
+    pub(super) done: FxHashSet<(usize, u32)>,
+    /// Points where edges cross that the perturbation kept apart; they are numbered after the nodes.
+    pub(super) crossings: Vec<[f64; 3]>,
+}
+
+/// Adds up the faces of each sheet. Where the shapes do not allow it, its faces are left to be cut one by one, which is
+/// closed as well.
+pub(super) fn add_up(
+    cutter: &Cutter<'_>,
+    parts: &[Part],
+    sheets: &[Sheet],
+    runner: Runner<'_>,
+) -> Result<Sums, Error> {
+    let mut sums = Sums::default();
+    for (i, sheet) in sheets.iter().enumerate() {
+        if i % 64 == 0 {
+            runner.control.check()?;
+        }
+        let before = sums.crossings.len();
+        match Sum::new(cutter, parts, sheet, &mut sums.crossings).triangles() {
+            Some(left) => {
+                sums.pieces.extend(left);
+                sums.done.extend(sheet);
+            }
+            None => {
+                if std::env::var_os("WALLS").is_some() {
+                    eprintln!("sheet failed: {sheet:?}");
+                }
+                sums.crossings.truncate(before)
+            }
+        }
     }
-    let mut points: Vec<u32> = edges.iter().flat_map(|(edge, _)| *edge).collect();
-    points.sort_unstable();
-    points.dedup();
-    for (edge, _) in &mut edges {
-        *edge = edge.map(|point| points.partition_point(|&p| p < point) as u32);
+    Ok(sums)
+}
+
+/// The sum of the faces of one sheet.
+struct Sum<'a> {
+    cutter: &'a Cutter<'a>,
+    parts: &'a [Part],
+    sheet: &'a Sheet,
+    /// The axes onto which the plane is projected.
+    axes: (usize, usize),
+    /// The sheet's points, and where they are in the projection.
+    points: Vec<u32>,
+    flat: Vec<[f64; 2]>,
+    /// Whole edges, of which those of the sheet are parts.
+    lines: Vec<[[f64; 3]; 2]>,
+    crossings: &'a mut Vec<[f64; 3]>,
+}
+
+impl<'a> Sum<'a> {
+    fn new(
+        cutter: &'a Cutter<'a>,
+        parts: &'a [Part],
+        sheet: &'a Sheet,
+        crossings: &'a mut Vec<[f64; 3]>,
+    ) -> Self {
+        let (side, triangle) = sheet[0];
+        let (axis, _) = dominant_axis(&cutter.operands.corners(side, triangle).map(|corner| corner.position));
+        let axes = ((axis + 1) % 3, (axis + 2) % 3);
+        Self { cutter, parts, sheet, axes, points: Vec::new(), flat: Vec::new(), lines: Vec::new(), crossings }
     }
-    let corners =
-        |&(side, triangle): &(usize, u32)| operands.corners(side, triangle).map(|corner| corner.position);
-    let (axis, _) = dominant_axis(&corners(&sheet[0]));
-    let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
-    let flat: Vec<[f64; 2]> = points
-        .iter()
-        .map(|&point| {
-            let position = cutter.position(point);
-            [position[x], position[y]]
+
+    fn project(&self, position: &[f64; 3]) -> [f64; 2] {
+        [position[self.axes.0], position[self.axes.1]]
+    }
+
+    fn position(&self, point: u32) -> &[f64; 3] {
+        let first = self.first_crossing();
+        if point < first { self.cutter.position(point) } else { &self.crossings[(point - first) as usize] }
+    }
+
+    /// The number of the first point where edges cross.
+    fn first_crossing(&self) -> u32 {
+        self.cutter.operands.vertex_count() + self.cutter.edges.positions.len() as u32
+    }
+
+    /// The triangles left, or `None` where the shapes do not allow it.
+    fn triangles(mut self) -> Option<Vec<NewTriangle>> {
+        let edges = self.edges()?;
+        let mut at: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+        for (i, &point) in (0..).zip(&self.points) {
+            at.insert(bits(self.position(point)), i);
+        }
+        let mut flat = std::mem::take(&mut self.flat);
+        let found = polygon::by_winding(&mut flat, &edges, |x, y, flat| {
+            let position = self.crossing(x.line, y.line)?;
+            Some(*at.entry(bits(&position)).or_insert_with(|| {
+                self.points.push(self.first_crossing() + self.crossings.len() as u32);
+                self.crossings.push(position);
+                flat.push(self.project(&position));
+                flat.len() as u32 - 1
+            }))
+        })?;
+        self.flat = flat;
+        self.with_origins(&found)
+    }
+
+    /// The directed edges of all faces, with local numbers of the points.
+    fn edges(&mut self) -> Option<Vec<polygon::Edge>> {
+        let mut edges: Vec<polygon::Edge> = Vec::new();
+        for &(side, triangle) in self.sheet {
+            let face = self.cutter.faces[side].face(triangle)?;
+            let corners = self.cutter.operands.corners(side, triangle).map(|corner| corner.position);
+            let first = self.lines.len() as u32;
+            self.lines.extend((0..3).map(|k| [corners[k], corners[(k + 1) % 3]]));
+            for part in self.parts.iter().filter(|part| part.side == side) {
+                self.cutter.for_boundary(*part, &face, |ends, of_side, count| {
+                    let line = match of_side {
+                        Some(k) => first + k as u32,
+                        None => {
+                            self.lines.push(ends.map(|point| *self.cutter.position(point)));
+                            self.lines.len() as u32 - 1
+                        }
+                    };
+                    edges.push(polygon::Edge { ends, count: count as i32, line });
+                });
+            }
+        }
+        self.points = edges.iter().flat_map(|edge| edge.ends).collect();
+        self.points.sort_unstable();
+        self.points.dedup();
+        for edge in &mut edges {
+            edge.ends = edge.ends.map(|point| self.points.partition_point(|&p| p < point) as u32);
+        }
+        self.flat = self.points.iter().map(|&point| self.project(self.position(point))).collect();
+        Some(edges)
+    }
+
+    /// Where two lines cross, rounded as the nodes are; `None` if they only seem to because their parts were rounded.
+    fn crossing(&self, x: u32, y: u32) -> Option<[f64; 3]> {
+        let ([p, q], [a, b]) = (&self.lines[x as usize], &self.lines[y as usize]);
+        if !polygon::cross_properly([p, q, a, b].map(|point| self.project(point))) {
+            return None;
+        }
+        // The plane through the one that stands on the sheet in the direction of projection.
+        let axis = 3 - self.axes.0 - self.axes.1;
+        let size = (0..3).fold(0.0f64, |size, k| size.max((b[k] - a[k]).abs()));
+        let mut above = *a;
+        above[axis] += size;
+        if above[axis] == a[axis] || !above[axis].is_finite() {
+            return None;
+        }
+        position::crossing_filter(p, q, [a, b, &above]).or_else(|| {
+            let still = |position: &[f64; 3]| PerturbedPoint { position: *position, first: [0; 3], second: [0; 3] };
+            let triangle = [a, b, &above].map(still);
+            Some(position::crossing(&still(p), &still(q), triangle.each_ref()))
         })
-        .collect();
-    let found = polygon::by_winding(&flat, &edges)?;
-    // A triangle comes from the face around its middle that looks its way.
-    let sources: Vec<(Origin, bool, [[f64; 2]; 3])> = sheet
-        .iter()
-        .filter_map(|face| {
-            let part = parts.iter().find(|part| part.side == face.0)?;
-            let flat = corners(face).map(|p| [p[x], p[y]]);
-            let upward = (orient2d(flat[0], flat[1], flat[2]) == Sign::Positive) != part.reversed;
-            Some((Origin { operand: face.0 as u32, triangle: face.1, reversed: part.reversed }, upward, flat))
-        })
-        .collect();
-    let mut new = Vec::new();
-    for (triangle, winding) in found {
-        let [p, q, r] = triangle.map(|i| flat[i as usize]);
-        let middle = [0, 1].map(|k| p[k] / 3.0 + q[k] / 3.0 + r[k] / 3.0);
-        let upward = winding > 0;
-        let suitable = || sources.iter().filter(|source| source.1 == upward);
-        let origin = suitable().find(|source| contains(&source.2, middle)).or_else(|| suitable().next())?.0;
-        let [a, b, c] = triangle.map(|i| points[i as usize]);
-        let corners = if upward { [a, b, c] } else { [a, c, b] };
-        new.extend(std::iter::repeat_n(NewTriangle { corners, origin }, winding.unsigned_abs() as usize));
     }
-    Some(new)
+
+    /// The triangles with the faces they come from: those around their middle that look their way.
+    fn with_origins(&self, found: &[([u32; 3], i32)]) -> Option<Vec<NewTriangle>> {
+        let operands = self.cutter.operands;
+        let corners =
+            |&(side, triangle): &(usize, u32)| operands.corners(side, triangle).map(|corner| corner.position);
+        let sources: Vec<(Origin, bool, [[f64; 2]; 3])> = self
+            .sheet
+            .iter()
+            .flat_map(|face| {
+                let flat = corners(face).map(|p| self.project(&p));
+                let looks_up = orient2d(flat[0], flat[1], flat[2]) == Sign::Positive;
+                self.parts.iter().filter(|part| part.side == face.0).map(move |part| {
+                    let origin = Origin { operand: face.0 as u32, triangle: face.1, reversed: part.reversed };
+                    (origin, looks_up != part.reversed, flat)
+                })
+            })
+            .collect();
+        let upright = |p: [f64; 2]| [p[0], p[1], 0.0];
+        let all = || sources.iter().flat_map(|source| source.2);
+        let low = all().fold([f64::INFINITY; 2], |low, p| [low[0].min(p[0]), low[1].min(p[1])]);
+        let high = all().fold([f64::NEG_INFINITY; 2], |high, p| [high[0].max(p[0]), high[1].max(p[1])]);
+        let frame = Frame::of(upright(low), upright(high));
+        let numbers: Vec<u32> = (0..sources.len() as u32).collect();
+        let box_of = |corners: &[[f64; 2]; 3]| {
+            let corners = corners.map(upright);
+            frame.triangle(corners.each_ref())
+        };
+        let tree = BoxTree::new(&numbers, |i| box_of(&sources[i as usize].2));
+        let mut new = Vec::new();
+        for &(triangle, winding) in found {
+            let flat = triangle.map(|i| self.flat[i as usize]);
+            let [p, q, r] = flat;
+            let middle = [0, 1].map(|k| p[k] / 3.0 + q[k] / 3.0 + r[k] / 3.0);
+            let upward = winding > 0;
+            let mut best = None;
+            tree.meeting(&box_of(&flat), |i| {
+                let source = &sources[i as usize];
+                if source.1 == upward && best.is_none_or(|best| i < best) && contains(&source.2, middle) {
+                    best = Some(i);
+                }
+            });
+            let source = match best {
+                Some(i) => &sources[i as usize],
+                None => sources.iter().find(|source| source.1 == upward)?,
+            };
+            let [a, b, c] = triangle.map(|i| self.points[i as usize]);
+            let corners = if upward { [a, b, c] } else { [a, c, b] };
+            let piece = NewTriangle { corners, origin: source.0 };
+            new.extend(std::iter::repeat_n(piece, winding.unsigned_abs() as usize));
+        }
+        Some(new)
+    }
+}
+
+fn bits(position: &[f64; 3]) -> [u64; 3] {
+    position.map(|x| (x + 0.0).to_bits())
 }
 
 fn contains(triangle: &[[f64; 2]; 3], p: [f64; 2]) -> bool {

@@ -9,8 +9,9 @@ mod delaunay;
 mod ears;
 mod holes;
 mod loops;
+mod winding;
 
-pub(crate) use delaunay::by_winding;
+pub(crate) use winding::{Edge, by_winding, cross_properly};
 
 /// From this many vertices a constrained Delaunay triangulation replaces ear clipping.
 const DELAUNAY_FROM: usize = 40;
@@ -60,8 +61,8 @@ impl Triangulator {
             return shape;
         }
         // Loops that cross or touch in ways that tracing cannot tell: by winding number instead.
-        let counted: Vec<([u32; 2], i32)> = edges.iter().map(|&edge| (edge, 1)).collect();
-        let Some(found) = by_winding(points, &counted) else { return Shape::Folded };
+        let edges: Vec<Edge> = edges.iter().map(|&ends| Edge { ends, count: 1, line: 0 }).collect();
+        let Some(found) = by_winding(&mut points.to_vec(), &edges, |_, _, _| None) else { return Shape::Folded };
         triangles.truncate(before);
         let mut shape = Shape::Sound;
         for ([a, b, c], winding) in found {
@@ -229,10 +230,11 @@ mod tests {
     fn opposite_regions_cancel_by_winding() {
         // A square, and half of it turned over with a vertex more on its border: the other half is left.
         let points = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 0.0], [1.0, 2.0]];
-        let mut edges: Vec<([u32; 2], i32)> =
-            [[0, 4], [4, 1], [1, 2], [2, 5], [5, 3], [3, 0]].map(|e| (e, 1)).to_vec();
-        edges.extend([[0, 4], [4, 5], [5, 3], [3, 0]].map(|e| (e, -1)));
-        let found = by_winding(&points, &edges).expect("a sound shape");
+        let edge = |ends: [u32; 2], count: i32| Edge { ends, count, line: 0 };
+        let mut edges: Vec<Edge> =
+            [[0, 4], [4, 1], [1, 2], [2, 5], [5, 3], [3, 0]].map(|e| edge(e, 1)).to_vec();
+        edges.extend([[0, 4], [4, 5], [5, 3], [3, 0]].map(|e| edge(e, -1)));
+        let found = by_winding(&mut points.to_vec(), &edges, |_, _, _| None).expect("a sound shape");
         assert_eq!(found.len(), 2);
         assert!(found.iter().all(|(t, winding)| *winding == 1 && area(&points, t) == 1.0));
     }
@@ -242,8 +244,8 @@ mod tests {
         let points = [[0.0, 0.0], [2.0, 0.0], [1.0, 2.0], [1.0, 0.0], [1.5, -1.0]];
         // A triangle with corner 3 on the side of another that does not have it.
         let edges = [[0, 1], [1, 2], [2, 0], [3, 4], [4, 1], [1, 3]];
-        let counted: Vec<([u32; 2], i32)> = edges.iter().map(|&edge| (edge, 1)).collect();
-        let found = by_winding(&points, &counted).expect("a sound shape");
+        let counted: Vec<Edge> = edges.iter().map(|&ends| Edge { ends, count: 1, line: 0 }).collect();
+        let found = by_winding(&mut points.to_vec(), &counted, |_, _, _| None).expect("a sound shape");
         let triangles: Vec<[u32; 3]> =
             found.iter().flat_map(|(t, winding)| std::iter::repeat_n(*t, *winding as usize)).collect();
         assert_complete(&edges, &triangles);

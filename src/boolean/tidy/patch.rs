@@ -138,7 +138,7 @@ impl<'a> Patch<'a> {
             let face = Face {
                 corners: if reversed { [a, c, b] } else { [a, b, c] },
                 origin: Origin { operand: part.side as u32, triangle: t, reversed },
-                untouched: count.abs() == 1,
+                untouched: count == 1,
                 alive: true,
             };
             faces.extend(std::iter::repeat_n(face, count.unsigned_abs() as usize));
