@@ -1,6 +1,8 @@
 //! Triangles without area: split or flip their longest side. The middle corner lies on that side, so the shape does not
 //! change.
 
+use std::collections::BinaryHeap;
+
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
@@ -24,9 +26,20 @@ fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
     face.alive && collinear(a, b, c)
 }
 
+pub(super) fn flats(patch: &Patch<'_>) -> Vec<[u32; 3]> {
+    (0..patch.faces.len() as u32).filter(|&index| is_flat(patch, index)).map(|i| patch.faces[i as usize].corners).collect()
+}
+
 /// Whether a triangle without area is left.
 pub(super) fn any_flat(patch: &Patch<'_>) -> bool {
     (0..patch.faces.len() as u32).any(|index| !patch.faces[index as usize].untouched && is_flat(patch, index))
+}
+
+/// The square of a triangle's longest side, in an order of bits.
+fn longest(patch: &Patch<'_>, index: u32) -> u64 {
+    let [a, b, c] = patch.faces[index as usize].corners.map(|point| patch.position(point));
+    let square = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|k| (q[k] - p[k]).powi(2)).sum::<f64>();
+    square(a, b).max(square(b, c)).max(square(c, a)).to_bits()
 }
 
 /// Whether a triangle is higher over its longest side than nothing, but not than `height`.
@@ -140,18 +153,21 @@ pub(super) fn split_chain(patch: &mut Patch<'_>) {
 /// the same side.
 fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
     let mut coincident = Vec::new();
-    let mut queue: Vec<u32> = (0..patch.faces.len() as u32).filter(|&index| is_flat(patch, index)).collect();
+    // The longest first: what meets its longest side then ends between its ends, and all new sides on the line are shorter.
+    let by_length = |patch: &Patch<'_>, index: u32| is_flat(patch, index).then(|| (longest(patch, index), index));
+    let mut queue: BinaryHeap<(u64, u32)> =
+        (0..patch.faces.len() as u32).filter_map(|index| by_length(patch, index)).collect();
     if queue.is_empty() {
         return coincident;
     }
     let mut chain = Chain::of(patch);
     let mut budget = 16 * queue.len();
-    while let Some(index) = queue.pop() {
+    while let Some((length, index)) = queue.pop() {
         if budget == 0 {
             break;
         }
         budget -= 1;
-        if !is_flat(patch, index) {
+        if by_length(patch, index) != Some((length, index)) {
             continue;
         }
         let flip = longest_side(patch, index, |a, c| {
@@ -164,7 +180,7 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
             let apart = chain.coincident_middles(patch, a, b, c);
             if apart.is_empty() {
                 let changed = chain.split(patch, a, b, c);
-                queue.extend(changed.into_iter().filter(|&index| is_flat(patch, index)));
+                queue.extend(changed.into_iter().filter_map(|index| by_length(patch, index)));
             } else {
                 coincident.extend(apart.into_iter().map(|point| (b, point)));
             }
@@ -178,7 +194,7 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
         patch.faces[flat as usize].origin = patch.faces[other as usize].origin;
         chain.change(patch, flat, Some([a, b, d]));
         chain.change(patch, other, Some([b, c, d]));
-        queue.extend([flat, other].into_iter().filter(|&index| is_flat(patch, index)));
+        queue.extend([flat, other].into_iter().filter_map(|index| by_length(patch, index)));
     }
     coincident
 }
