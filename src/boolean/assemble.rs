@@ -14,6 +14,8 @@ pub(super) struct NewTriangle {
     /// Points: vertices by number, then nodes, then copies.
     pub(super) corners: [u32; 3],
     pub(super) origin: Origin,
+    /// Whether the corners lay on one line before they were rounded.
+    pub(super) flat: bool,
 }
 
 /// The arrays of a result.

@@ -135,6 +135,7 @@ fn body(
         pieces.extend(cut.pieces.into_iter().map(|piece| NewTriangle {
             corners: piece.corners,
             origin: Origin { operand: part.side as u32, triangle: piece.triangle, reversed: part.reversed },
+            flat: false,
         }));
     }
     let tidy_settings = tidy::Settings {

@@ -251,7 +251,7 @@ impl<'a> Sum<'a> {
     }
 
     /// The triangles with the faces they come from: those around their middle that look their way.
-    fn with_origins(&self, found: &[([u32; 3], i32)]) -> Option<Vec<NewTriangle>> {
+    fn with_origins(&self, found: &polygon::Found) -> Option<Vec<NewTriangle>> {
         let operands = self.cutter.operands;
         let corners =
             |&(side, triangle): &(usize, u32)| operands.corners(side, triangle).map(|corner| corner.position);
@@ -279,7 +279,10 @@ impl<'a> Sum<'a> {
         };
         let tree = BoxTree::new(&numbers, |i| box_of(&sources[i as usize].2));
         let mut new = Vec::new();
-        for &(triangle, winding) in found {
+        let slivers = found.slivers.iter().map(|&counted| (counted, true));
+        for ((triangle, winding), is_flat) in
+            found.triangles.iter().map(|&counted| (counted, false)).chain(slivers)
+        {
             let flat = triangle.map(|i| self.flat[i as usize]);
             let [p, q, r] = flat;
             let middle = [0, 1].map(|k| p[k] / 3.0 + q[k] / 3.0 + r[k] / 3.0);
@@ -297,7 +300,7 @@ impl<'a> Sum<'a> {
             };
             let [a, b, c] = triangle.map(|i| self.points[i as usize]);
             let corners = if upward { [a, b, c] } else { [a, c, b] };
-            let piece = NewTriangle { corners, origin: source.0 };
+            let piece = NewTriangle { corners, origin: source.0, flat: is_flat };
             new.extend(std::iter::repeat_n(piece, winding.unsigned_abs() as usize));
         }
         Some(new)

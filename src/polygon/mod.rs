@@ -11,7 +11,7 @@ mod holes;
 mod loops;
 mod winding;
 
-pub(crate) use winding::{Edge, by_winding, cross_properly};
+pub(crate) use winding::{Edge, Found, by_winding, cross_properly};
 
 /// From this many vertices a constrained Delaunay triangulation replaces ear clipping.
 const DELAUNAY_FROM: usize = 40;
@@ -65,7 +65,7 @@ impl Triangulator {
         let Some(found) = by_winding(&mut points.to_vec(), &edges, |_, _, _| None) else { return Shape::Folded };
         triangles.truncate(before);
         let mut shape = Shape::Sound;
-        for ([a, b, c], winding) in found {
+        for ([a, b, c], winding) in found.triangles.into_iter().chain(found.slivers) {
             let corners = if winding > 0 { [a, b, c] } else { [a, c, b] };
             shape = shape.max(ears::shape_of(points, corners));
             triangles.extend(std::iter::repeat_n(corners, winding.unsigned_abs() as usize));
@@ -235,8 +235,8 @@ mod tests {
             [[0, 4], [4, 1], [1, 2], [2, 5], [5, 3], [3, 0]].map(|e| edge(e, 1)).to_vec();
         edges.extend([[0, 4], [4, 5], [5, 3], [3, 0]].map(|e| edge(e, -1)));
         let found = by_winding(&mut points.to_vec(), &edges, |_, _, _| None).expect("a sound shape");
-        assert_eq!(found.len(), 2);
-        assert!(found.iter().all(|(t, winding)| *winding == 1 && area(&points, t) == 1.0));
+        assert_eq!(found.triangles.len(), 2);
+        assert!(found.triangles.iter().all(|(t, winding)| *winding == 1 && area(&points, t) == 1.0));
     }
 
     #[test]
@@ -247,7 +247,7 @@ mod tests {
         let counted: Vec<Edge> = edges.iter().map(|&ends| Edge { ends, count: 1, line: 0 }).collect();
         let found = by_winding(&mut points.to_vec(), &counted, |_, _, _| None).expect("a sound shape");
         let triangles: Vec<[u32; 3]> =
-            found.iter().flat_map(|(t, winding)| std::iter::repeat_n(*t, *winding as usize)).collect();
+            found.triangles.iter().chain(&found.slivers).flat_map(|(t, winding)| std::iter::repeat_n(*t, *winding as usize)).collect();
         assert_complete(&edges, &triangles);
         assert_eq!(triangles.iter().map(|t| area(&points, t)).sum::<f64>(), 2.5);
     }

@@ -24,16 +24,25 @@ const ROUNDING_ULPS: f64 = 4.0;
 /// Rounds of splitting edges. Splitting moves an edge by no more than rounding, so few are left after the first.
 const ROUNDS: usize = 8;
 
-/// Triangulates what edges, each with a count, wind round: triangles (counter-clockwise) with their winding numbers. The
-/// boundary of their sum is the sum of the edges, exactly: where an edge runs through a vertex that is not its end, there
-/// are triangles without area between it and the chain of edges in its place. Where edges cross because their ends were
+/// What edges wind round.
+#[derive(Debug)]
+pub(crate) struct Found {
+    /// Counter-clockwise triangles with their winding numbers.
+    pub(crate) triangles: Vec<CountedTriangle>,
+    /// Triangles without area (but for rounding) between edges that run through vertices and the chains of edges in their
+    /// place, and how often they count.
+    pub(crate) slivers: Vec<CountedTriangle>,
+}
+
+/// Triangulates what edges, each with a count, wind round. The boundary of the sum of all triangles is the sum of the edges,
+/// exactly. Where edges cross because their ends were
 /// rounded, a vertex so near an edge counts as lying on it. Where edges cross in earnest, `cross` is asked for a vertex
 /// (which it may append to the points); `None` if it has none.
 pub(crate) fn by_winding(
     points: &mut Vec<[f64; 2]>,
     edges: &[Edge],
     mut cross: impl FnMut(&Edge, &Edge, &mut Vec<[f64; 2]>) -> Option<u32>,
-) -> Option<Vec<CountedTriangle>> {
+) -> Option<Found> {
     let largest = edges
         .iter()
         .flat_map(|edge| edge.ends)
@@ -44,9 +53,8 @@ pub(crate) fn by_winding(
     let mut edges = summed(&edges);
     for _ in 0..ROUNDS {
         let counted: Vec<CountedEdge> = edges.iter().map(|edge| (edge.ends, edge.count)).collect();
-        if let Some(mut found) = between(points, &counted) {
-            found.extend(slivers);
-            return Some(found);
+        if let Some(triangles) = between(points, &counted) {
+            return Some(Found { triangles, slivers });
         }
         let before = slivers.len();
         let mut split = split_at_vertices(points, &edges, ROUNDING_ULPS * f64::EPSILON * largest, &mut slivers);

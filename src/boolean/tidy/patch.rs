@@ -17,6 +17,8 @@ pub(super) struct Face {
     pub(super) origin: Origin,
     /// The only copy of an uncut triangle, with its corners as they were.
     pub(super) untouched: bool,
+    /// Whether its corners lay on one line before they were rounded.
+    pub(super) flat: bool,
     pub(super) alive: bool,
 }
 
@@ -80,6 +82,7 @@ impl<'a> Patch<'a> {
             corners: piece.corners,
             origin: piece.origin,
             untouched: false,
+            flat: piece.flat,
             alive: true,
         }));
         patch.note_edges_beyond(parts, points);
@@ -139,6 +142,7 @@ impl<'a> Patch<'a> {
                 corners: if reversed { [a, c, b] } else { [a, b, c] },
                 origin: Origin { operand: part.side as u32, triangle: t, reversed },
                 untouched: count == 1,
+                flat: false,
                 alive: true,
             };
             faces.extend(std::iter::repeat_n(face, count.unsigned_abs() as usize));
@@ -263,7 +267,7 @@ impl<'a> Patch<'a> {
             self.faces[index as usize].alive = false;
         }
         for (i, &(corners, origin)) in new.iter().enumerate() {
-            let face = Face { corners, origin, untouched: false, alive: true };
+            let face = Face { corners, origin, untouched: false, flat: false, alive: true };
             let index = match old.get(i) {
                 Some(&index) => {
                     self.faces[index as usize] = face;
@@ -305,7 +309,7 @@ impl<'a> Patch<'a> {
             if face.untouched {
                 replaced[face.origin.operand as usize].remove(face.origin.triangle);
             } else {
-                new.push(NewTriangle { corners: face.corners, origin: face.origin });
+                new.push(NewTriangle { corners: face.corners, origin: face.origin, flat: face.flat });
             }
         }
         new.sort_by_key(|triangle| (triangle.origin.operand, triangle.origin.triangle));

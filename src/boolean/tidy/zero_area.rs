@@ -23,7 +23,7 @@ struct Flip {
 fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
     let face = &patch.faces[index as usize];
     let [a, b, c] = face.corners.map(|point| patch.position(point));
-    face.alive && collinear(a, b, c)
+    face.alive && (face.flat || collinear(a, b, c))
 }
 
 pub(super) fn flats(patch: &Patch<'_>) -> Vec<[u32; 3]> {
@@ -156,7 +156,7 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
     // The longest first: what meets its longest side then ends between its ends, and all new sides on the line are shorter.
     let by_length = |patch: &Patch<'_>, index: u32| is_flat(patch, index).then(|| (longest(patch, index), index));
     let mut queue: BinaryHeap<(u64, u32)> =
-        (0..patch.faces.len() as u32).filter_map(|index| by_length(patch, index)).collect();
+        (0..patch.faces.len() as u32).filter_map(|x| by_length(patch, x)).collect();
     if queue.is_empty() {
         return coincident;
     }
@@ -180,7 +180,7 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
             let apart = chain.coincident_middles(patch, a, b, c);
             if apart.is_empty() {
                 let changed = chain.split(patch, a, b, c);
-                queue.extend(changed.into_iter().filter_map(|index| by_length(patch, index)));
+                queue.extend(changed.into_iter().filter_map(|x| by_length(patch, x)));
             } else {
                 coincident.extend(apart.into_iter().map(|point| (b, point)));
             }
@@ -191,10 +191,11 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
             chain.change(patch, other, None);
             continue;
         }
-        patch.faces[flat as usize].origin = patch.faces[other as usize].origin;
+        let beyond = patch.faces[other as usize];
+        patch.faces[flat as usize] = Face { origin: beyond.origin, flat: beyond.flat, ..patch.faces[flat as usize] };
         chain.change(patch, flat, Some([a, b, d]));
         chain.change(patch, other, Some([b, c, d]));
-        queue.extend([flat, other].into_iter().filter_map(|index| by_length(patch, index)));
+        queue.extend([flat, other].into_iter().filter_map(|x| by_length(patch, x)));
     }
     coincident
 }
