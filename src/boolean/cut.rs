@@ -14,6 +14,7 @@ use super::cut_faces::{CutFace, CutFaces, UNCUT};
 use super::identify::Identification;
 use super::multiplicity::Part;
 use super::operands::Operands;
+use super::unrounded::ExtraCrossing;
 use crate::Error;
 use crate::parallel::Runner;
 use crate::polygon::{Shape, Triangulator};
@@ -43,6 +44,8 @@ pub(super) struct Cutter<'a> {
     pub(super) operands: &'a Operands<'a>,
     pub(super) crossings: &'a Crossings,
     pub(super) edges: &'a CutEdges,
+    /// Crossings after the nodes.
+    pub(super) extra: &'a [ExtraCrossing],
     pub(super) faces: &'a [CutFaces; 2],
     /// Winding numbers of the vertices, by side.
     pub(super) windings: &'a [Vec<i32>; 2],

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use super::crossings::{Crossing, Crossings};
 use super::operands::{Corner, Operands};
+use super::unrounded::ExtraCrossing;
 use crate::Error;
 use crate::exact::{Sign, order, position};
 use crate::parallel::Runner;
@@ -77,9 +78,9 @@ impl CutEdges {
     }
 
     /// The same with points after the nodes.
-    pub(super) fn with_more_positions(&self, positions: &[[f64; 3]]) -> Self {
+    pub(super) fn with_more(&self, crossings: &[ExtraCrossing]) -> Self {
         let mut more = self.clone();
-        more.positions.extend(positions);
+        more.positions.extend(crossings.iter().map(|crossing| crossing.position));
         more
     }
 

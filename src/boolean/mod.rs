@@ -35,6 +35,7 @@ mod pair;
 mod self_crossings;
 mod sheets;
 mod tidy;
+mod unrounded;
 mod walls;
 mod winding;
 

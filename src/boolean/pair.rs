@@ -1,6 +1,8 @@
 //! The pipeline for two operands, one function per step.
 
 
+use rustc_hash::FxHashSet;
+
 use super::Operation;
 use super::assemble::{Assembled, Ingredients, NewTriangle};
 use super::candidates::Candidates;
@@ -101,6 +103,7 @@ pub(super) fn combine(
             operands: &operands,
             crossings: &crossings,
             edges: &edges,
+            extra: &[],
             faces: &faces,
             windings: &windings,
             identification: &identification,
@@ -109,10 +112,12 @@ pub(super) fn combine(
         let sums = walls::add_up(&cutter, body, &sheets, runner)?;
         let with_more;
         if !sums.crossings.is_empty() {
-            with_more = edges.with_more_positions(&sums.crossings);
+            with_more = edges.with_more(&sums.crossings);
             cutter.edges = &with_more;
+            cutter.extra = &sums.crossings;
         }
-        result = result.beside(self::body(&cutter, body, sums, settings, runner)?)?;
+        let walls::Sums { pieces, done, .. } = &sums;
+        result = result.beside(self::body(&cutter, body, pieces, done, settings, runner)?)?;
     }
     result.ties = operands.ties();
     Ok(result)
@@ -122,14 +127,14 @@ pub(super) fn combine(
 fn body(
     cutter: &Cutter<'_>,
     parts: &[Part],
-    sums: walls::Sums,
+    added_up: &[NewTriangle],
+    done: &FxHashSet<(usize, u32)>,
     settings: Settings<'_>,
     runner: Runner<'_>,
 ) -> Result<Assembled, Error> {
-    let walls::Sums { mut pieces, done, .. } = sums;
-    let (mut has_inverted, mut has_slivers) = (false, !done.is_empty());
+    let (mut pieces, mut has_inverted, mut has_slivers) = (added_up.to_vec(), false, !done.is_empty());
     for &part in parts {
-        let cut = cutter.cut(part, &done, runner)?;
+        let cut = cutter.cut(part, done, runner)?;
         has_inverted |= cut.has_inverted;
         has_slivers |= cut.has_slivers;
         pieces.extend(cut.pieces.into_iter().map(|piece| NewTriangle {

@@ -14,6 +14,7 @@ use super::cut::{Cutter, dominant_axis};
 use super::multiplicity::Part;
 use super::operands::Operands;
 use super::outcome::Origin;
+use super::unrounded::ExtraCrossing;
 use crate::Error;
 use crate::exact::perturbed::PerturbedPoint;
 use crate::exact::{Sign, collinear, orient2d, orient3d, position};
@@ -102,7 +103,7 @@ pub(super) struct Sums {
     /// The faces that have been added up.
     pub(super) done: FxHashSet<(usize, u32)>,
     /// Points where edges cross that the perturbation kept apart; they are numbered after the nodes.
-    pub(super) crossings: Vec<[f64; 3]>,
+    pub(super) crossings: Vec<ExtraCrossing>,
 }
 
 /// Adds up the faces of each sheet. Where the shapes do not allow it, its faces are left to be cut one by one, which is
@@ -147,7 +148,7 @@ struct Sum<'a> {
     flat: Vec<[f64; 2]>,
     /// Whole edges, of which those of the sheet are parts.
     lines: Vec<[[f64; 3]; 2]>,
-    crossings: &'a mut Vec<[f64; 3]>,
+    crossings: &'a mut Vec<ExtraCrossing>,
 }
 
 impl<'a> Sum<'a> {
@@ -155,7 +156,7 @@ impl<'a> Sum<'a> {
         cutter: &'a Cutter<'a>,
         parts: &'a [Part],
         sheet: &'a Sheet,
-        crossings: &'a mut Vec<[f64; 3]>,
+        crossings: &'a mut Vec<ExtraCrossing>,
     ) -> Self {
         let (side, triangle) = sheet[0];
         let (axis, _) = dominant_axis(&cutter.operands.corners(side, triangle).map(|corner| corner.position));
@@ -169,7 +170,7 @@ impl<'a> Sum<'a> {
 
     fn position(&self, point: u32) -> &[f64; 3] {
         let first = self.first_crossing();
-        if point < first { self.cutter.position(point) } else { &self.crossings[(point - first) as usize] }
+        if point < first { self.cutter.position(point) } else { &self.crossings[(point - first) as usize].position }
     }
 
     /// The number of the first point where edges cross.
@@ -186,10 +187,11 @@ impl<'a> Sum<'a> {
         }
         let mut flat = std::mem::take(&mut self.flat);
         let found = polygon::by_winding(&mut flat, &edges, |x, y, flat| {
-            let position = self.crossing(x.line, y.line)?;
+            let crossing = self.crossing(x.line, y.line)?;
+            let position = crossing.position;
             Some(*at.entry(bits(&position)).or_insert_with(|| {
                 self.points.push(self.first_crossing() + self.crossings.len() as u32);
-                self.crossings.push(position);
+                self.crossings.push(crossing);
                 flat.push(self.project(&position));
                 flat.len() as u32 - 1
             }))
@@ -230,7 +232,7 @@ impl<'a> Sum<'a> {
     }
 
     /// Where two lines cross, rounded as the nodes are; `None` if they only seem to because their parts were rounded.
-    fn crossing(&self, x: u32, y: u32) -> Option<[f64; 3]> {
+    fn crossing(&self, x: u32, y: u32) -> Option<ExtraCrossing> {
         let ([p, q], [a, b]) = (&self.lines[x as usize], &self.lines[y as usize]);
         if !polygon::cross_properly([p, q, a, b].map(|point| self.project(point))) {
             return None;
@@ -243,11 +245,11 @@ impl<'a> Sum<'a> {
         if above[axis] == a[axis] || !above[axis].is_finite() {
             return None;
         }
-        position::crossing_filter(p, q, [a, b, &above]).or_else(|| {
-            let still = |position: &[f64; 3]| PerturbedPoint { position: *position, first: [0; 3], second: [0; 3] };
-            let triangle = [a, b, &above].map(still);
-            Some(position::crossing(&still(p), &still(q), triangle.each_ref()))
-        })
+        let still = |position: &[f64; 3]| PerturbedPoint { position: *position, first: [0; 3], second: [0; 3] };
+        let (edge, triangle) = ([p, q].map(still), [a, b, &above].map(still));
+        let position = position::crossing_filter(p, q, [a, b, &above])
+            .unwrap_or_else(|| position::crossing(&edge[0], &edge[1], triangle.each_ref()));
+        Some(ExtraCrossing { position, edge, triangle })
     }
 
     /// The triangles with the faces they come from: those around their middle that look their way.

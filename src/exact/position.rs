@@ -76,8 +76,21 @@ pub fn crossing_filter(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> 
 /// If the perturbed points do not lie on different sides (the two heights then may agree identically).
 #[must_use]
 pub fn crossing(p: &PerturbedPoint, q: &PerturbedPoint, triangle: [&PerturbedPoint; 3]) -> [f64; 3] {
+    let points = [p, q, triangle[0], triangle[1], triangle[2]];
+    let lattice = Lattice::of(points.into_iter().flat_map(|point| &point.position));
+    let (numerators, denominator) = homogeneous(p, q, triangle, lattice);
+    numerators.map(|numerator| numerator.quotient(&denominator, i64::from(lattice.exponent)) + 0.0)
+}
+
+/// The crossing point of edge `(p, q)` with the plane of the triangle: three numerators, in units of the lattice, and their
+/// denominator.
+fn homogeneous(
+    p: &PerturbedPoint,
+    q: &PerturbedPoint,
+    triangle: [&PerturbedPoint; 3],
+    lattice: Lattice,
+) -> ([Integer; 3], Integer) {
     let [a, b, c] = triangle;
-    let lattice = Lattice::of([p, q, a, b, c].into_iter().flat_map(|point| &point.position));
     // Nearly always the heights of the unperturbed ends tell.
     let plain = |x: &PerturbedPoint| {
         let [u, v, w] = [a, b, c].map(|point| -> [Integer; 3] {
@@ -95,12 +108,45 @@ pub fn crossing(p: &PerturbedPoint, q: &PerturbedPoint, triangle: [&PerturbedPoi
     } else {
         (height_p, height_q)
     };
-    let total = height_p.minus(&height_q);
-    std::array::from_fn(|k| {
-        let numerator = height_p
+    let numerators = std::array::from_fn(|k| {
+        height_p
             .times(&lattice.integer(q.position[k]))
-            .minus(&height_q.times(&lattice.integer(p.position[k])));
-        numerator.quotient(&total, i64::from(lattice.exponent)) + 0.0
+            .minus(&height_q.times(&lattice.integer(p.position[k])))
+    });
+    (numerators, height_p.minus(&height_q))
+}
+
+/// A point as it was before it was rounded.
+#[derive(Clone, Copy, Debug)]
+pub enum Unrounded {
+    /// A given point.
+    Given([f64; 3]),
+    /// The crossing point of an edge with the plane of a triangle; see [`crossing`].
+    Crossing([PerturbedPoint; 2], [PerturbedPoint; 3]),
+}
+
+/// Whether three points lie on one line, exactly.
+///
+/// # Panics
+/// As [`crossing`].
+#[must_use]
+pub fn on_one_line(points: &[Unrounded; 3]) -> bool {
+    let coordinates = points.iter().flat_map(|point| match point {
+        Unrounded::Given(position) => vec![position],
+        Unrounded::Crossing(edge, triangle) => edge.iter().chain(triangle).map(|p| &p.position).collect(),
+    });
+    let lattice = Lattice::of(coordinates.flatten());
+    let [(x, w), (y, v), (z, u)] = points.each_ref().map(|point| match point {
+        Unrounded::Given(position) => (position.map(|x| lattice.integer(x)), Integer::from(1)),
+        Unrounded::Crossing([p, q], triangle) => homogeneous(p, q, triangle.each_ref(), lattice),
+    });
+    let along = |y: &[Integer; 3], v: &Integer| -> [Integer; 3] {
+        std::array::from_fn(|k| y[k].times(&w).minus(&x[k].times(v)))
+    };
+    let (first, second) = (along(&y, &v), along(&z, &u));
+    (0..3).all(|k| {
+        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
+        first[l].times(&second[m]) == first[m].times(&second[l])
     })
 }
 

@@ -48,8 +48,9 @@ pub(crate) fn by_winding(
         .flat_map(|edge| edge.ends)
         .flat_map(|v| points[v as usize])
         .fold(0.0f64, |most, x| most.max(x.abs()));
+    let rounding = ROUNDING_ULPS * f64::EPSILON * largest;
     let mut slivers = Vec::new();
-    let edges = split_at_vertices(points, &summed(edges), 0.0, &mut slivers);
+    let edges = split_at_vertices(points, &summed(edges), rounding, &mut slivers);
     let mut edges = summed(&edges);
     for _ in 0..ROUNDS {
         let counted: Vec<CountedEdge> = edges.iter().map(|edge| (edge.ends, edge.count)).collect();
@@ -57,7 +58,7 @@ pub(crate) fn by_winding(
             return Some(Found { triangles, slivers });
         }
         let before = slivers.len();
-        let mut split = split_at_vertices(points, &edges, ROUNDING_ULPS * f64::EPSILON * largest, &mut slivers);
+        let mut split = split_at_vertices(points, &edges, rounding, &mut slivers);
         if slivers.len() == before {
             split = split_at_crossings(points, &edges, &mut cross, &mut slivers);
         }

@@ -66,6 +66,9 @@ pub(super) fn tidy(
         candidates.extend(cutter.identification.representatives());
     }
     let mut patch = Patch::new(cutter, parts, pieces);
+    if cutter.operands.ties() > 0 {
+        zero_area::mark_flat(&mut patch, cutter);
+    }
     for round in 0..ROUNDS {
         separate(&mut patch, cutter, &mut candidates);
         runner.control.check()?;

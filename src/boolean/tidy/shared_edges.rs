@@ -9,7 +9,8 @@ use rustc_hash::FxHashMap;
 
 use super::super::cut::Cutter;
 use super::patch::{Face, Patch};
-use crate::exact::{Sign, collinear, orient3d};
+use super::zero_area::is_low;
+use crate::exact::collinear;
 
 /// An edge between faces of both operands, from its lower point to its higher one.
 type Edge = (u32, u32);
@@ -130,52 +131,6 @@ fn lies_between(patch: &Patch<'_>, cutter: &Cutter<'_>, u: u32, x: u32, v: u32) 
     let length = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|k| (q[k] - p[k]).powi(2)).sum::<f64>();
     is_within
         && length(p, at).max(length(at, q)) < length(p, q)
-        && (collinear(p, at, q) || were_on_one_line(cutter, [u, x, v]))
-}
-
-/// Whether three points lay on the line of some edge before nodes were rounded.
-fn were_on_one_line(cutter: &Cutter<'_>, points: [u32; 3]) -> bool {
-    points.iter().filter_map(|&point| Node::of(cutter, point)).any(|node| {
-        let [a, b, c] = node.triangle;
-        [node.edge, [a, b], [b, c], [c, a]]
-            .iter()
-            .any(|line| points.iter().all(|&point| was_on_line(cutter, point, line)))
-    })
-}
-
-/// An edge and the triangle it crosses.
-struct Node {
-    edge: [[f64; 3]; 2],
-    triangle: [[f64; 3]; 3],
-}
-
-impl Node {
-    /// The node of a point; `None` for vertices and copies.
-    fn of(cutter: &Cutter<'_>, point: u32) -> Option<Self> {
-        let operands = cutter.operands;
-        let index = point.checked_sub(operands.vertex_count())?;
-        let crossing = cutter.crossings.nodes.get(index as usize)?;
-        let other = 1 - operands.side_of(crossing.low);
-        Some(Self {
-            edge: [crossing.low, crossing.high].map(|vertex| *operands.position(vertex)),
-            triangle: operands.corners(other, crossing.triangle).map(|corner| corner.position),
-        })
-    }
-}
-
-/// Whether a point lay on the line through two others before it was rounded. (True only where it did.)
-fn was_on_line(cutter: &Cutter<'_>, point: u32, [p, q]: &[[f64; 3]; 2]) -> bool {
-    let on_line = |c: &[f64; 3]| collinear(p, q, c);
-    let Some(Node { edge, triangle: [a, b, c] }) = Node::of(cutter, point) else {
-        return point < cutter.operands.vertex_count() && on_line(cutter.operands.position(point));
-    };
-    if edge.iter().all(on_line) {
-        return true;
-    }
-    // The edge must pass through the triangle's plane in a point.
-    let passes = edge.iter().any(|end| orient3d(&a, &b, &c, end) != Sign::Zero);
-    passes
-        && [(a, b), (b, c), (c, a)]
-            .iter()
-            .any(|(a, b)| on_line(a) && on_line(b) && orient3d(a, b, &edge[0], &edge[1]) == Sign::Zero)
+        && (collinear(p, at, q)
+            || (is_low([p, at, q], cutter.rounding) && cutter.were_on_one_line([u, x, v])))
 }

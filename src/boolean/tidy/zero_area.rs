@@ -6,6 +6,7 @@ use std::collections::BinaryHeap;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
+use super::super::cut::Cutter;
 use super::patch::{Face, Patch};
 use super::planes::Planes;
 use crate::exact::collinear;
@@ -42,19 +43,30 @@ fn longest(patch: &Patch<'_>, index: u32) -> u64 {
     square(a, b).max(square(b, c)).max(square(c, a)).to_bits()
 }
 
-/// Whether a triangle is higher over its longest side than nothing, but not than `height`.
+/// Whether a triangle that is not untouched is no higher over its longest side than `height`.
 fn is_lower(patch: &Patch<'_>, index: u32, height: f64) -> bool {
     let face = &patch.faces[index as usize];
-    if !face.alive || face.untouched {
-        return false;
-    }
-    let [a, b, c] = face.corners.map(|point| patch.position(point));
+    face.alive && !face.untouched && is_low(face.corners.map(|point| patch.position(point)), height)
+}
+
+/// Whether a triangle is no higher over its longest side than `height`.
+pub(super) fn is_low([a, b, c]: [&[f64; 3]; 3], height: f64) -> bool {
     let difference = |p: &[f64; 3], q: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|k| q[k] - p[k]) };
     let (u, v, w) = (difference(a, b), difference(b, c), difference(c, a));
     let cross: [f64; 3] =
         std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
     let square = |v: &[f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     square(&cross) <= height * height * square(&u).max(square(&v)).max(square(&w))
+}
+
+/// Marks the triangles whose corners lay on one line before they were rounded.
+pub(super) fn mark_flat(patch: &mut Patch<'_>, cutter: &Cutter<'_>) {
+    for index in 0..patch.faces.len() as u32 {
+        let corners = patch.faces[index as usize].corners;
+        if is_lower(patch, index, cutter.rounding) && cutter.were_on_one_line(corners) {
+            patch.faces[index as usize].flat = true;
+        }
+    }
 }
 
 /// The triangles to the left of each directed edge, while there may be several.
