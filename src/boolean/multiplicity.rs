@@ -85,12 +85,8 @@ pub(super) fn parts(operation: Operation) -> &'static [Part] {
 mod tests {
     use super::*;
 
-    const ALL: [Operation; 4] = [
-        Operation::Union,
-        Operation::Intersection,
-        Operation::Difference,
-        Operation::SymmetricDifference,
-    ];
+    const ALL: [Operation; 4] =
+        [Operation::Union, Operation::Intersection, Operation::Difference, Operation::SymmetricDifference];
 
     #[test]
     fn segments_cancel_between_the_operands() {

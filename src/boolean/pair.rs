@@ -1,6 +1,5 @@
 //! The pipeline for two operands, one function per step.
 
-
 use rustc_hash::FxHashSet;
 
 use super::Operation;

@@ -25,10 +25,10 @@ impl Cutter<'_> {
             let edge = [crossing.low, crossing.high].map(|v| operands.perturbed(&operands.corner(v)));
             let triangle =
                 operands.corners(other, crossing.triangle).map(|corner| operands.perturbed(&corner));
-            return Some(Unrounded::Crossing(edge, triangle));
+            return Some(Unrounded::Crossing(Box::new((edge, triangle))));
         }
         let extra = self.extra.get(node - self.crossings.nodes.len())?;
-        Some(Unrounded::Crossing(extra.edge, extra.triangle))
+        Some(Unrounded::Crossing(Box::new((extra.edge, extra.triangle))))
     }
 
     /// Whether three points lay on one line before they were rounded.

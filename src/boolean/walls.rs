@@ -5,6 +5,14 @@
 //! touches instead of moving off, and parts of both may be kept: two opposite sheets at the same place. They enclose nothing
 //! and have the same outline, but not the same triangles. So faces of one plane that look opposite ways, near such vertices,
 //! are added up before they are triangulated, and what cancels is gone.
+//!
+//! In a symmetric difference pieces of A and of B that coincide always cancel, whichever way they look, and so all faces that
+//! touch are added up. That is right with any perturbation: as a chain the result tends to the boundary of what is in an odd
+//! number of operands, so in each plane the sum of all pieces there is what is left of that boundary, once all faces of the
+//! plane that overlap are in one sum.
+//!
+//! Where the perturbation moves faces apart instead of through each other (at saddles), their edges do not cross, but do so
+//! in the sum. Such crossings get a vertex, rounded once like the others.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -26,34 +34,40 @@ use crate::spatial::{BoxTree, Frame};
 pub(super) type Sheet = Vec<(usize, u32)>;
 
 /// The sets of faces to add up: those of A at vertices without a direction, with all faces of B they touch from the
-/// opposite side.
+/// opposite side; in a symmetric difference all faces that touch. (Without ties there are none.)
 pub(super) fn touching_sheets(
     operands: &Operands<'_>,
     candidates: &Candidates,
     parts: &[Part],
     runner: Runner<'_>,
 ) -> Result<Vec<Sheet>, Error> {
-    let is_asked_for: Box<dyn Fn(u32) -> bool + Sync> = if parts.len() > 2 {
-        if operands.ties() == 0 {
-            return Ok(Vec::new());
-        }
-        Box::new(|_| true)
-    } else {
-        let Some(stuck) = operands.vertices_without_direction() else { return Ok(Vec::new()) };
-        let near = operands.near(0).iter().copied();
-        let corners = |t: u32| operands.sides[0].triangles[t as usize];
-        let is_stuck: FxHashSet<u32> = near.filter(|&t| corners(t).iter().any(|v| stuck.contains(v))).collect();
-        Box::new(move |t| is_stuck.contains(&t))
+    // A part turned over looks the other way.
+    let wanted = match parts {
+        [of_a, of_b] => Some(of_a.reversed == of_b.reversed),
+        _ => None,
     };
-    let opposite_means = (parts.len() == 2).then(|| parts[0].reversed == parts[1].reversed);
-    let mut parent: FxHashMap<(usize, u32), (usize, u32)> = FxHashMap::default();
+    let stuck = operands.vertices_without_direction();
+    if operands.ties() == 0 || (wanted.is_some() && stuck.is_none()) {
+        return Ok(Vec::new());
+    }
+    let corners = |t: u32| operands.sides[0].triangles[t as usize];
+    let is_stuck: FxHashSet<u32> = match stuck.filter(|_| wanted.is_some()) {
+        Some(stuck) => {
+            let near = operands.near(0).iter().copied();
+            near.filter(|&t| corners(t).iter().any(|v| stuck.contains(v))).collect()
+        }
+        None => FxHashSet::default(),
+    };
     let touching = candidates.visit(runner, |s, t, found| {
-        if is_asked_for(s)
-            && touch(operands, s, t).is_some_and(|opposite| opposite_means.is_none_or(|means| means == opposite))
-        {
+        let together = match wanted {
+            Some(wanted) => is_stuck.contains(&s) && touch(operands, s, t) == Some(wanted),
+            None => touch(operands, s, t).is_some(),
+        };
+        if together {
             found.push([s, t]);
         }
     })?;
+    let mut parent: FxHashMap<(usize, u32), (usize, u32)> = FxHashMap::default();
     for [s, t] in touching {
         let (x, y) = (find(&mut parent, (0, s)), find(&mut parent, (1, t)));
         if x != y {
@@ -125,12 +139,7 @@ pub(super) fn add_up(
                 sums.pieces.extend(left);
                 sums.done.extend(sheet);
             }
-            None => {
-                if std::env::var_os("WALLS").is_some() {
-                    eprintln!("sheet failed: {sheet:?}");
-                }
-                sums.crossings.truncate(before)
-            }
+            None => sums.crossings.truncate(before),
         }
     }
     Ok(sums)
@@ -161,7 +170,16 @@ impl<'a> Sum<'a> {
         let (side, triangle) = sheet[0];
         let (axis, _) = dominant_axis(&cutter.operands.corners(side, triangle).map(|corner| corner.position));
         let axes = ((axis + 1) % 3, (axis + 2) % 3);
-        Self { cutter, parts, sheet, axes, points: Vec::new(), flat: Vec::new(), lines: Vec::new(), crossings }
+        Self {
+            cutter,
+            parts,
+            sheet,
+            axes,
+            points: Vec::new(),
+            flat: Vec::new(),
+            lines: Vec::new(),
+            crossings,
+        }
     }
 
     fn project(&self, position: &[f64; 3]) -> [f64; 2] {
@@ -170,7 +188,11 @@ impl<'a> Sum<'a> {
 
     fn position(&self, point: u32) -> &[f64; 3] {
         let first = self.first_crossing();
-        if point < first { self.cutter.position(point) } else { &self.crossings[(point - first) as usize].position }
+        if point < first {
+            self.cutter.position(point)
+        } else {
+            &self.crossings[(point - first) as usize].position
+        }
     }
 
     /// The number of the first point where edges cross.
@@ -245,7 +267,8 @@ impl<'a> Sum<'a> {
         if above[axis] == a[axis] || !above[axis].is_finite() {
             return None;
         }
-        let still = |position: &[f64; 3]| PerturbedPoint { position: *position, first: [0; 3], second: [0; 3] };
+        let still =
+            |position: &[f64; 3]| PerturbedPoint { position: *position, first: [0; 3], second: [0; 3] };
         let (edge, triangle) = ([p, q].map(still), [a, b, &above].map(still));
         let position = position::crossing_filter(p, q, [a, b, &above])
             .unwrap_or_else(|| position::crossing(&edge[0], &edge[1], triangle.each_ref()));

@@ -62,7 +62,9 @@ impl Triangulator {
         }
         // Loops that cross or touch in ways that tracing cannot tell: by winding number instead.
         let edges: Vec<Edge> = edges.iter().map(|&ends| Edge { ends, count: 1, line: 0 }).collect();
-        let Some(found) = by_winding(&mut points.to_vec(), &edges, |_, _, _| None) else { return Shape::Folded };
+        let Some(found) = by_winding(&mut points.to_vec(), &edges, |_, _, _| None) else {
+            return Shape::Folded;
+        };
         triangles.truncate(before);
         let mut shape = Shape::Sound;
         for ([a, b, c], winding) in found.triangles.into_iter().chain(found.slivers) {
@@ -240,14 +242,63 @@ mod tests {
     }
 
     #[test]
+    fn crossing_edges_get_a_vertex() {
+        // A square less one that is moved by half its side: edges cross in two points that are not given.
+        let square = |c: f64| [[c, c], [c + 2.0, c], [c + 2.0, c + 2.0], [c, c + 2.0]];
+        let mut points = [square(0.0), square(1.0)].concat();
+        let edges: Vec<Edge> = (0..8)
+            .map(|i| Edge {
+                ends: ring(i / 4 * 4, 4)[i as usize % 4],
+                count: if i < 4 { 1 } else { -1 },
+                line: i,
+            })
+            .collect();
+        assert!(by_winding(&mut points, &edges, |_, _, _| None).is_none(), "no vertex, no sum");
+        let found = by_winding(&mut points, &edges, |x, y, points| {
+            // Of a horizontal and a vertical edge.
+            let is_upright = |edge: &Edge| edge.line % 2 == 1;
+            let (upright, level) = if is_upright(x) { (x, y) } else { (y, x) };
+            assert!(is_upright(upright) && !is_upright(level));
+            let crossing = [points[upright.ends[0] as usize][0], points[level.ends[0] as usize][1]];
+            points.push(crossing);
+            Some(points.len() as u32 - 1)
+        })
+        .expect("two crossings");
+        assert_eq!(points.len(), 10);
+        let area_of = |sign: i32| -> f64 {
+            let counted = found.triangles.iter().filter(|(_, winding)| winding.signum() == sign);
+            counted.map(|(t, winding)| area(&points, t) * f64::from(winding.abs())).sum()
+        };
+        assert_eq!((area_of(1), area_of(-1)), (3.0, 3.0));
+        let directed: Vec<[u32; 2]> = edges
+            .iter()
+            .map(|edge| if edge.count > 0 { edge.ends } else { [edge.ends[1], edge.ends[0]] })
+            .collect();
+        let all: Vec<[u32; 3]> = found
+            .triangles
+            .iter()
+            .chain(&found.slivers)
+            .flat_map(|&([a, b, c], winding)| {
+                let corners = if winding > 0 { [a, b, c] } else { [a, c, b] };
+                std::iter::repeat_n(corners, winding.unsigned_abs() as usize)
+            })
+            .collect();
+        assert_complete(&directed, &all);
+    }
+
+    #[test]
     fn an_edge_through_a_vertex_is_kept_by_triangles_without_area() {
         let points = [[0.0, 0.0], [2.0, 0.0], [1.0, 2.0], [1.0, 0.0], [1.5, -1.0]];
         // A triangle with corner 3 on the side of another that does not have it.
         let edges = [[0, 1], [1, 2], [2, 0], [3, 4], [4, 1], [1, 3]];
         let counted: Vec<Edge> = edges.iter().map(|&ends| Edge { ends, count: 1, line: 0 }).collect();
         let found = by_winding(&mut points.to_vec(), &counted, |_, _, _| None).expect("a sound shape");
-        let triangles: Vec<[u32; 3]> =
-            found.triangles.iter().chain(&found.slivers).flat_map(|(t, winding)| std::iter::repeat_n(*t, *winding as usize)).collect();
+        let triangles: Vec<[u32; 3]> = found
+            .triangles
+            .iter()
+            .chain(&found.slivers)
+            .flat_map(|(t, winding)| std::iter::repeat_n(*t, *winding as usize))
+            .collect();
         assert_complete(&edges, &triangles);
         assert_eq!(triangles.iter().map(|t| area(&points, t)).sum::<f64>(), 2.5);
     }

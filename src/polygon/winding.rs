@@ -75,7 +75,11 @@ fn summed(edges: &[Edge]) -> Vec<Edge> {
     let mut edges: Vec<Edge> = edges
         .iter()
         .map(|&Edge { ends: [u, v], count, line }| {
-            if u < v { Edge { ends: [u, v], count, line } } else { Edge { ends: [v, u], count: -count, line } }
+            if u < v {
+                Edge { ends: [u, v], count, line }
+            } else {
+                Edge { ends: [v, u], count: -count, line }
+            }
         })
         .collect();
     edges.sort_unstable_by_key(|edge| (edge.ends, edge.line));

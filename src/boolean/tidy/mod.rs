@@ -74,13 +74,10 @@ pub(super) fn tidy(
         runner.control.check()?;
         if settings.remove_vertices {
             zero_area::flip(&mut patch, &planes, 0.0);
-            dbg_flats(&patch, "flip");
             remove::remove(&mut patch, &planes, candidates.clone(), runner.control)?;
         }
-        dbg_flats(&patch, "remove");
         short_edges::collapse(&mut patch, &planes, settings.rounding);
         zero_area::flip(&mut patch, &planes, settings.rounding);
-        dbg_flats(&patch, "collapse, flip");
         if round + 1 == ROUNDS || !zero_area::any_flat(&patch) {
             break;
         }
@@ -92,19 +89,14 @@ pub(super) fn tidy(
 fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>, candidates: &mut Vec<u32>) {
     #[cfg(debug_assertions)]
     let boundary = patch.boundary();
-    dbg_flats(patch, "start");
     zero_area::split_chain(patch);
-    dbg_flats(patch, "split_chain");
     patch.cancel();
-    dbg_flats(patch, "cancel");
     if cutter.operands.ties() > 0 {
         shared_edges::split(patch, cutter);
     }
     #[cfg(debug_assertions)]
     assert_eq!(patch.boundary(), boundary, "splitting edges opened the surface");
-    dbg_flats(patch, "shared");
     let copied_from = manifold::make_manifold(patch);
-    dbg_flats(patch, "manifold");
     candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
     patch.connect();
 }
@@ -120,11 +112,4 @@ fn has_repeats(cutter: &Cutter<'_>) -> bool {
                 !(0..=1).contains(&winding)
             })
         })
-}
-
-fn dbg_flats(patch: &Patch<'_>, step: &str) {
-    if std::env::var_os("WALLS").is_some() {
-        let flats = zero_area::flats(patch);
-        eprintln!("{step}: {} flats of {} {:?}", flats.len(), patch.faces.iter().filter(|f| f.alive).count(), &flats[..flats.len().min(30)]);
-    }
 }

@@ -66,6 +66,10 @@ impl<'a> Patch<'a> {
         for point in pieces.iter().flat_map(|piece| piece.corners) {
             complete.set(point);
         }
+        // Kept triangles of both operands may share a point where all that was cut cancelled.
+        for point in cutter.identification.representatives() {
+            complete.set(point);
+        }
         let mut patch = Self {
             cutter,
             faces: Vec::with_capacity(2 * pieces.len()),

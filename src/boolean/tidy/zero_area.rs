@@ -27,10 +27,6 @@ fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
     face.alive && (face.flat || collinear(a, b, c))
 }
 
-pub(super) fn flats(patch: &Patch<'_>) -> Vec<[u32; 3]> {
-    (0..patch.faces.len() as u32).filter(|&index| is_flat(patch, index)).map(|i| patch.faces[i as usize].corners).collect()
-}
-
 /// Whether a triangle without area is left.
 pub(super) fn any_flat(patch: &Patch<'_>) -> bool {
     (0..patch.faces.len() as u32).any(|index| !patch.faces[index as usize].untouched && is_flat(patch, index))
@@ -166,7 +162,8 @@ pub(super) fn split_chain(patch: &mut Patch<'_>) {
 fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
     let mut coincident = Vec::new();
     // The longest first: what meets its longest side then ends between its ends, and all new sides on the line are shorter.
-    let by_length = |patch: &Patch<'_>, index: u32| is_flat(patch, index).then(|| (longest(patch, index), index));
+    let by_length =
+        |patch: &Patch<'_>, index: u32| is_flat(patch, index).then(|| (longest(patch, index), index));
     let mut queue: BinaryHeap<(u64, u32)> =
         (0..patch.faces.len() as u32).filter_map(|x| by_length(patch, x)).collect();
     if queue.is_empty() {
@@ -204,7 +201,8 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
             continue;
         }
         let beyond = patch.faces[other as usize];
-        patch.faces[flat as usize] = Face { origin: beyond.origin, flat: beyond.flat, ..patch.faces[flat as usize] };
+        patch.faces[flat as usize] =
+            Face { origin: beyond.origin, flat: beyond.flat, ..patch.faces[flat as usize] };
         chain.change(patch, flat, Some([a, b, d]));
         chain.change(patch, other, Some([b, c, d]));
         queue.extend([flat, other].into_iter().filter_map(|x| by_length(patch, x)));
