@@ -20,6 +20,7 @@ use super::multiplicity::Part;
 use crate::Error;
 use crate::parallel::Runner;
 use patch::Patch;
+use rustc_hash::FxHashSet;
 
 /// How often all steps are repeated while triangles without area are left.
 const ROUNDS: usize = 3;
@@ -65,12 +66,27 @@ pub(super) fn tidy(
     if settings.remove_vertices {
         candidates.extend(cutter.identification.representatives());
     }
-    let mut patch = Patch::new(cutter, parts, pieces);
-    if cutter.operands.ties() > 0 {
-        zero_area::mark_flat(&mut patch, cutter);
-    }
+    let mut others = FxHashSet::default();
+    let mut patch = loop {
+        let mut patch = Patch::new(cutter, parts, pieces, &others);
+        if cutter.operands.ties() > 0 {
+            zero_area::mark_flat(&mut patch, cutter);
+        }
+        let copied_from = separate(&mut patch, cutter);
+        // Where an operand touches itself, triangles may have come apart at points that are not wholly here. Each is taken
+        // in but once.
+        let pinched = patch.pinched(&copied_from);
+        if pinched.is_empty() {
+            candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
+            break patch;
+        }
+        others.extend(pinched);
+    };
     for round in 0..ROUNDS {
-        separate(&mut patch, cutter, &mut candidates);
+        if round > 0 {
+            let copied_from = separate(&mut patch, cutter);
+            candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
+        }
         runner.control.check()?;
         if settings.remove_vertices {
             zero_area::flip(&mut patch, &planes, 0.0);
@@ -85,8 +101,9 @@ pub(super) fn tidy(
     Ok(Some(patch.collect()))
 }
 
-/// Makes the patch a 2-manifold without triangles that have no area.
-fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>, candidates: &mut Vec<u32>) {
+/// Makes the patch a 2-manifold without triangles that have no area. Returns the points made, with those they are copies
+/// of.
+fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>) -> Vec<(u32, u32)> {
     #[cfg(debug_assertions)]
     let boundary = patch.boundary();
     zero_area::split_chain(patch);
@@ -97,8 +114,8 @@ fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>, candidates: &mut Vec<u32
     #[cfg(debug_assertions)]
     assert_eq!(patch.boundary(), boundary, "splitting edges opened the surface");
     let copied_from = manifold::make_manifold(patch);
-    candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
     patch.connect();
+    copied_from
 }
 
 /// Whether some piece of an edge counts more than once or negatively: rounded surfaces that cross themselves.

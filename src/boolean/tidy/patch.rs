@@ -58,8 +58,13 @@ impl Flags {
 }
 
 impl<'a> Patch<'a> {
-    /// The pieces and all kept triangles round their points.
-    pub(super) fn new(cutter: &'a Cutter<'a>, parts: &[Part], pieces: &[NewTriangle]) -> Self {
+    /// The pieces and all kept triangles round their points, and round some others.
+    pub(super) fn new(
+        cutter: &'a Cutter<'a>,
+        parts: &[Part],
+        pieces: &[NewTriangle],
+        others: &FxHashSet<u32>,
+    ) -> Self {
         let operands = cutter.operands;
         let points = operands.vertex_count() as usize + cutter.edges.positions.len();
         let mut complete = Flags::new(points);
@@ -67,7 +72,7 @@ impl<'a> Patch<'a> {
             complete.set(point);
         }
         // Kept triangles of both operands may share a point where all that was cut cancelled.
-        for point in cutter.identification.representatives() {
+        for point in cutter.identification.representatives().into_iter().chain(others.iter().copied()) {
             complete.set(point);
         }
         let mut patch = Self {
@@ -96,6 +101,26 @@ impl<'a> Patch<'a> {
     /// Whether all triangles at a point are in the patch.
     pub(super) fn is_complete(&self, point: u32) -> bool {
         point >= self.first_copy || self.complete.get(point)
+    }
+
+    /// Points, not all of whose triangles are here, at which triangles came apart all the same: at edges to a point of
+    /// which copies were made.
+    pub(super) fn pinched(&self, copied_from: &[(u32, u32)]) -> FxHashSet<u32> {
+        let original: FxHashMap<u32, u32> = copied_from.iter().copied().collect();
+        let copied: FxHashSet<u32> = copied_from.iter().map(|&(_, of)| of).collect();
+        let mut seen: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+        let mut pinched = FxHashSet::default();
+        for face in self.faces.iter().filter(|face| face.alive && !copied_from.is_empty()) {
+            for &point in face.corners.iter().filter(|&&point| !self.is_complete(point)) {
+                for &other in &face.corners {
+                    let of = original.get(&other).copied().unwrap_or(other);
+                    if copied.contains(&of) && *seen.entry((point, of)).or_insert(other) != other {
+                        pinched.insert(point);
+                    }
+                }
+            }
+        }
+        pinched
     }
 
     /// Whether the operation made a point.
