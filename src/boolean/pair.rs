@@ -33,6 +33,8 @@ const MOST_VERTICES: usize = 1 << 31;
 pub(super) struct Settings<'a> {
     /// Whether bodies that touch become one.
     pub(super) fuse: bool,
+    /// Whether bodies that touch themselves in parts of edges come apart there too.
+    pub(super) everywhere: bool,
     /// Whether vertices that nobody needs are removed.
     pub(super) remove_vertices: bool,
     /// The result's group of each triangle of A and of B; empty if there are no groups.
@@ -146,6 +148,7 @@ fn body(
         remove_vertices: settings.remove_vertices,
         groups: settings.groups,
         rounding: cutter.rounding,
+        everywhere: settings.everywhere,
         always: has_slivers,
     };
     let tidied = tidy::tidy(cutter, parts, &pieces, &tidy_settings, runner)?;

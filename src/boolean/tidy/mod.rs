@@ -43,6 +43,8 @@ pub(super) struct Settings<'a> {
     pub(super) groups: [&'a [u32]; 2],
     /// The size of rounding: edges and heights up to this are not worth a triangle.
     pub(super) rounding: f64,
+    /// Whether edges are to be subdivided alike wherever they lie on one another, not only between faces of both operands.
+    pub(super) everywhere: bool,
     /// Whether to look even where nothing points to work.
     pub(super) always: bool,
 }
@@ -66,50 +68,63 @@ pub(super) fn tidy(
     if settings.remove_vertices {
         candidates.extend(cutter.identification.representatives());
     }
+    // Where an operand touches itself, triangles may come apart at points that are not wholly in the patch. Then all starts
+    // again with those; each is taken in but once.
     let mut others = FxHashSet::default();
-    let mut patch = loop {
-        let mut patch = Patch::new(cutter, parts, pieces, &others);
-        if cutter.operands.ties() > 0 {
-            zero_area::mark_flat(&mut patch, cutter);
+    loop {
+        let patch = Patch::new(cutter, parts, pieces, &others);
+        match tidied(patch, cutter, settings, &planes, candidates.clone(), runner)? {
+            Ok(tidied) => return Ok(Some(tidied)),
+            Err(pinched) => others.extend(pinched),
         }
-        let copied_from = separate(&mut patch, cutter);
-        // Where an operand touches itself, triangles may have come apart at points that are not wholly here. Each is taken
-        // in but once.
-        let pinched = patch.pinched(&copied_from);
-        if pinched.is_empty() {
-            candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
-            break patch;
-        }
-        others.extend(pinched);
-    };
+    }
+}
+
+/// Runs all steps on a patch; or the points that must be wholly in it.
+fn tidied(
+    mut patch: Patch<'_>,
+    cutter: &Cutter<'_>,
+    settings: &Settings<'_>,
+    planes: &planes::Planes<'_>,
+    mut candidates: Vec<u32>,
+    runner: Runner<'_>,
+) -> Result<Result<Tidied, FxHashSet<u32>>, Error> {
+    if cutter.operands.ties() > 0 {
+        zero_area::mark_flat(&mut patch, cutter);
+    }
     for round in 0..ROUNDS {
-        if round > 0 {
-            let copied_from = separate(&mut patch, cutter);
-            candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
+        let copied_from = separate(&mut patch, cutter, settings.everywhere && round == 0);
+        let pinched = patch.pinched(&copied_from);
+        if !pinched.is_empty() {
+            return Ok(Err(pinched));
         }
+        candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
         runner.control.check()?;
         if settings.remove_vertices {
-            zero_area::flip(&mut patch, &planes, 0.0);
-            remove::remove(&mut patch, &planes, candidates.clone(), runner.control)?;
+            zero_area::flip(&mut patch, planes, 0.0);
+            remove::remove(&mut patch, planes, candidates.clone(), runner.control)?;
         }
-        short_edges::collapse(&mut patch, &planes, settings.rounding);
-        zero_area::flip(&mut patch, &planes, settings.rounding);
+        short_edges::collapse(&mut patch, planes, settings.rounding);
+        zero_area::flip(&mut patch, planes, settings.rounding);
         if round + 1 == ROUNDS || !zero_area::any_flat(&patch) {
             break;
         }
     }
-    Ok(Some(patch.collect()))
+    Ok(Ok(patch.collect()))
 }
 
 /// Makes the patch a 2-manifold without triangles that have no area. Returns the points made, with those they are copies
 /// of.
-fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>) -> Vec<(u32, u32)> {
-    #[cfg(debug_assertions)]
-    let boundary = patch.boundary();
+fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>, everywhere: bool) -> Vec<(u32, u32)> {
     zero_area::split_chain(patch);
     patch.cancel();
+    if everywhere && cutter.operands.ties() > 0 {
+        shared_edges::identify(patch);
+    }
+    #[cfg(debug_assertions)]
+    let boundary = patch.boundary();
     if cutter.operands.ties() > 0 {
-        shared_edges::split(patch, cutter);
+        shared_edges::split(patch, cutter, everywhere);
     }
     #[cfg(debug_assertions)]
     assert_eq!(patch.boundary(), boundary, "splitting edges opened the surface");

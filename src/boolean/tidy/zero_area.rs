@@ -211,7 +211,7 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
 }
 
 /// Makes one point of each pair.
-fn identify(patch: &mut Patch<'_>, pairs: &[(u32, u32)]) {
+pub(super) fn identify(patch: &mut Patch<'_>, pairs: &[(u32, u32)]) {
     let mut stands_for: FxHashMap<u32, u32> = FxHashMap::default();
     let root = |stands_for: &FxHashMap<u32, u32>, mut point: u32| {
         while let Some(&other) = stands_for.get(&point) {
