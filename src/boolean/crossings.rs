@@ -77,9 +77,9 @@ fn cross(operands: &Operands<'_>, triangles: [u32; 2]) -> Option<PairCrossing> {
     let a = operands.corners(0, triangles[0]);
     let b = operands.corners(1, triangles[1]);
     // Which corners lie inside the other triangle's plane.
-    let a_inside = [0, 1, 2].map(|i| operands.positive(&b[0], &b[1], &b[2], &a[i]));
+    let a_inside = operands.inside(1, triangles[1], &b, &a);
     let lone_a = lone(a_inside)?;
-    let b_inside = [0, 1, 2].map(|i| operands.positive(&a[0], &a[1], &a[2], &b[i]));
+    let b_inside = operands.inside(0, triangles[0], &a, &b);
     let lone_b = lone(b_inside)?;
     let [p, q, r] = [0, 1, 2].map(|i| &a[(lone_a + i) % 3]);
     let [u, v, w] = [0, 1, 2].map(|i| &b[(lone_b + i) % 3]);

@@ -14,6 +14,7 @@ use super::cut_faces::{CutFace, CutFaces, UNCUT};
 use super::identify::Identification;
 use super::multiplicity::Part;
 use super::operands::Operands;
+use super::plane_faces::PlaneFaces;
 use super::unrounded::ExtraCrossing;
 use crate::Error;
 use crate::parallel::Runner;
@@ -47,6 +48,7 @@ pub(super) struct Cutter<'a> {
     /// Crossings after the nodes.
     pub(super) extra: &'a [ExtraCrossing],
     pub(super) faces: &'a [CutFaces; 2],
+    pub(super) plane_faces: &'a PlaneFaces,
     /// Winding numbers of the vertices, by side.
     pub(super) windings: &'a [Vec<i32>; 2],
     pub(super) identification: &'a Identification,
@@ -75,11 +77,11 @@ impl Cutter<'_> {
         let pieces = runner.pieces(all.len(), 512, |range| {
             let mut scratch = Scratch::default();
             let mut cut = Cut::default();
-            for face in all[range]
-                .iter()
-                .filter(|face| done.is_empty() || !done.contains(&(part.side, face.triangle)))
-            {
-                self.cut_face(part, face, &mut scratch, &mut cut);
+            for place in range {
+                let is_done = !done.is_empty() && done.contains(&(part.side, all[place].triangle));
+                if !is_done && !self.plane_faces.belongs_to_earlier(part.side, place as u32) {
+                    self.cut_face(part, place as u32, &mut scratch, &mut cut);
+                }
             }
             cut
         })?;
@@ -98,8 +100,13 @@ impl Cutter<'_> {
         }
     }
 
-    fn cut_face(&self, part: Part, face: &CutFace, scratch: &mut Scratch, cut: &mut Cut) {
-        self.boundary(part, face, &mut scratch.boundary);
+    /// Cuts a face, together with the later ones of its plane face.
+    fn cut_face(&self, part: Part, place: u32, scratch: &mut Scratch, cut: &mut Cut) {
+        let face = &self.faces[part.side].faces[place as usize];
+        scratch.boundary.clear();
+        for member in self.plane_faces.members(part.side, place) {
+            self.add_boundary(part, &self.faces[part.side].faces[member as usize], &mut scratch.boundary);
+        }
         cancel_opposites(&mut scratch.boundary);
         if scratch.boundary.is_empty() {
             return;
@@ -130,9 +137,9 @@ impl Cutter<'_> {
         }));
     }
 
-    /// The directed edges that bound the kept region of a face, to their left; each as often as it counts.
-    pub(super) fn boundary(&self, part: Part, face: &CutFace, boundary: &mut Vec<[u32; 2]>) {
-        boundary.clear();
+    /// Appends the directed edges that bound the kept region of a face, to their left; each as often as it counts. (Those
+    /// of a plane face's members add up.)
+    pub(super) fn add_boundary(&self, part: Part, face: &CutFace, boundary: &mut Vec<[u32; 2]>) {
         self.for_boundary(part, face, |edge, _, count| {
             boundary.extend(std::iter::repeat_n(edge, count as usize));
         });
@@ -174,9 +181,11 @@ impl Cutter<'_> {
             }
             add(from, high, Some(k), direction * part.multiplicity(around));
         }
-        for &segment in self.faces[part.side].segments(face) {
-            let segment = &self.crossings.segments[segment as usize];
-            add(first_node + segment.tail, first_node + segment.head, None, part.segment_direction());
+        for &number in self.faces[part.side].segments(face) {
+            let segment = &self.crossings.segments[number as usize];
+            if let Some(head) = self.plane_faces.run_end(number, segment.head) {
+                add(first_node + segment.tail, first_node + head, None, part.segment_direction());
+            }
         }
     }
 

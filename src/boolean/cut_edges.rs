@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use super::crossings::{Crossing, Crossings};
 use super::operands::{Corner, Operands};
+use super::plane_faces::PlaneFaces;
 use super::unrounded::ExtraCrossing;
 use crate::Error;
 use crate::exact::{Sign, order, position};
@@ -27,12 +28,12 @@ pub(super) struct CutEdges {
     nodes: Vec<u32>,
     /// For each node the index of its edge.
     pub(super) edge_of_node: Vec<u32>,
-    /// For each node where it is, correctly rounded.
+    /// For each node where it is, correctly rounded; filled by [`locate`](Self::locate).
     pub(super) positions: Vec<[f64; 3]>,
 }
 
 impl CutEdges {
-    /// Groups the crossings by edge, orders them along each, and computes their positions.
+    /// Groups the crossings by edge, and orders them along each.
     pub(super) fn new(
         operands: &Operands<'_>,
         crossings: &Crossings,
@@ -69,12 +70,35 @@ impl CutEdges {
                 nodes
             })?
             .concat();
-        let positions = runner
+        Ok(Self { edges, nodes, edge_of_node, positions: Vec::new() })
+    }
+
+    /// Computes where the nodes are, but for the dropped ones.
+    pub(super) fn locate(
+        &mut self,
+        operands: &Operands<'_>,
+        crossings: &Crossings,
+        plane_faces: &PlaneFaces,
+        runner: Runner<'_>,
+    ) -> Result<(), Error> {
+        let all = &crossings.nodes;
+        self.positions = runner
             .pieces(all.len(), 1024, |range| {
-                all[range].iter().map(|node| locate(operands, node)).collect::<Vec<_>>()
+                let nowhere = [f64::NAN; 3];
+                let place = |i: usize| match plane_faces.is_dropped(i as u32) {
+                    true => nowhere,
+                    false => locate(operands, &all[i]),
+                };
+                range.map(place).collect::<Vec<_>>()
             })?
             .concat();
-        Ok(Self { edges, nodes, edge_of_node, positions })
+        Ok(())
+    }
+
+    /// The number of a cut edge by its vertices.
+    pub(super) fn find(&self, low: u32, high: u32) -> Option<u32> {
+        let place = self.edges.binary_search_by_key(&(low, high), |edge| (edge.low, edge.high)).ok()?;
+        Some(place as u32)
     }
 
     /// The same with points after the nodes.

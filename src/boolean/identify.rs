@@ -9,6 +9,7 @@ use super::crossings::Crossings;
 use super::cut_edges::CutEdges;
 use super::cut_faces::{CutFace, CutFaces, UNCUT};
 use super::operands::Operands;
+use super::plane_faces::PlaneFaces;
 use crate::Error;
 use crate::parallel::Runner;
 
@@ -22,24 +23,33 @@ pub(super) struct Identification {
 }
 
 impl Identification {
-    /// Identifies the points of every cut face, and those of every set of faces that are cut together.
+    /// Identifies the points of every plane face that is cut, and those of every set of faces that are added up.
     pub(super) fn new(
         operands: &Operands<'_>,
         crossings: &Crossings,
         edges: &CutEdges,
         faces: &[CutFaces; 2],
+        plane_faces: &PlaneFaces,
         sheets: &[Vec<(usize, u32)>],
         runner: Runner<'_>,
     ) -> Result<Self, Error> {
         let mut result = Self::default();
+        let collect = |side: usize, face: &CutFace, points: &mut Vec<Point>| {
+            collect_points(operands, side, face, &faces[side], crossings, edges, plane_faces, points);
+        };
         for side in 0..2 {
             let all = &faces[side].faces;
             let pairs = runner.pieces(all.len(), 1024, |range| {
                 let mut pairs = Vec::new();
                 let mut points = Vec::new();
-                for face in &all[range] {
+                for place in range {
+                    if plane_faces.belongs_to_earlier(side, place as u32) {
+                        continue;
+                    }
                     points.clear();
-                    collect_points(operands, side, face, &faces[side], crossings, edges, &mut points);
+                    for member in plane_faces.members(side, place as u32) {
+                        collect(side, &all[member as usize], &mut points);
+                    }
                     coincidences(&mut points, &mut pairs);
                 }
                 pairs
@@ -52,7 +62,7 @@ impl Identification {
             let (mut points, mut pairs) = (Vec::new(), Vec::new());
             for &(side, triangle) in sheet {
                 if let Some(face) = faces[side].face(triangle) {
-                    collect_points(operands, side, &face, &faces[side], crossings, edges, &mut points);
+                    collect(side, &face, &mut points);
                 }
             }
             coincidences(&mut points, &mut pairs);
@@ -106,7 +116,7 @@ impl Identification {
 /// A point's number and where it is.
 type Point = (u32, [f64; 3]);
 
-/// Appends the corners and nodes of a face.
+/// Appends the corners and nodes of a face that are not dropped.
 fn collect_points(
     operands: &Operands<'_>,
     side: usize,
@@ -114,11 +124,16 @@ fn collect_points(
     faces: &CutFaces,
     crossings: &Crossings,
     edges: &CutEdges,
+    plane_faces: &PlaneFaces,
     points: &mut Vec<Point>,
 ) {
     let first_node = operands.vertex_count();
     points.extend(operands.corners(side, face.triangle).map(|corner| (corner.id, corner.position)));
-    let mut add = |node: u32| points.push((first_node + node, edges.positions[node as usize]));
+    let mut add = |node: u32| {
+        if !plane_faces.is_dropped(node) {
+            points.push((first_node + node, edges.positions[node as usize]));
+        }
+    };
     for edge in face.edges {
         if edge != UNCUT {
             edges.nodes(edge).iter().for_each(|&node| add(node));

@@ -1,13 +1,13 @@
 //! Many operands: which pairs are combined in which order.
 //!
-//! A union merges neighbours first (a balanced tree in Morton order of the boxes' centres), so that most merges are local
-//! and pieces vanish early; a difference takes the union of all tools off the first operand in one step; an intersection
+//! A union merges neighbours first (space is halved again and again), so that most merges are local and pieces vanish early; a difference takes the union of all tools off the first operand in one step; an intersection
 //! starts with the smallest operands; a symmetric difference goes from left to right.
 
 use std::borrow::Cow;
 
 use super::certificate::{Notes, OperandState};
 use super::cut::dominant_axis;
+use super::merge_order;
 use super::pair::{self, Settings};
 use super::sheets;
 use super::{Contact, Operation, Options, Origin, Outcome};
@@ -34,6 +34,11 @@ struct Partial<'a> {
 impl<'a> Partial<'a> {
     fn new(solid: Cow<'a, Solid>, origins: Origins, groups: Vec<u32>) -> Self {
         Self { solid, origins, groups, ties: 0, may_be_inverted: false }
+    }
+
+    /// The middle of its box.
+    fn centre(&self) -> [f64; 3] {
+        self.solid.bounds().map_or([0.0; 3], |b| std::array::from_fn(|k| 0.5 * b.low[k] + 0.5 * b.high[k]))
     }
 }
 
@@ -116,30 +121,27 @@ impl Engine<'_> {
         Ok(result)
     }
 
-    /// Merges neighbours level by level.
+    /// Merges neighbours, round by round.
     fn union<'a>(&self, partials: Vec<Partial<'a>>) -> Result<Partial<'a>, Error> {
-        let total = partials.len();
-        let mut level = in_morton_order(partials);
-        while level.len() > 1 {
-            self.runner.control.report("uniting", 1.0 - level.len() as f64 / total as f64)?;
-            let pairs = level.len() / 2;
+        let centres: Vec<[f64; 3]> = partials.iter().map(Partial::centre).collect();
+        let mut places: Vec<Option<Partial<'a>>> = partials.into_iter().map(Some).collect();
+        let (merges, mut done) = (places.len().saturating_sub(1), 0);
+        for pairs in merge_order::halving(&centres) {
+            self.runner.control.report("uniting", done as f64 / merges as f64)?;
             // Whole merges side by side while there are enough of them, else parallel inside each.
-            let inside = if pairs >= 8 { self.runner.serial() } else { self.runner };
+            let inside = if pairs.len() >= 8 { self.runner.serial() } else { self.runner };
             let engine = Engine { options: self.options, runner: inside };
-            let mut merged = self
-                .runner
-                .pieces(pairs, 1, |range| {
-                    let i = range.start;
-                    engine.combine(Operation::Union, &level[2 * i], &level[2 * i + 1])
-                })?
-                .into_iter()
-                .collect::<Result<Vec<_>, Error>>()?;
-            if level.len() % 2 == 1 {
-                merged.extend(level.pop());
+            let merged = self.runner.pieces(pairs.len(), 1, |range| {
+                let [x, y] = pairs[range.start].map(|place| places[place].as_ref());
+                let both = x.zip(y).expect("a place is taken until it is merged into another");
+                engine.combine(Operation::Union, both.0, both.1)
+            })?;
+            done += merged.len();
+            for (&[x, y], merged) in pairs.iter().zip(merged) {
+                (places[x], places[y]) = (Some(merged?), None);
             }
-            level = merged;
         }
-        level.pop().ok_or_else(no_operands)
+        places.into_iter().flatten().next().ok_or_else(no_operands)
     }
 
     fn combine<'a>(
@@ -214,24 +216,6 @@ fn finish(result: Partial<'_>, list: Vec<FaceGroup>, notes: Notes) -> Outcome {
     let mut solid = result.solid.into_owned();
     solid.set_groups(FaceGroups { list, of_triangle: result.groups });
     Outcome::new(solid, origins, notes)
-}
-
-/// Sorts operands so that neighbours in the list are neighbours in space.
-fn in_morton_order(partials: Vec<Partial<'_>>) -> Vec<Partial<'_>> {
-    if partials.len() <= 2 {
-        return partials;
-    }
-    let centres: Vec<[f64; 3]> = partials
-        .iter()
-        .map(|partial| {
-            partial
-                .solid
-                .bounds()
-                .map_or([0.0; 3], |b| std::array::from_fn(|k| 0.5 * b.low[k] + 0.5 * b.high[k]))
-        })
-        .collect();
-    let mut partials: Vec<Option<Partial<'_>>> = partials.into_iter().map(Some).collect();
-    crate::spatial::coherent_order(&centres).into_iter().filter_map(|i| partials[i as usize].take()).collect()
 }
 
 /// The groups of all operands together; equal ones become one.

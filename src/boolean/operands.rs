@@ -9,7 +9,7 @@
 //! symmetric difference, where they are added up: see `walls`.)
 
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 
 use rustc_hash::FxHashSet;
 
@@ -45,13 +45,24 @@ pub(super) struct Operands<'a> {
     near: [Vec<u32>; 2],
     directions: OnceLock<Directions>,
     ties: AtomicU64,
+    /// For small operands, by side: for each triangle on which side of it the other operand's vertices are, once known.
+    known_sides: Option<[Vec<AtomicU8>; 2]>,
 }
+
+/// Up to so many vertices against triangles are remembered.
+const REMEMBERED_SIDES: usize = 1 << 14;
+const UNKNOWN: u8 = 0;
+const INSIDE: u8 = 1;
+const OUTSIDE: u8 = 2;
 
 impl<'a> Operands<'a> {
     /// `near` lists the triangles of A and of B in the overlap of their boxes.
     pub(super) fn new(sides: [Operand<'a>; 2], sense: i32, largest: f64, near: [Vec<u32>; 2]) -> Self {
         const FILTER_LIMIT: f64 = f64::from_bits((1023 + 350) << 52);
+        let entries = [0, 1].map(|side| sides[side].triangles.len() * sides[1 - side].positions.len());
+        let table = |entries| std::iter::repeat_with(|| AtomicU8::new(UNKNOWN)).take(entries).collect();
         Self {
+            known_sides: (entries[0] + entries[1] <= REMEMBERED_SIDES).then(|| entries.map(table)),
             first_of_b: sides[0].positions.len() as u32,
             sides,
             sense,
@@ -125,6 +136,33 @@ impl<'a> Operands<'a> {
         }
     }
 
+    /// Which of the other operand's vertices lie inside the plane of a triangle of `side`.
+    #[inline]
+    pub(super) fn inside(
+        &self,
+        side: usize,
+        triangle: u32,
+        corners: &[Corner; 3],
+        vertices: &[Corner; 3],
+    ) -> [bool; 3] {
+        let [a, b, c] = corners;
+        let Some(known) = &self.known_sides else {
+            return [0, 1, 2].map(|i| self.positive(a, b, c, &vertices[i]));
+        };
+        let (count, first) = (self.sides[1 - side].positions.len(), self.first_vertex(1 - side));
+        [0, 1, 2].map(|i| {
+            let entry = &known[side][triangle as usize * count + (vertices[i].id - first) as usize];
+            match entry.load(Ordering::Relaxed) {
+                UNKNOWN => {
+                    let inside = self.positive(a, b, c, &vertices[i]);
+                    entry.store(if inside { INSIDE } else { OUTSIDE }, Ordering::Relaxed);
+                    inside
+                }
+                entry => entry == INSIDE,
+            }
+        })
+    }
+
     #[cold]
     #[inline(never)]
     fn positive_exactly(&self, a: &Corner, b: &Corner, c: &Corner, d: &Corner) -> bool {
@@ -133,8 +171,16 @@ impl<'a> Operands<'a> {
             Sign::Negative => false,
             Sign::Zero => {
                 self.ties.fetch_add(1, Ordering::Relaxed);
-                let points = [a, b, c, d].map(|corner| self.perturbed(corner));
-                perturbed::orient3d_of_tie(points.each_ref()) == Sign::Positive
+                let corners = [a, b, c, d];
+                perturbed::linear_filter(
+                    corners.map(|corner| &corner.position),
+                    corners.map(|corner| self.first_direction(corner.id)),
+                    |i| jitter(u64::from(corners[i].id)),
+                )
+                .unwrap_or_else(|| {
+                    let points = corners.map(|corner| self.perturbed(corner));
+                    perturbed::orient3d_of_tie_exact(points.each_ref())
+                }) == Sign::Positive
             }
         }
     }
@@ -144,14 +190,22 @@ impl<'a> Operands<'a> {
         self.directions.get().map(Directions::stuck).filter(|stuck| !stuck.is_empty())
     }
 
+    /// The direction a vertex moves along to first order.
+    #[inline]
+    fn first_direction(&self, vertex: u32) -> [i32; 3] {
+        if vertex >= self.first_of_b {
+            return [0; 3];
+        }
+        let directions = self.directions.get_or_init(|| Directions::new(&self.sides[0], &self.near[0]));
+        directions.of(vertex).map(|component| self.sense * component)
+    }
+
     /// A corner with the directions it is perturbed along.
     pub(super) fn perturbed(&self, corner: &Corner) -> PerturbedPoint {
-        let first = if corner.id < self.first_of_b {
-            let directions = self.directions.get_or_init(|| Directions::new(&self.sides[0], &self.near[0]));
-            directions.of(corner.id).map(|component| self.sense * component)
-        } else {
-            [0; 3]
-        };
-        PerturbedPoint { position: corner.position, first, second: jitter(u64::from(corner.id)) }
+        PerturbedPoint {
+            position: corner.position,
+            first: self.first_direction(corner.id),
+            second: jitter(u64::from(corner.id)),
+        }
     }
 }

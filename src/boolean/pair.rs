@@ -14,6 +14,8 @@ use super::multiplicity::{self, Part};
 use super::operands::{Operand, Operands};
 use super::outcome::Origin;
 use super::overlap;
+use super::plane_faces::PlaneFaces;
+use super::planes::Planes;
 use super::tidy;
 use super::walls;
 use super::winding;
@@ -65,7 +67,7 @@ pub(super) fn combine(
 
     let candidates = Candidates::new(&operands, overlap::intersection(&bounds[0], &bounds[1]), runner)?;
     let crossings = crossings::find(&operands, &candidates, runner)?;
-    let edges = CutEdges::new(&operands, &crossings, runner)?;
+    let mut edges = CutEdges::new(&operands, &crossings, runner)?;
     runner.control.check()?;
     let (faces_a, faces_b) = runner.both(
         || CutFaces::new(&operands, 0, &crossings, &edges),
@@ -93,7 +95,17 @@ pub(super) fn combine(
         let of_side = sheets.iter().flatten().filter(|face| face.0 == side).map(|face| face.1);
         faces[side].add_uncut(of_side);
     }
-    let identification = Identification::new(&operands, &crossings, &edges, &faces, &sheets, runner)?;
+    let planes = Planes { operands: &operands, groups: settings.groups };
+    let plane_faces = if settings.remove_vertices {
+        let in_sheets: FxHashSet<(usize, u32)> = sheets.iter().flatten().copied().collect();
+        let is_in_sheet = |side: usize, triangle: u32| in_sheets.contains(&(side, triangle));
+        PlaneFaces::new(&planes, &crossings, &edges, &faces, is_in_sheet, runner)?
+    } else {
+        PlaneFaces::default()
+    };
+    edges.locate(&operands, &crossings, &plane_faces, runner)?;
+    let identification =
+        Identification::new(&operands, &crossings, &edges, &faces, &plane_faces, &sheets, runner)?;
     let rounding = ROUNDING_ULPS * f64::EPSILON * largest;
     // The halves of a symmetric difference share no inside and touch in the curve. Only where faces touch do walls between
     // them have to vanish.
@@ -106,6 +118,7 @@ pub(super) fn combine(
             edges: &edges,
             extra: &[],
             faces: &faces,
+            plane_faces: &plane_faces,
             windings: &windings,
             identification: &identification,
             rounding,
@@ -146,12 +159,12 @@ fn body(
     }
     let tidy_settings = tidy::Settings {
         remove_vertices: settings.remove_vertices,
-        groups: settings.groups,
         rounding: cutter.rounding,
         everywhere: settings.everywhere,
         always: has_slivers,
     };
-    let tidied = tidy::tidy(cutter, parts, &pieces, &tidy_settings, runner)?;
+    let planes = Planes { operands: cutter.operands, groups: settings.groups };
+    let tidied = tidy::tidy(cutter, &planes, parts, &pieces, &tidy_settings, runner)?;
     let (new, replaced, copies) = match tidied {
         Some(tidied) => (tidied.new, Some(tidied.replaced), tidied.copies),
         None => (pieces, None, Vec::new()),

@@ -5,6 +5,9 @@ use super::Integer;
 
 /// Bits a coordinate may have for a 3 by 3 determinant of differences to fit 128-bit integers.
 const SMALL_BITS: i32 = 40;
+/// Bits a coordinate may have for sums of some products of two such determinants to fit: 18 for a difference, so 2^57 for a
+/// determinant of three rows of them or of first directions.
+const TINY_BITS: i32 = 17;
 
 /// `value = mantissa * 2^exponent` with an odd mantissa; `(0, 0)` for zero.
 fn decompose(value: f64) -> (i64, i32) {
@@ -47,6 +50,11 @@ impl Lattice {
     /// Whether determinants of the coordinates fit native 128-bit integers.
     pub(super) fn is_small(self) -> bool {
         self.bits <= SMALL_BITS
+    }
+
+    /// Whether products of two determinants of the coordinates, and sums of a dozen of them, fit native 128-bit integers.
+    pub(super) fn is_tiny(self) -> bool {
+        self.bits <= TINY_BITS
     }
 
     /// A coordinate of this lattice in units of its spacing; only for [small](Self::is_small) lattices.

@@ -7,7 +7,9 @@
 
 use super::lattice::Lattice;
 use super::orient::orient3d_filter;
-use super::perturbed::{COEFFICIENTS, EXPONENTS, PerturbedPoint, coefficients};
+use super::perturbed::{
+    COEFFICIENTS, EXPONENTS, LOW_COEFFICIENTS, PerturbedPoint, Polynomial, low_coefficients,
+};
 use super::{Integer, Sign};
 
 /// The sign of `t1 - t2` from plain positions, if `f64` with an error bound can tell: the filter of [`compare`].
@@ -54,26 +56,53 @@ pub fn compare(
 ) -> Sign {
     let all = [p, q].into_iter().chain(first).chain(second);
     let lattice = Lattice::of(all.flat_map(|point| &point.position));
-    let heights = |t: [&PerturbedPoint; 3], x| coefficients([t[0], t[1], t[2], x], lattice);
-    let (a0, a1) = (heights(first, p), heights(first, q));
-    let (b0, b1) = (heights(second, p), heights(second, q));
-    let positive = |polynomial: &[Integer; COEFFICIENTS]| {
-        polynomial.iter().map(Integer::signum).find(|&sign| sign != 0).is_some_and(|sign| sign > 0)
-    };
+    if lattice.is_tiny()
+        && let Some(sign) = compare_low(p, q, first, second, lattice)
+    {
+        return sign;
+    }
+    let height = |t: [&PerturbedPoint; 3], x| Polynomial::new([t[0], t[1], t[2], x], lattice);
+    let (a0, a1) = (height(first, p), height(first, q));
+    let (b0, b1) = (height(second, p), height(second, q));
     for exponent in 0..=2 * EXPONENTS[COEFFICIENTS - 1] {
         let mut n = Integer::zero();
-        for i in 0..COEFFICIENTS {
-            for j in 0..COEFFICIENTS {
-                if EXPONENTS[i] + EXPONENTS[j] == exponent {
-                    n = n.plus(&a0[i].times(&b1[j])).minus(&b0[i].times(&a1[j]));
-                }
-            }
+        for (i, j) in pairs_of_power(exponent) {
+            let (left, right) =
+                (a0.coefficient(i).times(b1.coefficient(j)), b0.coefficient(i).times(a1.coefficient(j)));
+            n = n.plus(&left).minus(&right);
         }
         if !n.is_zero() {
-            return order_from(n.signum() > 0, positive(&a0), positive(&b0));
+            return order_from(n.signum() > 0, a0.is_positive(), b0.is_positive());
         }
     }
     Sign::Zero
+}
+
+/// Places of two coefficients whose product belongs to a power of the infinitesimal.
+fn pairs_of_power(exponent: usize) -> impl Iterator<Item = (usize, usize)> {
+    let all = (0..COEFFICIENTS).flat_map(|i| (0..COEFFICIENTS).map(move |j| (i, j)));
+    all.filter(move |&(i, j)| EXPONENTS[i] + EXPONENTS[j] == exponent)
+}
+
+/// [`compare`] for coordinates on a [tiny](Lattice::is_tiny) lattice, if powers that first directions alone give can tell.
+fn compare_low(
+    p: &PerturbedPoint,
+    q: &PerturbedPoint,
+    first: [&PerturbedPoint; 3],
+    second: [&PerturbedPoint; 3],
+    lattice: Lattice,
+) -> Option<Sign> {
+    let height = |t: [&PerturbedPoint; 3], x| low_coefficients([t[0], t[1], t[2], x], lattice);
+    let (a0, a1) = (height(first, p), height(first, q));
+    let (b0, b1) = (height(second, p), height(second, q));
+    let n = (0..2 * LOW_COEFFICIENTS - 1)
+        .map(|power| {
+            let places = power.saturating_sub(LOW_COEFFICIENTS - 1)..=power.min(LOW_COEFFICIENTS - 1);
+            places.map(|i| a0[i] * b1[power - i] - b0[i] * a1[power - i]).sum::<i128>()
+        })
+        .find(|&n| n != 0)?;
+    let is_positive = |low: &[i128; LOW_COEFFICIENTS]| low.iter().find(|&&x| x != 0).map(|&x| x > 0);
+    Some(order_from(n > 0, is_positive(&a0)?, is_positive(&b0)?))
 }
 
 #[cfg(test)]

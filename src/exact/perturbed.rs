@@ -10,6 +10,8 @@
 //! Coefficients are computed one after the other, exactly; the lowest has an `f64` filter of its own, since it decides
 //! nearly every contact between flat faces.
 
+use std::cell::OnceCell;
+
 use super::lattice::Lattice;
 use super::orient::orient3d_exact;
 use super::{Integer, Sign};
@@ -54,51 +56,83 @@ pub fn orient3d(points: [&PerturbedPoint; 4]) -> Sign {
 
 /// [`orient3d`] of points whose unperturbed determinant is known to be zero.
 pub(crate) fn orient3d_of_tie(points: [&PerturbedPoint; 4]) -> Sign {
-    // Where all points move alike, the second directions decide.
-    let alike = points.iter().all(|point| point.first == points[3].first);
-    let filtered = if alike {
-        linear_filter(points, |point| point.second)
+    let positions = points.map(|point| &point.position);
+    linear_filter(positions, points.map(|point| point.first), |i| points[i].second)
+        .unwrap_or_else(|| orient3d_of_tie_exact(points))
+}
+
+/// The exact stage of [`orient3d_of_tie`].
+pub(crate) fn orient3d_of_tie_exact(points: [&PerturbedPoint; 4]) -> Sign {
+    let lattice = Lattice::of(points.iter().flat_map(|point| &point.position));
+    if lattice.is_small() {
+        lowest_sign(&rows(points, |x| i128::from(lattice.small(x)), i128::from))
     } else {
-        linear_filter(points, |point| point.first)
-    };
-    filtered.unwrap_or_else(|| {
-        let lattice = Lattice::of(points.iter().flat_map(|point| &point.position));
-        if lattice.is_small() {
-            lowest_sign(&rows(points, |x| i128::from(lattice.small(x)), i128::from))
-        } else {
-            lowest_sign(&rows(points, |x| lattice.integer(x), |x| Integer::from(i64::from(x))))
-        }
-    })
+        lowest_sign(&rows(points, |x| lattice.integer(x), |x| Integer::from(i64::from(x))))
+    }
 }
 
-/// The coefficients of the perturbed determinant, lowest first, in units of `2^(3 e)` where `2^e` is the spacing of
-/// `lattice`; the infinitesimal is scaled by `2^e`.
-pub(super) fn coefficients(points: [&PerturbedPoint; 4], lattice: Lattice) -> [Integer; COEFFICIENTS] {
-    let rows = rows(points, |x| lattice.integer(x), |x| Integer::from(i64::from(x)));
-    EXPONENTS.map(|exponent| coefficient(&rows, exponent))
-}
-
-/// The coefficient of the power of `eps` that belongs to a direction, in `f64`, if its sign is certain: the sum of three
-/// determinants with one row of directions each.
-fn linear_filter(
-    points: [&PerturbedPoint; 4],
-    direction: impl Fn(&PerturbedPoint) -> [i32; 3],
+/// The sign of [`orient3d_of_tie`], if `f64` can tell. `second` gives the second direction of a point, if it is needed: where
+/// all points move alike at first.
+#[inline]
+pub(crate) fn linear_filter(
+    positions: [&[f64; 3]; 4],
+    first: [[i32; 3]; 4],
+    second: impl Fn(usize) -> [i32; 3],
 ) -> Option<Sign> {
+    let alike = first[..3].iter().all(|direction| *direction == first[3]);
+    linear_coefficient(positions, if alike { [0, 1, 2, 3].map(second) } else { first })
+}
+
+/// The perturbed determinant as a polynomial in the infinitesimal, which is scaled by `2^e`: its coefficients are in units of
+/// `2^(3 e)` where `2^e` is the spacing of a lattice, and computed when they are asked for.
+pub(super) struct Polynomial {
+    rows: Rows<Integer>,
+    coefficients: [OnceCell<Integer>; COEFFICIENTS],
+}
+
+impl Polynomial {
+    pub(super) fn new(points: [&PerturbedPoint; 4], lattice: Lattice) -> Self {
+        let rows = rows(points, |x| lattice.integer(x), |x| Integer::from(i64::from(x)));
+        Self { rows, coefficients: Default::default() }
+    }
+
+    /// The coefficient of the power of that place in [`EXPONENTS`].
+    pub(super) fn coefficient(&self, place: usize) -> &Integer {
+        self.coefficients[place].get_or_init(|| coefficient(&self.rows, EXPONENTS[place]))
+    }
+
+    /// Whether the lowest coefficient that is not zero is positive.
+    pub(super) fn is_positive(&self) -> bool {
+        (0..COEFFICIENTS)
+            .map(|k| self.coefficient(k).signum())
+            .find(|&sign| sign != 0)
+            .is_some_and(|sign| sign > 0)
+    }
+}
+
+/// Number of coefficients that first directions alone give: those of the powers 0 to 3.
+pub(super) const LOW_COEFFICIENTS: usize = 4;
+
+/// The low coefficients of the perturbed determinant on a [tiny](Lattice::is_tiny) lattice, in the units of [`Polynomial`].
+pub(super) fn low_coefficients(points: [&PerturbedPoint; 4], lattice: Lattice) -> [i128; LOW_COEFFICIENTS] {
+    let rows = rows(points, |x| i128::from(lattice.small(x)), i128::from);
+    std::array::from_fn(|place| coefficient(&rows, EXPONENTS[place]))
+}
+
+/// The sign of the coefficient of the power of `eps` that belongs to some directions, if `f64` is certain: the sum of three
+/// determinants with one row of directions each.
+fn linear_coefficient(positions: [&[f64; 3]; 4], directions: [[i32; 3]; 4]) -> Option<Sign> {
     // Three determinants with one exact row each; twice the bound of a single orient3d covers them and their sum.
     const BOUND: f64 = 2.0 * (7.0 + 56.0 * f64::EPSILON) * f64::EPSILON / 2.0;
     const FLOOR: f64 = f64::from_bits((1023 - 700) << 52);
     const LIMIT: f64 = f64::from_bits((1023 + 350) << 52);
-    if points.iter().flat_map(|point| &point.position).any(|x| x.abs() > LIMIT) {
+    if positions.into_iter().flatten().any(|x| x.abs() > LIMIT) {
         return None;
     }
-    let d = points[3];
-    let origin = direction(d);
-    let zero: [[f64; 3]; 3] =
-        std::array::from_fn(|i| std::array::from_fn(|k| points[i].position[k] - d.position[k]));
-    let one: [[f64; 3]; 3] = std::array::from_fn(|i| {
-        let moved = direction(points[i]);
-        std::array::from_fn(|k| f64::from(moved[k] - origin[k]))
-    });
+    let [zero, one]: [[[f64; 3]; 3]; 2] = [
+        std::array::from_fn(|i| std::array::from_fn(|k| positions[i][k] - positions[3][k])),
+        std::array::from_fn(|i| std::array::from_fn(|k| f64::from(directions[i][k] - directions[3][k]))),
+    ];
     let (mut sum, mut permanent) = (0.0, 0.0);
     for i in 0..3 {
         let (v, w) = (&zero[(i + 1) % 3], &zero[(i + 2) % 3]);

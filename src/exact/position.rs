@@ -11,7 +11,7 @@ use super::Integer;
 use super::double_double::DoubleDouble;
 use super::lattice::Lattice;
 use super::orient::determinant;
-use super::perturbed::{COEFFICIENTS, PerturbedPoint, coefficients};
+use super::perturbed::{COEFFICIENTS, PerturbedPoint, Polynomial};
 
 /// The crossing point of edge `(p, q)` with the plane of the triangle, if double-double arithmetic can round it with
 /// certainty; the fast path of [`crossing`].
@@ -100,11 +100,11 @@ fn homogeneous(
     };
     let (height_p, height_q) = (plain(p), plain(q));
     let (height_p, height_q) = if height_p.is_zero() && height_q.is_zero() {
-        let (all_p, all_q) = (coefficients([a, b, c, p], lattice), coefficients([a, b, c, q], lattice));
+        let [all_p, all_q] = [p, q].map(|end| Polynomial::new([a, b, c, end], lattice));
         let order = (0..COEFFICIENTS)
-            .find(|&k| all_p[k] != all_q[k])
+            .find(|&k| all_p.coefficient(k) != all_q.coefficient(k))
             .expect("the ends of a crossing edge lie on different sides");
-        (all_p[order].clone(), all_q[order].clone())
+        (all_p.coefficient(order).clone(), all_q.coefficient(order).clone())
     } else {
         (height_p, height_q)
     };

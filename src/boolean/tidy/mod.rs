@@ -5,9 +5,9 @@
 //! pair (make it 2-manifold), flip, remove, collapse. They work on a patch: the pieces of cut faces and the kept triangles
 //! round their points. All else keeps its bits and its order.
 
+mod lines;
 pub(crate) mod manifold;
 mod patch;
-mod planes;
 mod remove;
 mod shared_edges;
 mod short_edges;
@@ -17,6 +17,7 @@ use super::assemble::NewTriangle;
 use super::cut::Cutter;
 use super::cut_faces::BitSet;
 use super::multiplicity::Part;
+use super::planes::Planes;
 use crate::Error;
 use crate::parallel::Runner;
 use patch::Patch;
@@ -36,11 +37,9 @@ pub(super) struct Tidied {
 
 /// Settings of tidying.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Settings<'a> {
+pub(super) struct Settings {
     /// Whether vertices that nobody needs are removed.
     pub(super) remove_vertices: bool,
-    /// For each side the group of every triangle; faces of different groups are not merged. Empty: one group.
-    pub(super) groups: [&'a [u32]; 2],
     /// The size of rounding: edges and heights up to this are not worth a triangle.
     pub(super) rounding: f64,
     /// Whether edges are to be subdivided alike wherever they lie on one another, not only between faces of both operands.
@@ -52,13 +51,14 @@ pub(super) struct Settings<'a> {
 /// Tidies the pieces of a result; `None` where there is nothing to do.
 pub(super) fn tidy(
     cutter: &Cutter<'_>,
+    planes: &Planes<'_>,
     parts: &[Part],
     pieces: &[NewTriangle],
-    settings: &Settings<'_>,
+    settings: &Settings,
     runner: Runner<'_>,
 ) -> Result<Option<Tidied>, Error> {
-    let planes = planes::Planes { operands: cutter.operands, groups: settings.groups };
-    let mut candidates = if settings.remove_vertices { planes.removable_nodes(cutter) } else { Vec::new() };
+    let first_node = cutter.operands.vertex_count();
+    let mut candidates: Vec<u32> = cutter.plane_faces.left().iter().map(|node| first_node + node).collect();
     let regular =
         !settings.always && cutter.identification.is_empty() && candidates.is_empty() && !has_repeats(cutter);
     if regular {
@@ -73,7 +73,7 @@ pub(super) fn tidy(
     let mut others = FxHashSet::default();
     loop {
         let patch = Patch::new(cutter, parts, pieces, &others);
-        match tidied(patch, cutter, settings, &planes, candidates.clone(), runner)? {
+        match tidied(patch, cutter, settings, planes, candidates.clone(), runner)? {
             Ok(tidied) => return Ok(Some(tidied)),
             Err(pinched) => others.extend(pinched),
         }
@@ -84,8 +84,8 @@ pub(super) fn tidy(
 fn tidied(
     mut patch: Patch<'_>,
     cutter: &Cutter<'_>,
-    settings: &Settings<'_>,
-    planes: &planes::Planes<'_>,
+    settings: &Settings,
+    planes: &Planes<'_>,
     mut candidates: Vec<u32>,
     runner: Runner<'_>,
 ) -> Result<Result<Tidied, FxHashSet<u32>>, Error> {
@@ -101,11 +101,11 @@ fn tidied(
         candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
         runner.control.check()?;
         if settings.remove_vertices {
-            zero_area::flip(&mut patch, planes, 0.0);
+            zero_area::flip(&mut patch, 0.0);
             remove::remove(&mut patch, planes, candidates.clone(), runner.control)?;
         }
-        short_edges::collapse(&mut patch, planes, settings.rounding);
-        zero_area::flip(&mut patch, planes, settings.rounding);
+        short_edges::collapse(&mut patch, settings.rounding);
+        zero_area::flip(&mut patch, settings.rounding);
         if round + 1 == ROUNDS || !zero_area::any_flat(&patch) {
             break;
         }
@@ -116,6 +116,7 @@ fn tidied(
 /// Makes the patch a 2-manifold without triangles that have no area. Returns the points made, with those they are copies
 /// of.
 fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>, everywhere: bool) -> Vec<(u32, u32)> {
+    lines::straighten(patch);
     zero_area::split_chain(patch);
     patch.cancel();
     if everywhere && cutter.operands.ties() > 0 {

@@ -7,8 +7,10 @@ use super::super::cut::Cutter;
 use super::super::cut_faces::BitSet;
 use super::super::multiplicity::Part;
 use super::super::outcome::Origin;
+use super::super::planes::source_and_axes;
 use super::Tidied;
 use super::manifold::Surface;
+use crate::exact::{Sign, orient2d};
 
 /// A triangle of the patch.
 #[derive(Clone, Copy, Debug)]
@@ -135,6 +137,16 @@ impl<'a> Patch<'a> {
         } else {
             self.cutter.position(point)
         }
+    }
+
+    /// Whether a triangle looks the way of the face it was cut from.
+    pub(super) fn is_sound(&self, corners: &[u32; 3], origin: Origin) -> bool {
+        let (_, (x, y)) = source_and_axes(self.cutter.operands, origin);
+        let [a, b, c] = corners.map(|point| {
+            let position = self.position(point);
+            [position[x], position[y]]
+        });
+        orient2d(a, b, c) == Sign::Positive
     }
 
     /// Calls `found` for every kept uncut triangle: part, triangle, its points, and how often it counts (negative where
@@ -374,7 +386,7 @@ impl Surface for Patch<'_> {
     fn left_of_side(&self, triangle: u32, side: usize) -> [f64; 3] {
         let face = &self.faces[triangle as usize];
         let corners = [0, 1, 2].map(|k| *self.position(face.corners[(side + k) % 3]));
-        let (source, (x, y)) = super::planes::source_and_axes(self.cutter.operands, face.origin);
+        let (source, (x, y)) = source_and_axes(self.cutter.operands, face.origin);
         let [p, q] = [corners[0], corners[1]].map(|point| [point[x], point[y]]);
         let left = |c: &[f64; 3]| (q[0] - p[0]) * (c[y] - p[1]) - (q[1] - p[1]) * (c[x] - p[0]);
         source

@@ -5,8 +5,8 @@
 //! all new triangles are sound and no edge would occur twice.
 
 use super::super::outcome::Origin;
+use super::super::planes::Planes;
 use super::patch::Patch;
-use super::planes::Planes;
 use crate::exact::collinear;
 use crate::polygon::{Shape, Triangulator};
 use crate::{Control, Error};

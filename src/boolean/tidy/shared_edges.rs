@@ -1,9 +1,8 @@
-//! Edges in which the operands touch: the same subdivision for all faces.
+//! Edges in which surfaces touch: the same subdivision for all faces.
 //!
 //! Where both operands have the same edge, or part of it, the perturbation may let them cross somewhere along it: some faces
 //! then pass along the whole edge and others along its parts. Bodies that touch in an edge only come apart if all faces
-//! there meet in the same edges. So every edge between faces of different operands gets the vertices of the shorter such
-//! edges that run along it.
+//! there meet in the same edges. So every edge gets the vertices of the shorter edges that run along it.
 
 use rustc_hash::FxHashMap;
 
@@ -14,18 +13,20 @@ use super::zero_area::is_low;
 use crate::exact::collinear;
 use crate::spatial::{BoxTree, Frame};
 
-/// An edge between faces of both operands, from its lower point to its higher one.
-type Edge = (u32, u32);
+/// An edge, from its lower point to its higher one.
+pub(super) type Edge = (u32, u32);
 
-/// Rounds of splitting: halves may be shared edges with vertices on them again.
+/// Rounds of splitting: halves may have vertices on them again.
 const ROUNDS: usize = 4;
+/// Splitting ends when the faces have become so many times as many.
+const MOST_GROWTH: usize = 4;
 
-/// Splits the edges at which faces of both operands meet.
-/// With `everywhere`, splits all edges on which there are vertices.
+/// Splits the edges along which shorter ones run; with `everywhere` all edges on which there are vertices.
 pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>, everywhere: bool) {
+    let most = MOST_GROWTH * patch.faces.len();
     for _ in 0..ROUNDS {
         let splits = if everywhere { splits_everywhere(patch, cutter) } else { splits(patch, cutter) };
-        if splits.is_empty() {
+        if splits.is_empty() || patch.faces.len() > most {
             return;
         }
         for index in 0..patch.faces.len() {
@@ -37,7 +38,7 @@ pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>, everywhere: bool
 
 /// Splits the sides of a face that are to be split. Diagonals are left alone, whatever else runs along them: they bound two
 /// triangles of this face and so do not matter to others.
-fn split_face(patch: &mut Patch<'_>, index: usize, splits: &FxHashMap<Edge, Vec<u32>>) {
+pub(super) fn split_face(patch: &mut Patch<'_>, index: usize, splits: &FxHashMap<Edge, Vec<u32>>) {
     let face = patch.faces[index];
     let on_side = |from: u32, to: u32| splits.get(&(from.min(to), from.max(to)));
     let is_split = |k: usize| on_side(face.corners[k], face.corners[(k + 1) % 3]).is_some();
@@ -144,25 +145,29 @@ fn sort_along(patch: &Patch<'_>, u: u32, on: &mut [u32]) {
     on.sort_by(|x, y| distance(x).total_cmp(&distance(y)).then(x.cmp(y)));
 }
 
-/// Edges to split, with the vertices on them from the lower end to the higher one.
+/// Edges to split, with the vertices on them from the lower end to the higher one: edges of one operand along which edges of
+/// the other run.
 fn splits(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
-    let shared = shared_edges(patch);
+    let edges = edges(patch);
     // Each edge from both its ends, so that those at one point are together.
-    let mut from_points: Vec<(u32, u32)> = shared.iter().flat_map(|&(u, v)| [(u, v), (v, u)]).collect();
+    let mut from_points: Vec<(u32, u32, u8)> =
+        edges.iter().flat_map(|&((u, v), of)| [(u, v, of), (v, u, of)]).collect();
     from_points.sort_unstable();
     let neighbours = |point: u32| {
-        let first = from_points.partition_point(|pair| pair.0 < point);
-        from_points[first..].iter().take_while(move |pair| pair.0 == point).map(|pair| pair.1)
+        let first = from_points.partition_point(|entry| entry.0 < point);
+        from_points[first..].iter().take_while(move |entry| entry.0 == point)
     };
     let mut splits = FxHashMap::default();
-    for &(u, v) in shared.iter().filter(|&&(u, v)| patch.is_complete(u) && patch.is_complete(v)) {
+    let complete = |&&((u, v), _): &&(Edge, u8)| patch.is_complete(u) && patch.is_complete(v);
+    for &((u, v), of) in edges.iter().filter(complete) {
         // From vertex to vertex along the edge.
         let mut on: Vec<u32> = Vec::new();
         let mut next = 0;
         let mut from = u;
         loop {
-            for x in neighbours(from) {
-                if x != u && x != v && !on.contains(&x) && lies_between(patch, cutter, u, x, v) {
+            for &(_, x, of_x) in neighbours(from) {
+                let may_touch = of | of_x == BOTH && x != u && x != v;
+                if may_touch && !on.contains(&x) && lies_between(patch, cutter, u, x, v) {
                     on.push(x);
                 }
             }
@@ -177,19 +182,20 @@ fn splits(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
     splits
 }
 
-fn shared_edges(patch: &Patch<'_>) -> Vec<Edge> {
-    let mut sides: Vec<(u32, u32, u32)> = Vec::new();
+/// Faces of both operands.
+const BOTH: u8 = 3;
+
+/// All edges, from the lower point to the higher one, and whose faces are there: a bit for each operand.
+fn edges(patch: &Patch<'_>) -> Vec<(Edge, u8)> {
+    let mut sides: Vec<(Edge, u8)> = Vec::with_capacity(3 * patch.faces.len());
     for face in patch.faces.iter().filter(|face| face.alive) {
-        for k in 0..3 {
-            let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
-            sides.push((u.min(v), u.max(v), face.origin.operand));
-        }
+        let [a, b, c] = face.corners;
+        sides.extend([(a, b), (b, c), (c, a)].map(|(u, v)| ((u.min(v), u.max(v)), 1 << face.origin.operand)));
     }
     sides.sort_unstable();
     sides
-        .chunk_by(|x, y| (x.0, x.1) == (y.0, y.1))
-        .filter(|group| group[0].2 != group[group.len() - 1].2)
-        .map(|group| (group[0].0, group[0].1))
+        .chunk_by(|x, y| x.0 == y.0)
+        .map(|group| (group[0].0, group[0].1 | group[group.len() - 1].1))
         .collect()
 }
 
@@ -197,10 +203,16 @@ fn shared_edges(patch: &Patch<'_>) -> Vec<Edge> {
 /// are shorter than the whole, so splitting comes to an end.
 fn lies_between(patch: &Patch<'_>, cutter: &Cutter<'_>, u: u32, x: u32, v: u32) -> bool {
     let (p, at, q) = (patch.position(u), patch.position(x), patch.position(v));
-    // Nearly always one look says no.
+    // Nearly always one look says no: rounding moves a point by less than a unit in the last place.
     let is_within = (0..3).all(|k| p[k].min(q[k]) <= at[k] && at[k] <= p[k].max(q[k]));
     let length = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|k| (q[k] - p[k]).powi(2)).sum::<f64>();
+    let [u_v, u_x]: [[f64; 3]; 2] = [q, at].map(|end| std::array::from_fn(|k| end[k] - p[k]));
+    let twice_area = (0..3)
+        .map(|k| (u_v[(k + 1) % 3] * u_x[(k + 2) % 3] - u_v[(k + 2) % 3] * u_x[(k + 1) % 3]).powi(2))
+        .sum::<f64>();
+    let is_off = twice_area > (2.0 * cutter.rounding).powi(2) * length(p, q);
     is_within
+        && !is_off
         && length(p, at).max(length(at, q)) < length(p, q)
         && (collinear(p, at, q)
             || (is_low([p, at, q], cutter.rounding) && cutter.were_on_one_line([u, x, v])))

@@ -2,10 +2,9 @@
 //! the last place apart. The vertex that the operation made is drawn into its neighbour; no other vertex moves.
 
 use super::patch::Patch;
-use super::planes::Planes;
 
 /// Collapses edges up to `length` long (in the largest coordinate difference) at points made by the operation.
-pub(super) fn collapse(patch: &mut Patch<'_>, planes: &Planes<'_>, length: f64) {
+pub(super) fn collapse(patch: &mut Patch<'_>, length: f64) {
     let mut queue: Vec<(u32, u32)> = Vec::new();
     for face in patch.faces.iter().filter(|face| face.alive && !face.untouched) {
         for k in 0..3 {
@@ -20,7 +19,7 @@ pub(super) fn collapse(patch: &mut Patch<'_>, planes: &Planes<'_>, length: f64) 
     // The later point goes first: between two new points the one with the lower number stays.
     while let Some((u, v)) = queue.pop() {
         if patch.left_of(u, v).is_some() && is_short(patch, u, v, length) {
-            try_collapse(patch, planes, u, v);
+            try_collapse(patch, u, v);
         }
     }
 }
@@ -31,7 +30,7 @@ fn is_short(patch: &Patch<'_>, u: u32, v: u32, length: f64) -> bool {
 }
 
 /// Draws `u` into `v` if what is left is a sound 2-manifold.
-fn try_collapse(patch: &mut Patch<'_>, planes: &Planes<'_>, u: u32, v: u32) {
+fn try_collapse(patch: &mut Patch<'_>, u: u32, v: u32) {
     if !patch.is_complete(u) || !patch.is_complete(v) {
         return;
     }
@@ -50,8 +49,7 @@ fn try_collapse(patch: &mut Patch<'_>, planes: &Planes<'_>, u: u32, v: u32) {
             continue;
         }
         let moved = face.corners.map(|point| if point == u { v } else { point });
-        if planes.is_sound(patch, &face.corners, face.origin) && !planes.is_sound(patch, &moved, face.origin)
-        {
+        if patch.is_sound(&face.corners, face.origin) && !patch.is_sound(&moved, face.origin) {
             return;
         }
         new.push((moved, face.origin));

@@ -8,7 +8,6 @@ use smallvec::SmallVec;
 
 use super::super::cut::Cutter;
 use super::patch::{Face, Patch};
-use super::planes::Planes;
 use crate::exact::collinear;
 
 /// A flip: the two triangles that share the longest side from `c` to `a` of the flat triangle `a, b, c`.
@@ -23,8 +22,14 @@ struct Flip {
 
 fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
     let face = &patch.faces[index as usize];
+    face.alive && (face.flat || is_exactly_flat(patch, index))
+}
+
+/// Whether the corners of a triangle lie on one line as they are.
+pub(super) fn is_exactly_flat(patch: &Patch<'_>, index: u32) -> bool {
+    let face = &patch.faces[index as usize];
     let [a, b, c] = face.corners.map(|point| patch.position(point));
-    face.alive && (face.flat || collinear(a, b, c))
+    face.alive && collinear(a, b, c)
 }
 
 /// Whether a triangle without area is left.
@@ -237,7 +242,7 @@ pub(super) fn identify(patch: &mut Patch<'_>, pairs: &[(u32, u32)]) {
 
 /// Flips triangles in the 2-manifold that are no higher than `height`, as long as that makes no double edge, and (for those
 /// with some height) both triangles afterwards look the way of the one beyond the side.
-pub(super) fn flip(patch: &mut Patch<'_>, planes: &Planes<'_>, height: f64) {
+pub(super) fn flip(patch: &mut Patch<'_>, height: f64) {
     let is_low = |patch: &Patch<'_>, index: u32| is_flat(patch, index) || is_lower(patch, index, height);
     let mut queue: Vec<u32> = (0..patch.faces.len() as u32).filter(|&index| is_low(patch, index)).collect();
     // Each flip moves a vertex off a longest side; the bound stops cycles among triangles that are all flat.
@@ -263,8 +268,8 @@ pub(super) fn flip(patch: &mut Patch<'_>, planes: &Planes<'_>, height: f64) {
         }
         let origin = patch.faces[other as usize].origin;
         let new = [([a, b, d], origin), ([b, c, d], origin)];
-        let harmless = is_flat(patch, flat)
-            || new.iter().all(|(corners, origin)| planes.is_sound(patch, corners, *origin));
+        let harmless =
+            is_flat(patch, flat) || new.iter().all(|(corners, origin)| patch.is_sound(corners, *origin));
         if harmless && !patch.has_edge(b, d) && !patch.has_edge(d, b) {
             patch.replace(&[flat, other], &new);
             queue.extend([flat, other].into_iter().filter(|&index| is_low(patch, index)));

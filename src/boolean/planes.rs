@@ -1,9 +1,8 @@
 //! Which faces of the result lie in one plane, by the exact planes of their source triangles.
 
-use super::super::cut::{Cutter, dominant_axis};
-use super::super::operands::Operands;
-use super::super::outcome::Origin;
-use super::patch::Patch;
+use super::cut::dominant_axis;
+use super::operands::Operands;
+use super::outcome::Origin;
 use crate::exact::{Sign, collinear, orient2d, orient3d, orient3d_filter};
 
 /// Compares source planes of triangles of the result.
@@ -16,16 +15,6 @@ pub(super) struct Planes<'a> {
 impl Planes<'_> {
     fn corners(&self, origin: Origin) -> [[f64; 3]; 3] {
         source(self.operands, origin)
-    }
-
-    /// Whether a triangle looks the way of the face it was cut from.
-    pub(super) fn is_sound(&self, patch: &Patch<'_>, corners: &[u32; 3], origin: Origin) -> bool {
-        let (x, y) = self.axes(origin);
-        let [a, b, c] = corners.map(|point| {
-            let position = patch.position(point);
-            [position[x], position[y]]
-        });
-        orient2d(a, b, c) == Sign::Positive
     }
 
     fn group(&self, origin: Origin) -> u32 {
@@ -58,43 +47,15 @@ impl Planes<'_> {
             && !collinear(&other[0], &other[1], &other[2])
     }
 
-    /// Nodes on edges between two mergeable faces of their own operand: they lie inside a plane face or on a straight
-    /// crease. Ascending point numbers.
-    pub(super) fn removable_nodes(&self, cutter: &Cutter<'_>) -> Vec<u32> {
-        const NONE: u32 = u32::MAX;
-        let nodes = &cutter.crossings.nodes;
-        let mut beside = vec![[NONE; 2]; nodes.len()];
-        for segment in &cutter.crossings.segments {
-            for node in [segment.tail, segment.head] {
-                let side = self.operands.side_of(nodes[node as usize].low);
-                let triangle = segment.triangles[side];
-                let slots = &mut beside[node as usize];
-                let slot = usize::from(slots[0] != NONE);
-                slots[slot] = triangle;
-            }
-        }
-        let first_node = self.operands.vertex_count();
-        (0..nodes.len())
-            .filter(|&node| {
-                let side = self.operands.side_of(nodes[node].low);
-                let [t, u] = beside[node];
-                if t == NONE || u == NONE {
-                    return false;
-                }
-                // Nearly always the two faces are visibly not coplanar.
-                let [a, b, c] = self.operands.corners(side, t).map(|corner| corner.position);
-                let visible = self.operands.corners(side, u).iter().any(|d| {
-                    let (determinant, bound) = orient3d_filter(&a, &b, &c, &d.position);
-                    determinant.abs() > bound
-                });
-                !visible
-                    && self.mergeable(
-                        Origin { operand: side as u32, triangle: t, reversed: false },
-                        Origin { operand: side as u32, triangle: u, reversed: false },
-                    )
-            })
-            .map(|node| first_node + node as u32)
-            .collect()
+    /// Whether two triangles of an operand are mergeable; fast where they are visibly not coplanar, as nearly all are.
+    pub(super) fn merge(&self, side: usize, t: u32, u: u32) -> bool {
+        let [a, b, c] = self.operands.corners(side, t).map(|corner| corner.position);
+        let visible = self.operands.corners(side, u).iter().any(|d| {
+            let (determinant, bound) = orient3d_filter(&a, &b, &c, &d.position);
+            determinant.abs() > bound
+        });
+        let origin = |triangle: u32| Origin { operand: side as u32, triangle, reversed: false };
+        !visible && self.mergeable(origin(t), origin(u))
     }
 }
 
