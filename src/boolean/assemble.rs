@@ -6,6 +6,7 @@ use super::identify::Identification;
 use super::multiplicity::Part;
 use super::operands::Operands;
 use super::outcome::Origin;
+use crate::Error;
 
 /// A triangle that cutting made or changed.
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +14,8 @@ pub(super) struct NewTriangle {
     /// Points: vertices by number, then nodes, then copies.
     pub(super) corners: [u32; 3],
     pub(super) origin: Origin,
+    /// Whether the corners lay on one line before they were rounded.
+    pub(super) flat: bool,
 }
 
 /// The arrays of a result.
@@ -25,6 +28,25 @@ pub(super) struct Assembled {
     pub(super) ties: u64,
     /// Whether rounding turned over some triangle.
     pub(super) has_inverted: bool,
+}
+
+impl Assembled {
+    /// Both, as bodies of their own.
+    pub(super) fn beside(mut self, other: Self) -> Result<Self, Error> {
+        if self.triangles.is_empty() {
+            return Ok(other);
+        }
+        let vertices = self.positions.len() + other.positions.len();
+        if vertices > u32::MAX as usize {
+            return Err(Error::TooLarge { what: format!("{vertices} vertices in one result") });
+        }
+        let offset = self.positions.len() as u32;
+        self.positions.extend(other.positions);
+        self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|v| v + offset)));
+        self.origins.extend(other.origins);
+        self.has_inverted |= other.has_inverted;
+        Ok(self)
+    }
 }
 
 /// What the arrays are made of.

@@ -15,6 +15,7 @@ use super::identify::Identification;
 use super::multiplicity::Part;
 use super::operands::Operands;
 use super::plane_faces::PlaneFaces;
+use super::unrounded::ExtraCrossing;
 use crate::Error;
 use crate::parallel::Runner;
 use crate::polygon::{Shape, Triangulator};
@@ -44,6 +45,8 @@ pub(super) struct Cutter<'a> {
     pub(super) operands: &'a Operands<'a>,
     pub(super) crossings: &'a Crossings,
     pub(super) edges: &'a CutEdges,
+    /// Crossings after the nodes.
+    pub(super) extra: &'a [ExtraCrossing],
     pub(super) faces: &'a [CutFaces; 2],
     pub(super) plane_faces: &'a PlaneFaces,
     /// Winding numbers of the vertices, by side.
@@ -137,15 +140,27 @@ impl Cutter<'_> {
     /// Appends the directed edges that bound the kept region of a face, to their left; each as often as it counts. (Those
     /// of a plane face's members add up.)
     pub(super) fn add_boundary(&self, part: Part, face: &CutFace, boundary: &mut Vec<[u32; 2]>) {
+        self.for_boundary(part, face, |edge, _, count| {
+            boundary.extend(std::iter::repeat_n(edge, count as usize));
+        });
+    }
+
+    /// Calls `add` for every directed edge that bounds the kept region of a face, with the side of the face it is a part of,
+    /// if it is one, and how often it counts.
+    pub(super) fn for_boundary(
+        &self,
+        part: Part,
+        face: &CutFace,
+        mut add: impl FnMut([u32; 2], Option<usize>, u32),
+    ) {
         let first_node = self.operands.vertex_count();
         let first_vertex = self.operands.first_vertex(part.side);
         let winding = |vertex: u32| self.windings[part.side][(vertex - first_vertex) as usize];
-        let mut add = |from: u32, to: u32, count: i32| {
+        let mut add = |from: u32, to: u32, side: Option<usize>, count: i32| {
             let (from, to) =
                 (self.identification.representative(from), self.identification.representative(to));
-            if from != to {
-                let edge = if count > 0 { [from, to] } else { [to, from] };
-                boundary.extend(std::iter::repeat_n(edge, count.unsigned_abs() as usize));
+            if from != to && count != 0 {
+                add(if count > 0 { [from, to] } else { [to, from] }, side, count.unsigned_abs());
             }
         };
         let corners =
@@ -153,23 +168,23 @@ impl Cutter<'_> {
         for k in 0..3 {
             let (u, v) = (corners[k], corners[(k + 1) % 3]);
             if face.edges[k] == UNCUT {
-                add(u, v, part.sign() * part.multiplicity(winding(u)));
+                add(u, v, Some(k), part.sign() * part.multiplicity(winding(u)));
                 continue;
             }
             let (low, high) = (u.min(v), u.max(v));
             let direction = if u == low { part.sign() } else { -part.sign() };
             let (mut from, mut around) = (low, winding(low));
             for &node in self.edges.nodes(face.edges[k]) {
-                add(from, first_node + node, direction * part.multiplicity(around));
+                add(from, first_node + node, Some(k), direction * part.multiplicity(around));
                 around += if self.crossings.nodes[node as usize].leaves { -1 } else { 1 };
                 from = first_node + node;
             }
-            add(from, high, direction * part.multiplicity(around));
+            add(from, high, Some(k), direction * part.multiplicity(around));
         }
         for &number in self.faces[part.side].segments(face) {
             let segment = &self.crossings.segments[number as usize];
             if let Some(head) = self.plane_faces.run_end(number, segment.head) {
-                add(first_node + segment.tail, first_node + head, part.segment_direction());
+                add(first_node + segment.tail, first_node + head, None, part.segment_direction());
             }
         }
     }

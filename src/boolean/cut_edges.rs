@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use super::crossings::{Crossing, Crossings};
 use super::operands::{Corner, Operands};
 use super::plane_faces::PlaneFaces;
+use super::unrounded::ExtraCrossing;
 use crate::Error;
 use crate::exact::{Sign, order, position};
 use crate::parallel::Runner;
@@ -20,7 +21,7 @@ pub(super) struct CutEdge {
 }
 
 /// All cut edges.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct CutEdges {
     pub(super) edges: Vec<CutEdge>,
     /// Node numbers, edge by edge, from the edge's low end to its high end.
@@ -98,6 +99,13 @@ impl CutEdges {
     pub(super) fn find(&self, low: u32, high: u32) -> Option<u32> {
         let place = self.edges.binary_search_by_key(&(low, high), |edge| (edge.low, edge.high)).ok()?;
         Some(place as u32)
+    }
+
+    /// The same with points after the nodes.
+    pub(super) fn with_more(&self, crossings: &[ExtraCrossing]) -> Self {
+        let mut more = self.clone();
+        more.positions.extend(crossings.iter().map(|crossing| crossing.position));
+        more
     }
 
     /// The nodes of an edge, from its low end to its high end.

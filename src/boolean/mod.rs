@@ -4,7 +4,7 @@
 //! determinant of perturbed input vertices, so the operands are always in general position and there is one kind of event:
 //! an edge of one crosses a triangle of the other. The result is a sum of pieces of faces with integer multiplicities
 //! (`multiplicity`) whose boundary cancels identically; what perturbation kept apart at the same place is identified
-//! afterwards, exactly. The pipeline is `pair::combine`, one function per step:
+//! afterwards, exactly, and where it cannot decide, faces of one plane are added up in it (`walls`). The pipeline is `pair::combine`, one function per step:
 //!
 //! 1. `overlap`, `candidates`: pairs of triangles that may meet;
 //! 2. `crossings`: which do, and where (`cut_edges`: in which order along each edge, correctly rounded);
@@ -40,6 +40,7 @@ mod refined_boxes;
 mod self_crossings;
 mod sheets;
 mod tidy;
+mod unrounded;
 mod walls;
 mod winding;
 

@@ -9,7 +9,7 @@
 //! | intersection | w | w |
 //! | difference A - B | 1 - w | w, reversed |
 //!
-//! (A symmetric difference is made of the two differences.)
+//! A symmetric difference is the sum of both differences: pieces count `1 - w` and, reversed, `w`, which is `1 - 2w`.
 //! For operands that do not cross themselves, every multiplicity is 0 or 1. Where rounded surfaces cross themselves by a
 //! hair other values appear, and the result is closed all the same.
 
@@ -58,15 +58,26 @@ impl Part {
     }
 }
 
-/// The parts of a result.
-pub(super) fn parts(operation: Operation) -> [Part; 2] {
+/// The parts of a result; for a symmetric difference those of A - B, then those of B - A.
+pub(super) fn parts(operation: Operation) -> &'static [Part] {
     use Keep::{Inside, Outside};
-    let part = |side, keep, reversed| Part { side, keep, reversed };
+    const fn part(side: usize, keep: Keep, reversed: bool) -> Part {
+        Part { side, keep, reversed }
+    }
     match operation {
-        Operation::Union => [part(0, Outside, false), part(1, Outside, false)],
-        Operation::Intersection => [part(0, Inside, false), part(1, Inside, false)],
-        Operation::Difference => [part(0, Outside, false), part(1, Inside, true)],
-        Operation::SymmetricDifference => unreachable!("it is made of two differences"),
+        Operation::Union => const { &[part(0, Outside, false), part(1, Outside, false)] },
+        Operation::Intersection => const { &[part(0, Inside, false), part(1, Inside, false)] },
+        Operation::Difference => const { &[part(0, Outside, false), part(1, Inside, true)] },
+        Operation::SymmetricDifference => {
+            const {
+                &[
+                    part(0, Outside, false),
+                    part(1, Inside, true),
+                    part(1, Outside, false),
+                    part(0, Inside, true),
+                ]
+            }
+        }
     }
 }
 
@@ -74,20 +85,21 @@ pub(super) fn parts(operation: Operation) -> [Part; 2] {
 mod tests {
     use super::*;
 
+    const ALL: [Operation; 4] =
+        [Operation::Union, Operation::Intersection, Operation::Difference, Operation::SymmetricDifference];
+
     #[test]
     fn segments_cancel_between_the_operands() {
-        for operation in [Operation::Union, Operation::Intersection, Operation::Difference] {
-            assert_eq!(
-                parts(operation).into_iter().map(Part::segment_direction).sum::<i32>(),
-                0,
-                "{operation:?}"
-            );
+        for operation in ALL {
+            for body in parts(operation).chunks(2) {
+                assert_eq!(body.iter().map(|part| part.segment_direction()).sum::<i32>(), 0, "{operation:?}");
+            }
         }
     }
 
     #[test]
     fn a_step_in_multiplicity_is_the_flow_along_the_segment() {
-        for operation in [Operation::Union, Operation::Intersection, Operation::Difference] {
+        for operation in ALL {
             for part in parts(operation) {
                 // Left of tail -> head on A lies B's outside: one less winding than to the right; mirrored on B.
                 let (left, right) = if part.side == 0 { (0, 1) } else { (1, 0) };

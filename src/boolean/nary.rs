@@ -40,29 +40,6 @@ impl<'a> Partial<'a> {
     fn centre(&self) -> [f64; 3] {
         self.solid.bounds().map_or([0.0; 3], |b| std::array::from_fn(|k| 0.5 * b.low[k] + 0.5 * b.high[k]))
     }
-
-    /// Both, as bodies of their own.
-    fn beside<'b>(self, other: Partial<'_>) -> Result<Partial<'b>, Error> {
-        let [first, second] = [self.solid.mesh(), other.solid.mesh()];
-        let vertices = first.positions.len() + second.positions.len();
-        if vertices > u32::MAX as usize {
-            return Err(Error::TooLarge { what: format!("{vertices} vertices in one result") });
-        }
-        let offset = first.positions.len() as u32;
-        let positions = [first.positions.as_slice(), &second.positions].concat();
-        let moved = second.triangles.iter().map(|corners| corners.map(|v| v + offset));
-        let triangles = first.triangles.iter().copied().chain(moved).collect();
-        let origins = |origins: &Origins, mesh: &Mesh| -> Vec<Origin> {
-            (0..mesh.triangles.len() as u32).map(|t| origins.of(t)).collect()
-        };
-        Ok(Partial {
-            origins: Origins::List([origins(&self.origins, first), origins(&other.origins, second)].concat()),
-            solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(positions, triangles))),
-            groups: [self.groups, other.groups].concat(),
-            ties: self.ties + other.ties,
-            may_be_inverted: self.may_be_inverted || other.may_be_inverted,
-        })
-    }
 }
 
 /// Where triangles came from: those of an operand itself need no list.
@@ -167,30 +144,15 @@ impl Engine<'_> {
         places.into_iter().flatten().next().ok_or_else(no_operands)
     }
 
-    /// The two differences share no inside and touch in the curve, so they are put beside each other. Only where faces of A
-    /// and B touch from opposite sides do walls have to vanish; elsewhere a union would see nothing but crossings by
-    /// rounding.
-    fn symmetric_difference<'a>(&self, a: &Partial<'_>, b: &Partial<'_>) -> Result<Partial<'a>, Error> {
-        let (left, right) =
-            (self.combine(Operation::Difference, a, b)?, self.combine(Operation::Difference, b, a)?);
-        if pair::touch_from_opposite_sides(&a.solid, &b.solid, self.runner)? {
-            self.combine(Operation::Union, &left, &right)
-        } else {
-            left.beside(right)
-        }
-    }
-
     fn combine<'a>(
         &self,
         operation: Operation,
         a: &Partial<'_>,
         b: &Partial<'_>,
     ) -> Result<Partial<'a>, Error> {
-        if operation == Operation::SymmetricDifference {
-            return self.symmetric_difference(a, b);
-        }
         let settings = Settings {
-            swell: operation == Operation::Union && self.options.contact == Contact::Fuse,
+            fuse: self.options.contact == Contact::Fuse,
+            everywhere: operation == Operation::SymmetricDifference,
             remove_vertices: self.options.remove_vertices,
             groups: [&a.groups, &b.groups],
         };

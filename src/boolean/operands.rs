@@ -5,7 +5,8 @@
 //! the vertices of A come first, then those of B, then points made on the way (ends of rays). `D(T; x)` is `orient3d` of
 //! triangle T and point x; with T counter-clockwise seen from outside it is positive inside. All points are perturbed (see
 //! [`crate::exact::perturbed`]): only A moves to first order, along its normals, outwards for a union and inwards for an
-//! intersection or a difference, so that coincident faces resolve as regularised set operations want it.
+//! intersection or a difference, so that coincident faces resolve as regularised set operations want it. (Outwards for a
+//! symmetric difference, where they are added up: see `walls`.)
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};

@@ -10,7 +10,7 @@ use super::cut::Cutter;
 use super::cut_edges::CutEdges;
 use super::cut_faces::CutFaces;
 use super::identify::Identification;
-use super::multiplicity;
+use super::multiplicity::{self, Part};
 use super::operands::{Operand, Operands};
 use super::outcome::Origin;
 use super::overlap;
@@ -33,15 +33,17 @@ const MOST_VERTICES: usize = 1 << 31;
 /// Settings of one combination.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings<'a> {
-    /// Whether A swells by an infinitesimal (else it shrinks): touching parts fuse.
-    pub(super) swell: bool,
+    /// Whether bodies that touch become one.
+    pub(super) fuse: bool,
+    /// Whether bodies that touch themselves in parts of edges come apart there too.
+    pub(super) everywhere: bool,
     /// Whether vertices that nobody needs are removed.
     pub(super) remove_vertices: bool,
     /// The result's group of each triangle of A and of B; empty if there are no groups.
     pub(super) groups: [&'a [u32]; 2],
 }
 
-/// Combines two solids by an operation that keeps one part of each surface.
+/// Combines two solids.
 pub(super) fn combine(
     operation: Operation,
     a: &Solid,
@@ -60,7 +62,7 @@ pub(super) fn combine(
     let outcodes = [overlap::outcodes(&sides[0], &bounds[1]), overlap::outcodes(&sides[1], &bounds[0])];
     let near = [0, 1].map(|side| overlap::near_triangles(&sides[side], &outcodes[side]));
     let largest = largest_coordinate(&bounds);
-    let operands = Operands::new(sides, if settings.swell { 1 } else { -1 }, largest, near);
+    let operands = Operands::new(sides, sense(operation, settings.fuse), largest, near);
     runner.control.check()?;
 
     let candidates = Candidates::new(&operands, overlap::intersection(&bounds[0], &bounds[1]), runner)?;
@@ -86,7 +88,8 @@ pub(super) fn combine(
             runner,
         )?;
     }
-    let sheets = walls::touching_sheets(&operands, &candidates, &parts, runner)?;
+    let fuse = operation == Operation::SymmetricDifference && settings.fuse;
+    let sheets = walls::touching_sheets(&operands, &candidates, parts, runner)?;
     drop(candidates);
     for side in 0..2 {
         let of_side = sheets.iter().flatten().filter(|face| face.0 == side).map(|face| face.1);
@@ -104,72 +107,91 @@ pub(super) fn combine(
     let identification =
         Identification::new(&operands, &crossings, &edges, &faces, &plane_faces, &sheets, runner)?;
     let rounding = ROUNDING_ULPS * f64::EPSILON * largest;
-    let cutter = Cutter {
-        operands: &operands,
-        crossings: &crossings,
-        edges: &edges,
-        faces: &faces,
-        plane_faces: &plane_faces,
-        windings: &windings,
-        identification: &identification,
-        rounding,
-    };
-    let (mut pieces, mut has_inverted, mut has_slivers) = (Vec::new(), false, false);
-    let mut done = FxHashSet::default();
-    for sheet in &sheets {
-        if let Some(left) = walls::add_up(&cutter, &parts, sheet) {
-            pieces.extend(left);
-            done.extend(sheet);
+    // The halves of a symmetric difference share no inside and touch in the curve. Only where faces touch do walls between
+    // them have to vanish.
+    let together = if fuse && !sheets.is_empty() { parts.len() } else { 2 };
+    let mut result = Assembled::default();
+    for body in parts.chunks(together) {
+        let mut cutter = Cutter {
+            operands: &operands,
+            crossings: &crossings,
+            edges: &edges,
+            extra: &[],
+            faces: &faces,
+            plane_faces: &plane_faces,
+            windings: &windings,
+            identification: &identification,
+            rounding,
+        };
+        let sums = walls::add_up(&cutter, body, &sheets, runner)?;
+        let with_more;
+        if !sums.crossings.is_empty() {
+            with_more = edges.with_more(&sums.crossings);
+            cutter.edges = &with_more;
+            cutter.extra = &sums.crossings;
         }
+        let walls::Sums { pieces, done, .. } = &sums;
+        result = result.beside(self::body(&cutter, body, pieces, done, settings, runner)?)?;
     }
-    for &part in &parts {
-        let cut = cutter.cut(part, &done, runner)?;
+    result.ties = operands.ties();
+    Ok(result)
+}
+
+/// The sum of some parts of the result, tidied.
+fn body(
+    cutter: &Cutter<'_>,
+    parts: &[Part],
+    added_up: &[NewTriangle],
+    done: &FxHashSet<(usize, u32)>,
+    settings: Settings<'_>,
+    runner: Runner<'_>,
+) -> Result<Assembled, Error> {
+    let (mut pieces, mut has_inverted, mut has_slivers) = (added_up.to_vec(), false, !done.is_empty());
+    for &part in parts {
+        let cut = cutter.cut(part, done, runner)?;
         has_inverted |= cut.has_inverted;
         has_slivers |= cut.has_slivers;
         pieces.extend(cut.pieces.into_iter().map(|piece| NewTriangle {
             corners: piece.corners,
             origin: Origin { operand: part.side as u32, triangle: piece.triangle, reversed: part.reversed },
+            flat: false,
         }));
     }
     let tidy_settings = tidy::Settings {
         remove_vertices: settings.remove_vertices,
-        rounding,
-        always: has_slivers || !sheets.is_empty(),
+        rounding: cutter.rounding,
+        everywhere: settings.everywhere,
+        always: has_slivers,
     };
-    let tidied = tidy::tidy(&cutter, &planes, &parts, &pieces, &tidy_settings, runner)?;
+    let planes = Planes { operands: cutter.operands, groups: settings.groups };
+    let tidied = tidy::tidy(cutter, &planes, parts, &pieces, &tidy_settings, runner)?;
     let (new, replaced, copies) = match tidied {
         Some(tidied) => (tidied.new, Some(tidied.replaced), tidied.copies),
         None => (pieces, None, Vec::new()),
     };
     runner.control.check()?;
     let ingredients = Ingredients {
-        operands: &operands,
-        parts: &parts,
-        faces: &faces,
-        windings: &windings,
-        identification: &identification,
-        edges: &edges,
+        operands: cutter.operands,
+        parts,
+        faces: cutter.faces,
+        windings: cutter.windings,
+        identification: cutter.identification,
+        edges: cutter.edges,
         new: &new,
         replaced: replaced.as_ref(),
         copies: &copies,
     };
-    Ok(Assembled { ties: operands.ties(), has_inverted, ..ingredients.assemble() })
+    Ok(Assembled { has_inverted, ..ingredients.assemble() })
 }
 
-/// Whether some faces of two solids may touch each other from opposite sides of one plane: their boxes meet.
-pub(super) fn touch_from_opposite_sides(a: &Solid, b: &Solid, runner: Runner<'_>) -> Result<bool, Error> {
-    let (sides, bounds) = (sides(a, b), bounds(a, b));
-    let near = [0, 1].map(|side| {
-        overlap::near_triangles(&sides[side], &overlap::outcodes(&sides[side], &bounds[1 - side]))
-    });
-    let operands = Operands::new(sides, 1, largest_coordinate(&bounds), near);
-    let candidates = Candidates::new(&operands, overlap::intersection(&bounds[0], &bounds[1]), runner)?;
-    let touching = candidates.visit(runner, |s, t, found: &mut Vec<()>| {
-        if found.is_empty() && walls::touch(&operands, s, t) == Some(true) {
-            found.push(());
-        }
-    })?;
-    Ok(!touching.is_empty())
+/// Whether A swells by an infinitesimal (+1) or shrinks (-1).
+fn sense(operation: Operation, fuse: bool) -> i32 {
+    match operation {
+        Operation::Union if fuse => 1,
+        // Faces that touch, whichever way they look, then cut one another, and can be added up.
+        Operation::SymmetricDifference => 1,
+        _ => -1,
+    }
 }
 
 fn sides<'a>(a: &'a Solid, b: &'a Solid) -> [Operand<'a>; 2] {

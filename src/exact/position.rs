@@ -76,8 +76,21 @@ pub fn crossing_filter(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> 
 /// If the perturbed points do not lie on different sides (the two heights then may agree identically).
 #[must_use]
 pub fn crossing(p: &PerturbedPoint, q: &PerturbedPoint, triangle: [&PerturbedPoint; 3]) -> [f64; 3] {
+    let points = [p, q, triangle[0], triangle[1], triangle[2]];
+    let lattice = Lattice::of(points.into_iter().flat_map(|point| &point.position));
+    let (numerators, denominator) = homogeneous(p, q, triangle, lattice);
+    numerators.map(|numerator| numerator.quotient(&denominator, i64::from(lattice.exponent)) + 0.0)
+}
+
+/// The crossing point of edge `(p, q)` with the plane of the triangle: three numerators, in units of the lattice, and their
+/// denominator.
+fn homogeneous(
+    p: &PerturbedPoint,
+    q: &PerturbedPoint,
+    triangle: [&PerturbedPoint; 3],
+    lattice: Lattice,
+) -> ([Integer; 3], Integer) {
     let [a, b, c] = triangle;
-    let lattice = Lattice::of([p, q, a, b, c].into_iter().flat_map(|point| &point.position));
     // Nearly always the heights of the unperturbed ends tell.
     let plain = |x: &PerturbedPoint| {
         let [u, v, w] = [a, b, c].map(|point| -> [Integer; 3] {
@@ -95,12 +108,44 @@ pub fn crossing(p: &PerturbedPoint, q: &PerturbedPoint, triangle: [&PerturbedPoi
     } else {
         (height_p, height_q)
     };
-    let total = height_p.minus(&height_q);
-    std::array::from_fn(|k| {
-        let numerator = height_p
+    let numerators = std::array::from_fn(|k| {
+        height_p
             .times(&lattice.integer(q.position[k]))
-            .minus(&height_q.times(&lattice.integer(p.position[k])));
-        numerator.quotient(&total, i64::from(lattice.exponent)) + 0.0
+            .minus(&height_q.times(&lattice.integer(p.position[k])))
+    });
+    (numerators, height_p.minus(&height_q))
+}
+
+/// A point as it was before it was rounded.
+#[derive(Clone, Debug)]
+pub(crate) enum Unrounded {
+    /// A given point.
+    Given([f64; 3]),
+    /// The crossing point of an edge with the plane of a triangle; see [`crossing`].
+    Crossing(Box<([PerturbedPoint; 2], [PerturbedPoint; 3])>),
+}
+
+/// Whether three points lie on one line, exactly.
+///
+/// # Panics
+/// As [`crossing`].
+pub(crate) fn on_one_line(points: &[Unrounded; 3]) -> bool {
+    let coordinates = points.iter().flat_map(|point| match point {
+        Unrounded::Given(position) => vec![position],
+        Unrounded::Crossing(of) => of.0.iter().chain(&of.1).map(|p| &p.position).collect(),
+    });
+    let lattice = Lattice::of(coordinates.flatten());
+    let [(x, w), (y, v), (z, u)] = points.each_ref().map(|point| match point {
+        Unrounded::Given(position) => (position.map(|x| lattice.integer(x)), Integer::from(1)),
+        Unrounded::Crossing(of) => homogeneous(&of.0[0], &of.0[1], of.1.each_ref(), lattice),
+    });
+    let along = |y: &[Integer; 3], v: &Integer| -> [Integer; 3] {
+        std::array::from_fn(|k| y[k].times(&w).minus(&x[k].times(v)))
+    };
+    let (first, second) = (along(&y, &v), along(&z, &u));
+    (0..3).all(|k| {
+        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
+        first[l].times(&second[m]) == first[m].times(&second[l])
     })
 }
 
@@ -184,6 +229,52 @@ mod tests {
             }
         }
         assert!(tried > 1_000 && decided * 100 > tried * 99, "{decided} of {tried}");
+    }
+
+    #[test]
+    fn crossings_with_one_line_lie_on_it_before_they_are_rounded() {
+        let mut rng = ChaCha8Rng::seed_from_u64(10);
+        let (mut seen_rounded_off, mut seen_beside) = (false, false);
+        for _ in 0..500 {
+            let mut point = || unperturbed(std::array::from_fn(|_| f64::from(rng.random_range(-20i32..21))));
+            let line = [point(), point()];
+            // Planes through the line, crossed by edges of another plane through it: all crossings lie on the line.
+            let [beside, above] = [point(), point()];
+            let other = |p: &PerturbedPoint, s: f64| {
+                unperturbed(std::array::from_fn(|k| {
+                    p.position[k] + s * (above.position[k] - line[0].position[k])
+                }))
+            };
+            let crossing_at = |t: f64, apex: PerturbedPoint| {
+                let at = |s: f64| -> [f64; 3] {
+                    std::array::from_fn(|k| {
+                        let (p, q) = (line[0].position[k], line[1].position[k]);
+                        p + (t + s) * (q - p)
+                    })
+                };
+                let edge = [other(&unperturbed(at(-0.5)), 1.0), other(&unperturbed(at(2.0)), -2.0)];
+                let height = |p: &PerturbedPoint| {
+                    crate::exact::orient3d(&line[0].position, &line[1].position, &apex.position, &p.position)
+                };
+                let (x, y) = (height(&edge[0]), height(&edge[1]));
+                (x != Sign::Zero && y != Sign::Zero && x != y)
+                    .then(|| Unrounded::Crossing(Box::new((edge, [line[0], line[1], apex]))))
+            };
+            let (Some(x), Some(y)) = (crossing_at(1.0, beside), crossing_at(3.0, beside)) else { continue };
+            let end = Unrounded::Given(line[0].position);
+            assert!(on_one_line(&[end.clone(), x.clone(), y.clone()]));
+            let rounded = |point: &Unrounded| match point {
+                Unrounded::Given(position) => *position,
+                Unrounded::Crossing(of) => crossing(&of.0[0], &of.0[1], of.1.each_ref()),
+            };
+            seen_rounded_off |= !crate::exact::collinear(&rounded(&end), &rounded(&x), &rounded(&y));
+            let near = Unrounded::Given(rounded(&y).map(|coordinate| coordinate + 1.0));
+            if !crate::exact::collinear(&rounded(&end), &line[1].position, &rounded(&near)) {
+                seen_beside = true;
+                assert!(!on_one_line(&[end, x, near]));
+            }
+        }
+        assert!(seen_rounded_off && seen_beside);
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! Constrained Delaunay triangulation: of big polygons, and of whatever edges bound, by winding number.
+//! Constrained Delaunay triangulation: of big polygons, and between edges by winding number.
 
 use rustc_hash::FxHashMap;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use crate::exact::{Sign, orient2d};
+use super::winding::{CountedEdge, CountedTriangle};
 
 /// A vertex that remembers its index.
 struct Vertex {
@@ -17,10 +17,6 @@ impl HasPosition for Vertex {
         self.position
     }
 }
-
-/// An edge, or a triangle, and how often it counts.
-type CountedEdge = ([u32; 2], i32);
-type CountedTriangle = ([u32; 3], i32);
 
 /// Appends a triangulation of the region to the left of the rings and returns true; or returns false and appends nothing
 /// where the shape does not allow one (coincident projections, crossing edges, a coordinate out of range).
@@ -44,89 +40,9 @@ fn attempt(points: &[[f64; 2]], rings: &[&[u32]]) -> Option<Vec<[u32; 3]>> {
         .then(|| found.into_iter().map(|(triangle, _)| triangle).collect())
 }
 
-/// Vertices up to so many units in the last place of the largest coordinate from an edge may lie on it: each of the three
-/// points is off by half a unit in each coordinate.
-const ROUNDING_ULPS: f64 = 4.0;
-/// Rounds of splitting edges at vertices. Splitting moves an edge by no more than rounding, so few are left after the first.
-const ROUNDS: usize = 6;
-
-/// Triangulates what edges, each with a count, wind round: triangles (counter-clockwise) with their winding numbers. The
-/// boundary of their sum is the sum of the edges, exactly: where an edge runs through a vertex that is not its end, there
-/// are triangles without area between it and the chain of edges in its place. Where edges cross because their ends were
-/// rounded, a vertex so near an edge counts as lying on it. `None` for edges that cross in earnest.
-pub(crate) fn by_winding(points: &[[f64; 2]], edges: &[([u32; 2], i32)]) -> Option<Vec<([u32; 3], i32)>> {
-    let largest = edges
-        .iter()
-        .flat_map(|(edge, _)| edge)
-        .flat_map(|&v| points[v as usize])
-        .fold(0.0f64, |most, x| most.max(x.abs()));
-    let (mut split, mut slivers) = split_at_vertices(points, edges, 0.0);
-    let mut found = between(points, &split);
-    for _ in 0..ROUNDS {
-        if found.is_some() {
-            break;
-        }
-        let (finer, more) = split_at_vertices(points, &split, ROUNDING_ULPS * f64::EPSILON * largest);
-        if more.is_empty() {
-            return None;
-        }
-        split = finer;
-        slivers.extend(more);
-        found = between(points, &split);
-    }
-    let mut found = found?;
-    found.extend(slivers);
-    Some(found)
-}
-
-/// Replaces edges that run through vertices, or pass them no further than `rounding`, by chains of edges, and returns with
-/// them the triangles without area that, together with the chain, bound the same as the edge.
-fn split_at_vertices(
-    points: &[[f64; 2]],
-    edges: &[([u32; 2], i32)],
-    rounding: f64,
-) -> (Vec<CountedEdge>, Vec<CountedTriangle>) {
-    let mut vertices: Vec<u32> = edges.iter().flat_map(|(edge, _)| *edge).collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let mut split = Vec::with_capacity(edges.len());
-    let mut slivers = Vec::new();
-    for &([u, v], count) in edges {
-        let (p, q) = (points[u as usize], points[v as usize]);
-        // Along the axis on which the edge is longer.
-        let k = usize::from((q[1] - p[1]).abs() > (q[0] - p[0]).abs());
-        let along = |x: u32| if q[k] > p[k] { points[x as usize][k] } else { -points[x as usize][k] };
-        let is_on = |x: u32| {
-            let at = points[x as usize];
-            let across = || {
-                let part = (at[k] - p[k]) / (q[k] - p[k]);
-                (at[1 - k] - (p[1 - k] + part * (q[1 - k] - p[1 - k]))).abs()
-            };
-            orient2d(p, q, at) == Sign::Zero || (rounding > 0.0 && across() <= rounding)
-        };
-        let mut on: Vec<u32> = vertices
-            .iter()
-            .copied()
-            .filter(|&x| x != u && x != v && along(u) < along(x) && along(x) < along(v))
-            .filter(|&x| is_on(x))
-            .collect();
-        on.sort_by(|&x, &y| along(x).total_cmp(&along(y)));
-        on.push(v);
-        let mut from = u;
-        for &x in &on {
-            split.push(([from, x], count));
-            if from != u {
-                slivers.push(([u, x, from], count));
-            }
-            from = x;
-        }
-    }
-    (split, slivers)
-}
-
 /// Triangulates the plane between edges that each count a number of times, and returns the counter-clockwise triangles
 /// round which they wind, with the winding number. `None` where the triangulation does not hold every edge as it is.
-fn between(points: &[[f64; 2]], edges: &[([u32; 2], i32)]) -> Option<Vec<([u32; 3], i32)>> {
+pub(super) fn between(points: &[[f64; 2]], edges: &[CountedEdge]) -> Option<Vec<CountedTriangle>> {
     // How often an edge counts from its lower vertex to its higher one.
     let mut counts: FxHashMap<(u32, u32), i32> = FxHashMap::default();
     for &([u, v], count) in edges {

@@ -9,8 +9,9 @@ mod delaunay;
 mod ears;
 mod holes;
 mod loops;
+mod winding;
 
-pub(crate) use delaunay::by_winding;
+pub(crate) use winding::{Edge, Found, by_winding, cross_properly};
 
 /// From this many vertices a constrained Delaunay triangulation replaces ear clipping.
 const DELAUNAY_FROM: usize = 40;
@@ -60,11 +61,13 @@ impl Triangulator {
             return shape;
         }
         // Loops that cross or touch in ways that tracing cannot tell: by winding number instead.
-        let counted: Vec<([u32; 2], i32)> = edges.iter().map(|&edge| (edge, 1)).collect();
-        let Some(found) = by_winding(points, &counted) else { return Shape::Folded };
+        let edges: Vec<Edge> = edges.iter().map(|&ends| Edge { ends, count: 1, line: 0 }).collect();
+        let Some(found) = by_winding(&mut points.to_vec(), &edges, |_, _, _| None) else {
+            return Shape::Folded;
+        };
         triangles.truncate(before);
         let mut shape = Shape::Sound;
-        for ([a, b, c], winding) in found {
+        for ([a, b, c], winding) in found.triangles.into_iter().chain(found.slivers) {
             let corners = if winding > 0 { [a, b, c] } else { [a, c, b] };
             shape = shape.max(ears::shape_of(points, corners));
             triangles.extend(std::iter::repeat_n(corners, winding.unsigned_abs() as usize));
@@ -229,12 +232,58 @@ mod tests {
     fn opposite_regions_cancel_by_winding() {
         // A square, and half of it turned over with a vertex more on its border: the other half is left.
         let points = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 0.0], [1.0, 2.0]];
-        let mut edges: Vec<([u32; 2], i32)> =
-            [[0, 4], [4, 1], [1, 2], [2, 5], [5, 3], [3, 0]].map(|e| (e, 1)).to_vec();
-        edges.extend([[0, 4], [4, 5], [5, 3], [3, 0]].map(|e| (e, -1)));
-        let found = by_winding(&points, &edges).expect("a sound shape");
-        assert_eq!(found.len(), 2);
-        assert!(found.iter().all(|(t, winding)| *winding == 1 && area(&points, t) == 1.0));
+        let edge = |ends: [u32; 2], count: i32| Edge { ends, count, line: 0 };
+        let mut edges: Vec<Edge> =
+            [[0, 4], [4, 1], [1, 2], [2, 5], [5, 3], [3, 0]].map(|e| edge(e, 1)).to_vec();
+        edges.extend([[0, 4], [4, 5], [5, 3], [3, 0]].map(|e| edge(e, -1)));
+        let found = by_winding(&mut points.to_vec(), &edges, |_, _, _| None).expect("a sound shape");
+        assert_eq!(found.triangles.len(), 2);
+        assert!(found.triangles.iter().all(|(t, winding)| *winding == 1 && area(&points, t) == 1.0));
+    }
+
+    #[test]
+    fn crossing_edges_get_a_vertex() {
+        // A square less one that is moved by half its side: edges cross in two points that are not given.
+        let square = |c: f64| [[c, c], [c + 2.0, c], [c + 2.0, c + 2.0], [c, c + 2.0]];
+        let mut points = [square(0.0), square(1.0)].concat();
+        let edges: Vec<Edge> = (0..8)
+            .map(|i| Edge {
+                ends: ring(i / 4 * 4, 4)[i as usize % 4],
+                count: if i < 4 { 1 } else { -1 },
+                line: i,
+            })
+            .collect();
+        assert!(by_winding(&mut points, &edges, |_, _, _| None).is_none(), "no vertex, no sum");
+        let found = by_winding(&mut points, &edges, |x, y, points| {
+            // Of a horizontal and a vertical edge.
+            let is_upright = |edge: &Edge| edge.line % 2 == 1;
+            let (upright, level) = if is_upright(x) { (x, y) } else { (y, x) };
+            assert!(is_upright(upright) && !is_upright(level));
+            let crossing = [points[upright.ends[0] as usize][0], points[level.ends[0] as usize][1]];
+            points.push(crossing);
+            Some(points.len() as u32 - 1)
+        })
+        .expect("two crossings");
+        assert_eq!(points.len(), 10);
+        let area_of = |sign: i32| -> f64 {
+            let counted = found.triangles.iter().filter(|(_, winding)| winding.signum() == sign);
+            counted.map(|(t, winding)| area(&points, t) * f64::from(winding.abs())).sum()
+        };
+        assert_eq!((area_of(1), area_of(-1)), (3.0, 3.0));
+        let directed: Vec<[u32; 2]> = edges
+            .iter()
+            .map(|edge| if edge.count > 0 { edge.ends } else { [edge.ends[1], edge.ends[0]] })
+            .collect();
+        let all: Vec<[u32; 3]> = found
+            .triangles
+            .iter()
+            .chain(&found.slivers)
+            .flat_map(|&([a, b, c], winding)| {
+                let corners = if winding > 0 { [a, b, c] } else { [a, c, b] };
+                std::iter::repeat_n(corners, winding.unsigned_abs() as usize)
+            })
+            .collect();
+        assert_complete(&directed, &all);
     }
 
     #[test]
@@ -242,10 +291,14 @@ mod tests {
         let points = [[0.0, 0.0], [2.0, 0.0], [1.0, 2.0], [1.0, 0.0], [1.5, -1.0]];
         // A triangle with corner 3 on the side of another that does not have it.
         let edges = [[0, 1], [1, 2], [2, 0], [3, 4], [4, 1], [1, 3]];
-        let counted: Vec<([u32; 2], i32)> = edges.iter().map(|&edge| (edge, 1)).collect();
-        let found = by_winding(&points, &counted).expect("a sound shape");
-        let triangles: Vec<[u32; 3]> =
-            found.iter().flat_map(|(t, winding)| std::iter::repeat_n(*t, *winding as usize)).collect();
+        let counted: Vec<Edge> = edges.iter().map(|&ends| Edge { ends, count: 1, line: 0 }).collect();
+        let found = by_winding(&mut points.to_vec(), &counted, |_, _, _| None).expect("a sound shape");
+        let triangles: Vec<[u32; 3]> = found
+            .triangles
+            .iter()
+            .chain(&found.slivers)
+            .flat_map(|(t, winding)| std::iter::repeat_n(*t, *winding as usize))
+            .collect();
         assert_complete(&edges, &triangles);
         assert_eq!(triangles.iter().map(|t| area(&points, t)).sum::<f64>(), 2.5);
     }

@@ -8,7 +8,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::patch::Patch;
 use super::shared_edges::{Edge, split_face};
-use super::zero_area::{identify, is_flat};
+use super::zero_area::{identify, is_exactly_flat};
 use crate::exact::collinear;
 
 /// Rounds: points that become one may leave further triangles without area.
@@ -18,7 +18,7 @@ const ROUNDS: usize = 8;
 pub(super) fn straighten(patch: &mut Patch<'_>) {
     for _ in 0..ROUNDS {
         let flats: Vec<u32> = (0..patch.faces.len() as u32)
-            .filter(|&index| is_flat(patch, index))
+            .filter(|&index| is_exactly_flat(patch, index))
             .filter(|&index| {
                 patch.faces[index as usize].corners.iter().all(|&point| patch.is_complete(point))
             })

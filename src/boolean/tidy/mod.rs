@@ -21,6 +21,7 @@ use super::planes::Planes;
 use crate::Error;
 use crate::parallel::Runner;
 use patch::Patch;
+use rustc_hash::FxHashSet;
 
 /// How often all steps are repeated while triangles without area are left.
 const ROUNDS: usize = 3;
@@ -41,6 +42,8 @@ pub(super) struct Settings {
     pub(super) remove_vertices: bool,
     /// The size of rounding: edges and heights up to this are not worth a triangle.
     pub(super) rounding: f64,
+    /// Whether edges are to be subdivided alike wherever they lie on one another, not only between faces of both operands.
+    pub(super) everywhere: bool,
     /// Whether to look even where nothing points to work.
     pub(super) always: bool,
 }
@@ -65,9 +68,37 @@ pub(super) fn tidy(
     if settings.remove_vertices {
         candidates.extend(cutter.identification.representatives());
     }
-    let mut patch = Patch::new(cutter, parts, pieces);
+    // Where an operand touches itself, triangles may come apart at points that are not wholly in the patch. Then all starts
+    // again with those; each is taken in but once.
+    let mut others = FxHashSet::default();
+    loop {
+        let patch = Patch::new(cutter, parts, pieces, &others);
+        match tidied(patch, cutter, settings, planes, candidates.clone(), runner)? {
+            Ok(tidied) => return Ok(Some(tidied)),
+            Err(pinched) => others.extend(pinched),
+        }
+    }
+}
+
+/// Runs all steps on a patch; or the points that must be wholly in it.
+fn tidied(
+    mut patch: Patch<'_>,
+    cutter: &Cutter<'_>,
+    settings: &Settings,
+    planes: &Planes<'_>,
+    mut candidates: Vec<u32>,
+    runner: Runner<'_>,
+) -> Result<Result<Tidied, FxHashSet<u32>>, Error> {
+    if cutter.operands.ties() > 0 {
+        zero_area::mark_flat(&mut patch, cutter);
+    }
     for round in 0..ROUNDS {
-        separate(&mut patch, cutter, &mut candidates);
+        let copied_from = separate(&mut patch, cutter, settings.everywhere && round == 0);
+        let pinched = patch.pinched(&copied_from);
+        if !pinched.is_empty() {
+            return Ok(Err(pinched));
+        }
+        candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
         runner.control.check()?;
         if settings.remove_vertices {
             zero_area::flip(&mut patch, 0.0);
@@ -79,24 +110,28 @@ pub(super) fn tidy(
             break;
         }
     }
-    Ok(Some(patch.collect()))
+    Ok(Ok(patch.collect()))
 }
 
-/// Makes the patch a 2-manifold without triangles that have no area.
-fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>, candidates: &mut Vec<u32>) {
-    #[cfg(debug_assertions)]
-    let boundary = patch.boundary();
+/// Makes the patch a 2-manifold without triangles that have no area. Returns the points made, with those they are copies
+/// of.
+fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>, everywhere: bool) -> Vec<(u32, u32)> {
     lines::straighten(patch);
     zero_area::split_chain(patch);
     patch.cancel();
+    if everywhere && cutter.operands.ties() > 0 {
+        shared_edges::identify(patch);
+    }
+    #[cfg(debug_assertions)]
+    let boundary = patch.boundary();
     if cutter.operands.ties() > 0 {
-        shared_edges::split(patch, cutter);
+        shared_edges::split(patch, cutter, everywhere);
     }
     #[cfg(debug_assertions)]
     assert_eq!(patch.boundary(), boundary, "splitting edges opened the surface");
     let copied_from = manifold::make_manifold(patch);
-    candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
     patch.connect();
+    copied_from
 }
 
 /// Whether some piece of an edge counts more than once or negatively: rounded surfaces that cross themselves.

@@ -19,6 +19,8 @@ pub(super) struct Face {
     pub(super) origin: Origin,
     /// The only copy of an uncut triangle, with its corners as they were.
     pub(super) untouched: bool,
+    /// Whether its corners lay on one line before they were rounded.
+    pub(super) flat: bool,
     pub(super) alive: bool,
 }
 
@@ -58,12 +60,21 @@ impl Flags {
 }
 
 impl<'a> Patch<'a> {
-    /// The pieces and all kept triangles round their points.
-    pub(super) fn new(cutter: &'a Cutter<'a>, parts: &[Part], pieces: &[NewTriangle]) -> Self {
+    /// The pieces and all kept triangles round their points, and round some others.
+    pub(super) fn new(
+        cutter: &'a Cutter<'a>,
+        parts: &[Part],
+        pieces: &[NewTriangle],
+        others: &FxHashSet<u32>,
+    ) -> Self {
         let operands = cutter.operands;
         let points = operands.vertex_count() as usize + cutter.edges.positions.len();
         let mut complete = Flags::new(points);
         for point in pieces.iter().flat_map(|piece| piece.corners) {
+            complete.set(point);
+        }
+        // Kept triangles of both operands may share a point where all that was cut cancelled.
+        for point in cutter.identification.representatives().into_iter().chain(others.iter().copied()) {
             complete.set(point);
         }
         let mut patch = Self {
@@ -82,6 +93,7 @@ impl<'a> Patch<'a> {
             corners: piece.corners,
             origin: piece.origin,
             untouched: false,
+            flat: piece.flat,
             alive: true,
         }));
         patch.note_edges_beyond(parts, points);
@@ -91,6 +103,26 @@ impl<'a> Patch<'a> {
     /// Whether all triangles at a point are in the patch.
     pub(super) fn is_complete(&self, point: u32) -> bool {
         point >= self.first_copy || self.complete.get(point)
+    }
+
+    /// Points, not all of whose triangles are here, at which triangles came apart all the same: at edges to a point of
+    /// which copies were made.
+    pub(super) fn pinched(&self, copied_from: &[(u32, u32)]) -> FxHashSet<u32> {
+        let original: FxHashMap<u32, u32> = copied_from.iter().copied().collect();
+        let copied: FxHashSet<u32> = copied_from.iter().map(|&(_, of)| of).collect();
+        let mut seen: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+        let mut pinched = FxHashSet::default();
+        for face in self.faces.iter().filter(|face| face.alive && !copied_from.is_empty()) {
+            for &point in face.corners.iter().filter(|&&point| !self.is_complete(point)) {
+                for &other in &face.corners {
+                    let of = original.get(&other).copied().unwrap_or(other);
+                    if copied.contains(&of) && *seen.entry((point, of)).or_insert(other) != other {
+                        pinched.insert(point);
+                    }
+                }
+            }
+        }
+        pinched
     }
 
     /// Whether the operation made a point.
@@ -150,7 +182,8 @@ impl<'a> Patch<'a> {
             let face = Face {
                 corners: if reversed { [a, c, b] } else { [a, b, c] },
                 origin: Origin { operand: part.side as u32, triangle: t, reversed },
-                untouched: count.abs() == 1,
+                untouched: count == 1,
+                flat: false,
                 alive: true,
             };
             faces.extend(std::iter::repeat_n(face, count.unsigned_abs() as usize));
@@ -275,7 +308,7 @@ impl<'a> Patch<'a> {
             self.faces[index as usize].alive = false;
         }
         for (i, &(corners, origin)) in new.iter().enumerate() {
-            let face = Face { corners, origin, untouched: false, alive: true };
+            let face = Face { corners, origin, untouched: false, flat: false, alive: true };
             let index = match old.get(i) {
                 Some(&index) => {
                     self.faces[index as usize] = face;
@@ -317,7 +350,7 @@ impl<'a> Patch<'a> {
             if face.untouched {
                 replaced[face.origin.operand as usize].remove(face.origin.triangle);
             } else {
-                new.push(NewTriangle { corners: face.corners, origin: face.origin });
+                new.push(NewTriangle { corners: face.corners, origin: face.origin, flat: face.flat });
             }
         }
         new.sort_by_key(|triangle| (triangle.origin.operand, triangle.origin.triangle));

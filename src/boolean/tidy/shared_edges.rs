@@ -7,8 +7,11 @@
 use rustc_hash::FxHashMap;
 
 use super::super::cut::Cutter;
+use super::super::outcome::Origin;
 use super::patch::{Face, Patch};
-use crate::exact::{Sign, collinear, orient3d};
+use super::zero_area::is_low;
+use crate::exact::collinear;
+use crate::spatial::{BoxTree, Frame};
 
 /// An edge, from its lower point to its higher one.
 pub(super) type Edge = (u32, u32);
@@ -18,11 +21,11 @@ const ROUNDS: usize = 4;
 /// Splitting ends when the faces have become so many times as many.
 const MOST_GROWTH: usize = 4;
 
-/// Splits the edges along which shorter ones run.
-pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>) {
+/// Splits the edges along which shorter ones run; with `everywhere` all edges on which there are vertices.
+pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>, everywhere: bool) {
     let most = MOST_GROWTH * patch.faces.len();
     for _ in 0..ROUNDS {
-        let splits = splits(patch, cutter);
+        let splits = if everywhere { splits_everywhere(patch, cutter) } else { splits(patch, cutter) };
         if splits.is_empty() || patch.faces.len() > most {
             return;
         }
@@ -72,6 +75,76 @@ pub(super) fn split_face(patch: &mut Patch<'_>, index: usize, splits: &FxHashMap
     }
 }
 
+/// Makes one point of those at the same place.
+pub(super) fn identify(patch: &mut Patch<'_>) {
+    let mut points = points(patch);
+    let key = |&point: &u32| (patch.position(point).map(|x| (x + 0.0).to_bits()), point);
+    points.sort_unstable_by_key(key);
+    let same = |pair: &&[u32]| patch.position(pair[0]) == patch.position(pair[1]);
+    let pairs: Vec<(u32, u32)> = points.windows(2).filter(same).map(|pair| (pair[0], pair[1])).collect();
+    if !pairs.is_empty() {
+        super::zero_area::identify(patch, &pairs);
+    }
+}
+
+/// The points all of whose triangles are known.
+fn points(patch: &Patch<'_>) -> Vec<u32> {
+    let alive = patch.faces.iter().filter(|face| face.alive);
+    let mut points: Vec<u32> =
+        alive.flat_map(|face| face.corners).filter(|&point| patch.is_complete(point)).collect();
+    points.sort_unstable();
+    points.dedup();
+    points
+}
+
+/// All edges on which there are vertices, with these from the lower end to the higher one. (Not those inside one face.)
+fn splits_everywhere(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
+    let mut sides: Vec<(u32, u32, Origin)> = Vec::new();
+    for face in patch.faces.iter().filter(|face| face.alive) {
+        for k in 0..3 {
+            let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
+            if patch.is_complete(u) || patch.is_complete(v) {
+                sides.push((u.min(v), u.max(v), face.origin));
+            }
+        }
+    }
+    sides.sort_unstable_by_key(|side| (side.0, side.1, side.2.operand, side.2.triangle));
+    let points = points(patch);
+    let limits = |pick: fn(f64, f64) -> f64, from: f64| -> [f64; 3] {
+        points.iter().fold([from; 3], |limit, &point| {
+            std::array::from_fn(|k| pick(limit[k], patch.position(point)[k]))
+        })
+    };
+    let frame = Frame::of(limits(f64::min, f64::INFINITY), limits(f64::max, f64::NEG_INFINITY));
+    let tree = BoxTree::new(&points, |point| frame.triangle([patch.position(point); 3]));
+    let mut splits = FxHashMap::default();
+    for group in sides.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
+        let (u, v, origin) = group[0];
+        if group.len() > 1 && group.iter().all(|side| side.2 == origin) {
+            continue;
+        }
+        let mut on: Vec<u32> = Vec::new();
+        let (p, q) = (patch.position(u), patch.position(v));
+        tree.meeting(&frame.triangle([p, q, q]), |x| {
+            if x != u && x != v && lies_between(patch, cutter, u, x, v) {
+                on.push(x);
+            }
+        });
+        if !on.is_empty() {
+            sort_along(patch, u, &mut on);
+            splits.insert((u, v), on);
+        }
+    }
+    splits
+}
+
+/// Sorts points by their distance from `u`.
+fn sort_along(patch: &Patch<'_>, u: u32, on: &mut [u32]) {
+    let start = *patch.position(u);
+    let distance = |x: &u32| (0..3).map(|k| (patch.position(*x)[k] - start[k]).powi(2)).sum::<f64>();
+    on.sort_by(|x, y| distance(x).total_cmp(&distance(y)).then(x.cmp(y)));
+}
+
 /// Edges to split, with the vertices on them from the lower end to the higher one: edges of one operand along which edges of
 /// the other run.
 fn splits(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
@@ -102,9 +175,7 @@ fn splits(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
             (from, next) = (x, next + 1);
         }
         if !on.is_empty() {
-            let start = *patch.position(u);
-            let distance = |x: &u32| (0..3).map(|k| (patch.position(*x)[k] - start[k]).powi(2)).sum::<f64>();
-            on.sort_by(|x, y| distance(x).total_cmp(&distance(y)));
+            sort_along(patch, u, &mut on);
             splits.insert((u, v), on);
         }
     }
@@ -143,52 +214,6 @@ fn lies_between(patch: &Patch<'_>, cutter: &Cutter<'_>, u: u32, x: u32, v: u32) 
     is_within
         && !is_off
         && length(p, at).max(length(at, q)) < length(p, q)
-        && (collinear(p, at, q) || were_on_one_line(cutter, [u, x, v]))
-}
-
-/// Whether three points lay on the line of some edge before nodes were rounded.
-fn were_on_one_line(cutter: &Cutter<'_>, points: [u32; 3]) -> bool {
-    points.iter().filter_map(|&point| Node::of(cutter, point)).any(|node| {
-        let [a, b, c] = node.triangle;
-        [node.edge, [a, b], [b, c], [c, a]]
-            .iter()
-            .any(|line| points.iter().all(|&point| was_on_line(cutter, point, line)))
-    })
-}
-
-/// An edge and the triangle it crosses.
-struct Node {
-    edge: [[f64; 3]; 2],
-    triangle: [[f64; 3]; 3],
-}
-
-impl Node {
-    /// The node of a point; `None` for vertices and copies.
-    fn of(cutter: &Cutter<'_>, point: u32) -> Option<Self> {
-        let operands = cutter.operands;
-        let index = point.checked_sub(operands.vertex_count())?;
-        let crossing = cutter.crossings.nodes.get(index as usize)?;
-        let other = 1 - operands.side_of(crossing.low);
-        Some(Self {
-            edge: [crossing.low, crossing.high].map(|vertex| *operands.position(vertex)),
-            triangle: operands.corners(other, crossing.triangle).map(|corner| corner.position),
-        })
-    }
-}
-
-/// Whether a point lay on the line through two others before it was rounded. (True only where it did.)
-fn was_on_line(cutter: &Cutter<'_>, point: u32, [p, q]: &[[f64; 3]; 2]) -> bool {
-    let on_line = |c: &[f64; 3]| collinear(p, q, c);
-    let Some(Node { edge, triangle: [a, b, c] }) = Node::of(cutter, point) else {
-        return point < cutter.operands.vertex_count() && on_line(cutter.operands.position(point));
-    };
-    if edge.iter().all(on_line) {
-        return true;
-    }
-    // The edge must pass through the triangle's plane in a point.
-    let passes = edge.iter().any(|end| orient3d(&a, &b, &c, end) != Sign::Zero);
-    passes
-        && [(a, b), (b, c), (c, a)]
-            .iter()
-            .any(|(a, b)| on_line(a) && on_line(b) && orient3d(a, b, &edge[0], &edge[1]) == Sign::Zero)
+        && (collinear(p, at, q)
+            || (is_low([p, at, q], cutter.rounding) && cutter.were_on_one_line([u, x, v])))
 }

@@ -1,9 +1,12 @@
 //! Triangles without area: split or flip their longest side. The middle corner lies on that side, so the shape does not
 //! change.
 
+use std::collections::BinaryHeap;
+
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
+use super::super::cut::Cutter;
 use super::patch::{Face, Patch};
 use crate::exact::collinear;
 
@@ -17,7 +20,13 @@ struct Flip {
     d: u32,
 }
 
-pub(super) fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
+fn is_flat(patch: &Patch<'_>, index: u32) -> bool {
+    let face = &patch.faces[index as usize];
+    face.alive && (face.flat || is_exactly_flat(patch, index))
+}
+
+/// Whether the corners of a triangle lie on one line as they are.
+pub(super) fn is_exactly_flat(patch: &Patch<'_>, index: u32) -> bool {
     let face = &patch.faces[index as usize];
     let [a, b, c] = face.corners.map(|point| patch.position(point));
     face.alive && collinear(a, b, c)
@@ -28,19 +37,37 @@ pub(super) fn any_flat(patch: &Patch<'_>) -> bool {
     (0..patch.faces.len() as u32).any(|index| !patch.faces[index as usize].untouched && is_flat(patch, index))
 }
 
-/// Whether a triangle is higher over its longest side than nothing, but not than `height`.
+/// The square of a triangle's longest side, in an order of bits.
+fn longest(patch: &Patch<'_>, index: u32) -> u64 {
+    let [a, b, c] = patch.faces[index as usize].corners.map(|point| patch.position(point));
+    let square = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|k| (q[k] - p[k]).powi(2)).sum::<f64>();
+    square(a, b).max(square(b, c)).max(square(c, a)).to_bits()
+}
+
+/// Whether a triangle that is not untouched is no higher over its longest side than `height`.
 fn is_lower(patch: &Patch<'_>, index: u32, height: f64) -> bool {
     let face = &patch.faces[index as usize];
-    if !face.alive || face.untouched {
-        return false;
-    }
-    let [a, b, c] = face.corners.map(|point| patch.position(point));
+    face.alive && !face.untouched && is_low(face.corners.map(|point| patch.position(point)), height)
+}
+
+/// Whether a triangle is no higher over its longest side than `height`.
+pub(super) fn is_low([a, b, c]: [&[f64; 3]; 3], height: f64) -> bool {
     let difference = |p: &[f64; 3], q: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|k| q[k] - p[k]) };
     let (u, v, w) = (difference(a, b), difference(b, c), difference(c, a));
     let cross: [f64; 3] =
         std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
     let square = |v: &[f64; 3]| v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     square(&cross) <= height * height * square(&u).max(square(&v)).max(square(&w))
+}
+
+/// Marks the triangles whose corners lay on one line before they were rounded.
+pub(super) fn mark_flat(patch: &mut Patch<'_>, cutter: &Cutter<'_>) {
+    for index in 0..patch.faces.len() as u32 {
+        let corners = patch.faces[index as usize].corners;
+        if is_lower(patch, index, cutter.rounding) && cutter.were_on_one_line(corners) {
+            patch.faces[index as usize].flat = true;
+        }
+    }
 }
 
 /// The triangles to the left of each directed edge, while there may be several.
@@ -139,18 +166,22 @@ pub(super) fn split_chain(patch: &mut Patch<'_>) {
 /// the same side.
 fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
     let mut coincident = Vec::new();
-    let mut queue: Vec<u32> = (0..patch.faces.len() as u32).filter(|&index| is_flat(patch, index)).collect();
+    // The longest first: what meets its longest side then ends between its ends, and all new sides on the line are shorter.
+    let by_length =
+        |patch: &Patch<'_>, index: u32| is_flat(patch, index).then(|| (longest(patch, index), index));
+    let mut queue: BinaryHeap<(u64, u32)> =
+        (0..patch.faces.len() as u32).filter_map(|x| by_length(patch, x)).collect();
     if queue.is_empty() {
         return coincident;
     }
     let mut chain = Chain::of(patch);
     let mut budget = 16 * queue.len();
-    while let Some(index) = queue.pop() {
+    while let Some((length, index)) = queue.pop() {
         if budget == 0 {
             break;
         }
         budget -= 1;
-        if !is_flat(patch, index) {
+        if by_length(patch, index) != Some((length, index)) {
             continue;
         }
         let flip = longest_side(patch, index, |a, c| {
@@ -163,7 +194,7 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
             let apart = chain.coincident_middles(patch, a, b, c);
             if apart.is_empty() {
                 let changed = chain.split(patch, a, b, c);
-                queue.extend(changed.into_iter().filter(|&index| is_flat(patch, index)));
+                queue.extend(changed.into_iter().filter_map(|x| by_length(patch, x)));
             } else {
                 coincident.extend(apart.into_iter().map(|point| (b, point)));
             }
@@ -174,10 +205,12 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
             chain.change(patch, other, None);
             continue;
         }
-        patch.faces[flat as usize].origin = patch.faces[other as usize].origin;
+        let beyond = patch.faces[other as usize];
+        patch.faces[flat as usize] =
+            Face { origin: beyond.origin, flat: beyond.flat, ..patch.faces[flat as usize] };
         chain.change(patch, flat, Some([a, b, d]));
         chain.change(patch, other, Some([b, c, d]));
-        queue.extend([flat, other].into_iter().filter(|&index| is_flat(patch, index)));
+        queue.extend([flat, other].into_iter().filter_map(|x| by_length(patch, x)));
     }
     coincident
 }

@@ -1,0 +1,214 @@
+//! What edges wind round, whatever they are: sums of regions of one plane.
+
+use rustc_hash::FxHashMap;
+
+use super::delaunay::between;
+use crate::exact::{Sign, orient2d};
+
+/// A directed edge, or a counter-clockwise triangle, and how often it counts.
+pub(super) type CountedEdge = ([u32; 2], i32);
+pub(crate) type CountedTriangle = ([u32; 3], i32);
+
+/// A directed edge that counts a number of times.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Edge {
+    pub(crate) ends: [u32; 2],
+    pub(crate) count: i32,
+    /// The line it is a part of: the caller's number, for finding crossings.
+    pub(crate) line: u32,
+}
+
+/// Vertices up to so many units in the last place of the largest coordinate from an edge may lie on it: each of the three
+/// points is off by half a unit in each coordinate.
+const ROUNDING_ULPS: f64 = 4.0;
+/// Rounds of splitting edges. Splitting moves an edge by no more than rounding, so few are left after the first.
+const ROUNDS: usize = 8;
+
+/// What edges wind round.
+#[derive(Debug)]
+pub(crate) struct Found {
+    /// Counter-clockwise triangles with their winding numbers.
+    pub(crate) triangles: Vec<CountedTriangle>,
+    /// Triangles without area (but for rounding) between edges that run through vertices and the chains of edges in their
+    /// place, and how often they count.
+    pub(crate) slivers: Vec<CountedTriangle>,
+}
+
+/// Triangulates what edges, each with a count, wind round. The boundary of the sum of all triangles is the sum of the edges,
+/// exactly. Where edges cross because their ends were
+/// rounded, a vertex so near an edge counts as lying on it. Where edges cross in earnest, `cross` is asked for a vertex
+/// (which it may append to the points); `None` if it has none.
+pub(crate) fn by_winding(
+    points: &mut Vec<[f64; 2]>,
+    edges: &[Edge],
+    mut cross: impl FnMut(&Edge, &Edge, &mut Vec<[f64; 2]>) -> Option<u32>,
+) -> Option<Found> {
+    let largest = edges
+        .iter()
+        .flat_map(|edge| edge.ends)
+        .flat_map(|v| points[v as usize])
+        .fold(0.0f64, |most, x| most.max(x.abs()));
+    let rounding = ROUNDING_ULPS * f64::EPSILON * largest;
+    let mut slivers = Vec::new();
+    let edges = split_at_vertices(points, &summed(edges), rounding, &mut slivers);
+    let mut edges = summed(&edges);
+    for _ in 0..ROUNDS {
+        let counted: Vec<CountedEdge> = edges.iter().map(|edge| (edge.ends, edge.count)).collect();
+        if let Some(triangles) = between(points, &counted) {
+            return Some(Found { triangles, slivers });
+        }
+        let before = slivers.len();
+        let mut split = split_at_vertices(points, &edges, rounding, &mut slivers);
+        if slivers.len() == before {
+            split = split_at_crossings(points, &edges, &mut cross, &mut slivers);
+        }
+        if slivers.len() == before {
+            return None;
+        }
+        edges = summed(&split);
+    }
+    None
+}
+
+/// The sum of edges: each once, from its lower vertex to its higher one, in order; none that counts 0 times.
+fn summed(edges: &[Edge]) -> Vec<Edge> {
+    let mut edges: Vec<Edge> = edges
+        .iter()
+        .map(|&Edge { ends: [u, v], count, line }| {
+            if u < v {
+                Edge { ends: [u, v], count, line }
+            } else {
+                Edge { ends: [v, u], count: -count, line }
+            }
+        })
+        .collect();
+    edges.sort_unstable_by_key(|edge| (edge.ends, edge.line));
+    edges
+        .chunk_by(|x, y| x.ends == y.ends)
+        .map(|group| Edge { count: group.iter().map(|edge| edge.count).sum(), ..group[0] })
+        .filter(|edge| edge.count != 0)
+        .collect()
+}
+
+/// Replaces an edge by a chain through vertices on it, and adds the triangles without area that, together with the chain,
+/// bound the same as the edge.
+fn split_edge(edge: &Edge, on: &[u32], split: &mut Vec<Edge>, slivers: &mut Vec<CountedTriangle>) {
+    let [u, v] = edge.ends;
+    let mut from = u;
+    for &x in on.iter().chain(&[v]) {
+        split.push(Edge { ends: [from, x], ..*edge });
+        if from != u {
+            slivers.push(([u, x, from], edge.count));
+        }
+        from = x;
+    }
+}
+
+/// Splits edges that run through vertices, or pass them no further than `rounding`.
+fn split_at_vertices(
+    points: &[[f64; 2]],
+    edges: &[Edge],
+    rounding: f64,
+    slivers: &mut Vec<CountedTriangle>,
+) -> Vec<Edge> {
+    let mut vertices: Vec<u32> = edges.iter().flat_map(|edge| edge.ends).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let at = |k: usize, v: u32| points[v as usize][k];
+    // Along each axis; a list of either axis holds all that can lie on an edge.
+    let sorted = [0, 1].map(|k| {
+        let mut sorted = vertices.clone();
+        sorted.sort_by(|&x, &y| at(k, x).total_cmp(&at(k, y)));
+        sorted
+    });
+    let mut split = Vec::with_capacity(edges.len());
+    for edge in edges {
+        let [u, v] = edge.ends;
+        let (p, q) = (points[u as usize], points[v as usize]);
+        // Along the axis on which the edge is longer.
+        let k = usize::from((q[1] - p[1]).abs() > (q[0] - p[0]).abs());
+        let along = |x: u32| if q[k] > p[k] { at(k, x) } else { -at(k, x) };
+        let is_on = |x: u32| {
+            let at = points[x as usize];
+            let across = || {
+                let part = (at[k] - p[k]) / (q[k] - p[k]);
+                (at[1 - k] - (p[1 - k] + part * (q[1 - k] - p[1 - k]))).abs()
+            };
+            orient2d(p, q, at) == Sign::Zero || (rounding > 0.0 && across() <= rounding)
+        };
+        let near = |k: usize| {
+            let (low, high) = (p[k].min(q[k]) - rounding, p[k].max(q[k]) + rounding);
+            let first = sorted[k].partition_point(|&x| at(k, x) < low);
+            let end = sorted[k].partition_point(|&x| at(k, x) <= high);
+            &sorted[k][first..end]
+        };
+        let near = [near(0), near(1)];
+        let shorter = if near[0].len() < near[1].len() { near[0] } else { near[1] };
+        let mut on: Vec<u32> = shorter
+            .iter()
+            .copied()
+            .filter(|&x| x != u && x != v && along(u) < along(x) && along(x) < along(v))
+            .filter(|&x| is_on(x))
+            .collect();
+        on.sort_by(|&x, &y| along(x).total_cmp(&along(y)).then(x.cmp(&y)));
+        split_edge(edge, &on, &mut split, slivers);
+    }
+    split
+}
+
+/// Splits edges where they cross one another.
+fn split_at_crossings(
+    points: &mut Vec<[f64; 2]>,
+    edges: &[Edge],
+    cross: &mut impl FnMut(&Edge, &Edge, &mut Vec<[f64; 2]>) -> Option<u32>,
+    slivers: &mut Vec<CountedTriangle>,
+) -> Vec<Edge> {
+    let at = |points: &[[f64; 2]], i: usize, end: usize| points[edges[i].ends[end] as usize];
+    let range = |points: &[[f64; 2]], i: usize, k: usize| {
+        let (p, q) = (at(points, i, 0)[k], at(points, i, 1)[k]);
+        (p.min(q), p.max(q))
+    };
+    let mut order: Vec<usize> = (0..edges.len()).collect();
+    order.sort_by(|&i, &j| range(points, i, 0).0.total_cmp(&range(points, j, 0).0));
+    let mut on: FxHashMap<usize, Vec<u32>> = FxHashMap::default();
+    for (place, &i) in order.iter().enumerate() {
+        let ((_, end), (low, high)) = (range(points, i, 0), range(points, i, 1));
+        for &j in &order[place + 1..] {
+            if range(points, j, 0).0 > end {
+                break;
+            }
+            let other = range(points, j, 1);
+            if other.0 > high || low > other.1 {
+                continue;
+            }
+            let ends = [at(points, i, 0), at(points, i, 1), at(points, j, 0), at(points, j, 1)];
+            if !cross_properly(ends) {
+                continue;
+            }
+            if let Some(x) = cross(&edges[i], &edges[j], points) {
+                for i in [i, j] {
+                    if !edges[i].ends.contains(&x) {
+                        on.entry(i).or_default().push(x);
+                    }
+                }
+            }
+        }
+    }
+    let mut split = Vec::with_capacity(edges.len() + 2 * on.len());
+    for (i, edge) in edges.iter().enumerate() {
+        let mut on = on.remove(&i).unwrap_or_default();
+        let [p, q] = [at(points, i, 0), at(points, i, 1)];
+        let k = usize::from((q[1] - p[1]).abs() > (q[0] - p[0]).abs());
+        let along = |x: u32| if q[k] > p[k] { points[x as usize][k] } else { -points[x as usize][k] };
+        on.sort_by(|&x, &y| along(x).total_cmp(&along(y)).then(x.cmp(&y)));
+        on.dedup();
+        split_edge(edge, &on, &mut split, slivers);
+    }
+    split
+}
+
+/// Whether two edges cross in a point inside both.
+pub(crate) fn cross_properly([p, q, a, b]: [[f64; 2]; 4]) -> bool {
+    let opposite = |x: Sign, y: Sign| x != Sign::Zero && y != Sign::Zero && x != y;
+    opposite(orient2d(p, q, a), orient2d(p, q, b)) && opposite(orient2d(a, b, p), orient2d(a, b, q))
+}
