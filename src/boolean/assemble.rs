@@ -1,5 +1,8 @@
 //! The result's arrays: untouched triangles in their order, then what was cut.
 
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use super::cut_edges::CutEdges;
 use super::cut_faces::{BitSet, CutFaces};
 use super::identify::Identification;
@@ -7,6 +10,7 @@ use super::multiplicity::Part;
 use super::operands::Operands;
 use super::outcome::Origin;
 use crate::Error;
+use crate::parallel::{Runner, ranges};
 
 /// A triangle that cutting made or changed.
 #[derive(Clone, Copy, Debug)]
@@ -79,67 +83,88 @@ impl Ingredients<'_> {
     }
 
     /// Builds the arrays.
-    pub(super) fn assemble(&self) -> Assembled {
+    pub(super) fn assemble(&self, runner: Runner<'_>) -> Result<Assembled, Error> {
         let operands = self.operands;
         let points = operands.vertex_count() as usize + self.edges.positions.len() + self.copies.len();
         // First mark the points in use, then number them in order: A's, B's, nodes, copies.
-        let mut number = vec![UNUSED; points];
-        let mut count = self.new.len();
-        for &part in self.parts {
-            let first = operands.first_vertex(part.side);
-            for (t, &corners) in operands.sides[part.side].triangles.iter().enumerate() {
-                let times = self.count(part, t as u32, corners);
-                if times > 0 {
+        let number: Vec<AtomicU32> = std::iter::repeat_with(|| AtomicU32::new(UNUSED)).take(points).collect();
+        let mark = |point: u32| number[point as usize].store(USED, Ordering::Relaxed);
+        let pieces = self.pieces(runner);
+        let grain = if runner.is_parallel() { 1 } else { pieces.len() };
+        let counts = runner.pieces(pieces.len(), grain, |range| {
+            let mut count = 0;
+            for piece in &pieces[range] {
+                self.for_kept(piece, |_, times, points| {
                     count += times as usize;
-                    for v in corners {
-                        number[self.identification.representative(first + v) as usize] = USED;
-                    }
-                }
+                    points.into_iter().for_each(mark);
+                });
             }
-        }
-        for triangle in self.new {
-            for point in triangle.corners {
-                number[point as usize] = USED;
-            }
-        }
+            count
+        })?;
+        self.new.iter().flat_map(|triangle| triangle.corners).for_each(mark);
         let mut positions = Vec::new();
-        for (point, entry) in number.iter_mut().enumerate() {
-            if *entry == USED {
-                *entry = positions.len() as u32;
+        for (point, entry) in number.iter().enumerate() {
+            if entry.load(Ordering::Relaxed) == USED {
+                entry.store(positions.len() as u32, Ordering::Relaxed);
                 positions.push(self.position(point as u32));
             }
         }
 
-        let mut result = Assembled {
-            positions,
-            triangles: Vec::with_capacity(count),
-            origins: Vec::with_capacity(count),
-            ..Assembled::default()
-        };
-        for &part in self.parts {
-            let first = operands.first_vertex(part.side);
-            for (t, &corners) in operands.sides[part.side].triangles.iter().enumerate() {
-                let times = self.count(part, t as u32, corners);
-                if times == 0 {
-                    continue;
-                }
-                let [a, b, c] =
-                    corners.map(|v| number[self.identification.representative(first + v) as usize]);
-                // A negative multiplicity turns the triangle over once more.
-                let winding = self.windings[part.side].get(corners[0] as usize).copied().unwrap_or(0);
-                let reversed = part.reversed != (part.multiplicity(winding) < 0);
-                let origin = Origin { operand: part.side as u32, triangle: t as u32, reversed };
-                for _ in 0..times {
-                    result.triangles.push(if reversed { [a, c, b] } else { [a, b, c] });
-                    result.origins.push(origin);
-                }
+        let total = counts.iter().sum::<usize>() + self.new.len();
+        let runs = runner.pieces(pieces.len(), grain, |range| {
+            // The first run has room for all.
+            let room = if range.start == 0 { total } else { counts[range.start] };
+            let mut run = Run { triangles: Vec::with_capacity(room), origins: Vec::with_capacity(room) };
+            for piece in &pieces[range] {
+                self.for_kept(piece, |origin, times, points| {
+                    let [a, b, c] = points.map(|point| number[point as usize].load(Ordering::Relaxed));
+                    for _ in 0..times {
+                        run.triangles.push(if origin.reversed { [a, c, b] } else { [a, b, c] });
+                        run.origins.push(origin);
+                    }
+                });
             }
+            run
+        })?;
+        let mut runs = runs.into_iter();
+        let Run { mut triangles, mut origins } = runs.next().unwrap_or_default();
+        for run in runs {
+            triangles.extend(run.triangles);
+            origins.extend(run.origins);
         }
         for triangle in self.new {
-            result.triangles.push(triangle.corners.map(|point| number[point as usize]));
-            result.origins.push(triangle.origin);
+            triangles.push(triangle.corners.map(|point| number[point as usize].load(Ordering::Relaxed)));
+            origins.push(triangle.origin);
         }
-        result
+        Ok(Assembled { positions, triangles, origins, ..Assembled::default() })
+    }
+
+    /// What one thread looks at: parts of the result, or of these.
+    fn pieces(&self, runner: Runner<'_>) -> Vec<(Part, Range<usize>)> {
+        let share = |part: &Part| {
+            let count = self.operands.sides[part.side].triangles.len();
+            let pieces = if runner.is_parallel() { count.div_ceil(TRIANGLES_PER_PIECE) } else { 1 };
+            ranges(count, pieces).into_iter().map(|range| (*part, range)).collect::<Vec<_>>()
+        };
+        self.parts.iter().flat_map(share).collect()
+    }
+
+    /// Calls `found` for every uncut triangle that stays: origin, how often it counts, and its points.
+    #[inline]
+    fn for_kept(&self, (part, range): &(Part, Range<usize>), mut found: impl FnMut(Origin, u32, [u32; 3])) {
+        let first = self.operands.first_vertex(part.side);
+        let triangles = &self.operands.sides[part.side].triangles[range.clone()];
+        for (t, &corners) in range.clone().zip(triangles) {
+            let times = self.count(*part, t as u32, corners);
+            if times == 0 {
+                continue;
+            }
+            // A negative multiplicity turns the triangle over once more.
+            let winding = self.windings[part.side].get(corners[0] as usize).copied().unwrap_or(0);
+            let reversed = part.reversed != (part.multiplicity(winding) < 0);
+            let origin = Origin { operand: part.side as u32, triangle: t as u32, reversed };
+            found(origin, times, corners.map(|v| self.identification.representative(first + v)));
+        }
     }
 
     fn position(&self, point: u32) -> [f64; 3] {
@@ -155,5 +180,14 @@ impl Ingredients<'_> {
     }
 }
 
+/// Triangles of the result that one thread has written.
+#[derive(Default)]
+struct Run {
+    triangles: Vec<[u32; 3]>,
+    origins: Vec<Origin>,
+}
+
+/// How many triangles one thread looks at.
+const TRIANGLES_PER_PIECE: usize = 1 << 16;
 const UNUSED: u32 = u32::MAX;
 const USED: u32 = u32::MAX - 1;

@@ -160,14 +160,6 @@ impl Engine<'_> {
         let runner = if triangles < PARALLEL_FROM { self.runner.serial() } else { self.runner };
         let made = pair::combine(operation, &a.solid, &b.solid, settings, runner)?;
         let sources = [a, b];
-        let origins = made
-            .origins
-            .iter()
-            .map(|origin| {
-                let source = sources[origin.operand as usize].origins.of(origin.triangle);
-                Origin { reversed: source.reversed != origin.reversed, ..source }
-            })
-            .collect();
         let groups = if a.groups.is_empty() {
             Vec::new()
         } else {
@@ -176,6 +168,11 @@ impl Engine<'_> {
                 .map(|origin| sources[origin.operand as usize].groups[origin.triangle as usize])
                 .collect()
         };
+        let source = |origin: Origin| {
+            let source = sources[origin.operand as usize].origins.of(origin.triangle);
+            Origin { reversed: source.reversed != origin.reversed, ..source }
+        };
+        let origins = made.origins.into_iter().map(source).collect();
         Ok(Partial {
             solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(made.positions, made.triangles))),
             origins: Origins::List(origins),

@@ -59,8 +59,13 @@ pub(super) fn combine(
     let parts = multiplicity::parts(operation);
 
     let _tables = runner.control.reserve(fixed_tables(&sides))?;
-    let outcodes = [overlap::outcodes(&sides[0], &bounds[1]), overlap::outcodes(&sides[1], &bounds[0])];
-    let near = [0, 1].map(|side| overlap::near_triangles(&sides[side], &outcodes[side]));
+    let near_other = |side: usize| {
+        let outcodes = overlap::outcodes(&sides[side], &bounds[1 - side]);
+        let near = overlap::near_triangles(&sides[side], &outcodes);
+        (outcodes, near)
+    };
+    let ((outcodes_a, near_a), (outcodes_b, near_b)) = runner.both(|| near_other(0), || near_other(1));
+    let (outcodes, near) = ([outcodes_a, outcodes_b], [near_a, near_b]);
     let largest = largest_coordinate(&bounds);
     let operands = Operands::new(sides, sense(operation, settings.fuse), largest, near);
     runner.control.check()?;
@@ -75,19 +80,12 @@ pub(super) fn combine(
     );
     let mut faces = [faces_a, faces_b];
     runner.control.check()?;
-    let mut windings = [Vec::new(), Vec::new()];
-    for side in 0..2 {
-        windings[side] = winding::of_vertices(
-            &operands,
-            side,
-            &outcodes[side],
-            &bounds[1 - side],
-            &crossings,
-            &edges,
-            &faces[side],
-            runner,
-        )?;
-    }
+    let winding_of = |side: usize| {
+        let (codes, box_of_other, faces) = (&outcodes[side], &bounds[1 - side], &faces[side]);
+        winding::of_vertices(&operands, side, codes, box_of_other, &crossings, &edges, faces, runner)
+    };
+    let (windings_a, windings_b) = runner.both(|| winding_of(0), || winding_of(1));
+    let windings = [windings_a?, windings_b?];
     let fuse = operation == Operation::SymmetricDifference && settings.fuse;
     let sheets = walls::touching_sheets(&operands, &candidates, parts, runner)?;
     drop(candidates);
@@ -181,7 +179,7 @@ fn body(
         replaced: replaced.as_ref(),
         copies: &copies,
     };
-    Ok(Assembled { has_inverted, ..ingredients.assemble() })
+    Ok(Assembled { has_inverted, ..ingredients.assemble(runner)? })
 }
 
 /// Whether A swells by an infinitesimal (+1) or shrinks (-1).
