@@ -60,11 +60,12 @@ pub(super) fn is_low([a, b, c]: [&[f64; 3]; 3], height: f64) -> bool {
     square(&cross) <= height * height * square(&u).max(square(&v)).max(square(&w))
 }
 
-/// Marks the triangles whose corners lay on one line before they were rounded.
+/// Marks the triangles whose corners lay on one line before they were rounded, but do not now.
 pub(super) fn mark_flat(patch: &mut Patch<'_>, cutter: &Cutter<'_>) {
     for index in 0..patch.faces.len() as u32 {
         let corners = patch.faces[index as usize].corners;
-        if is_lower(patch, index, cutter.rounding) && cutter.were_on_one_line(corners) {
+        let is_low = is_lower(patch, index, cutter.rounding) && !is_exactly_flat(patch, index);
+        if is_low && cutter.were_on_one_line(corners) {
             patch.faces[index as usize].flat = true;
         }
     }
