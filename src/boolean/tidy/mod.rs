@@ -125,7 +125,7 @@ fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>, everywhere: bool) -> Vec
     #[cfg(debug_assertions)]
     let boundary = patch.boundary();
     if cutter.operands.ties() > 0 {
-        shared_edges::split(patch, cutter, everywhere);
+        shared_edges::split(patch, cutter, true);
     }
     #[cfg(debug_assertions)]
     assert_eq!(patch.boundary(), boundary, "splitting edges opened the surface");

@@ -21,11 +21,18 @@ const ROUNDS: usize = 4;
 /// Splitting ends when the faces have become so many times as many.
 const MOST_GROWTH: usize = 4;
 
-/// Splits the edges along which shorter ones run; with `everywhere` all edges on which there are vertices.
+/// Splits the edges along which shorter ones run; with `everywhere`, before that, all edges on which there are vertices.
 pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>, everywhere: bool) {
+    if everywhere {
+        split_by(patch, |patch| splits_everywhere(patch, cutter));
+    }
+    split_by(patch, |patch| splits(patch, cutter));
+}
+
+fn split_by(patch: &mut Patch<'_>, splits: impl Fn(&Patch<'_>) -> FxHashMap<Edge, Vec<u32>>) {
     let most = MOST_GROWTH * patch.faces.len();
     for _ in 0..ROUNDS {
-        let splits = if everywhere { splits_everywhere(patch, cutter) } else { splits(patch, cutter) };
+        let splits = splits(patch);
         if splits.is_empty() || patch.faces.len() > most {
             return;
         }
