@@ -262,3 +262,25 @@ fn menger_genus(depth: u32) -> usize {
     }
     usize::try_from(1 - chi).expect("the sponge is connected")
 }
+
+/// Where a body counts twice its surface does, and what was made of it is cut again.
+#[test]
+fn results_that_count_twice_are_operands_like_others() -> Result<(), trisect::Error> {
+    let cube = |low: f64, high: f64| primitives::cuboid([low; 3], [high; 3]);
+    let inner = Solid::try_from(cube(0.0, 1.0)?)?;
+    let mut both = cube(-1.0, 2.0)?;
+    both.append(&cube(-2.0, 3.0)?)?;
+    let twice = Solid::try_from(both)?;
+    // Its faces cut the diagonals of the inner cube's faces in general position.
+    let ball = primitives::geodesic_sphere(0.7, 4)?.rotated([1.0, 2.0, 3.0], 20.0)?;
+    let ball = Solid::try_from(ball.translated([0.51, 0.47, 0.62]))?;
+    let options = Options::new();
+    let once = options.run(Intersection, &[&inner, &ball])?;
+    let found = options.run(Intersection, &[&inner, &twice, &ball])?;
+    let mesh = found.solid().mesh();
+    assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
+    assert!(found.certificate().closed, "{}", found.certificate());
+    let expected = 2.0 * once.solid().volume();
+    assert!((found.solid().volume() - expected).abs() < 1e-12, "{} {expected}", found.solid().volume());
+    Ok(())
+}

@@ -8,6 +8,8 @@ const SLENDER: f32 = 8.0;
 const MARGIN: f32 = 1e-4;
 /// Lines at an angle whose sine squared is less are taken for parallel.
 const PARALLEL: f32 = 1e-4;
+/// Coordinates count as at least this large, so that squares do not vanish unnoticed.
+const TINY: f32 = 1e-12;
 
 /// All within some distance of a segment.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +30,7 @@ impl Capsule {
         Self {
             middle: 0.5 * p + 0.5 * q,
             direction,
-            radius: (r - p).cross(direction).length() + MARGIN * largest,
+            radius: (r - p).cross(direction).length() + MARGIN * largest.max(TINY),
             half_length: 0.5 * length,
         }
     }

@@ -117,8 +117,9 @@ impl Options {
         self
     }
 
-    /// Whether vertices that the operation made and nobody needs are removed: inside a plane face, and on a straight crease
-    /// between two. Default: true. Faces of different groups are never merged.
+    /// Whether vertices that nobody needs are left out where the operation cuts: inside a plane face, and on a straight
+    /// crease between two. Default: true. Triangles of one plane face are then cut as one, and what is cut from them has one
+    /// of them as its origin. Faces of different groups are never merged.
     #[must_use]
     pub fn remove_vertices(mut self, remove: bool) -> Self {
         self.remove_vertices = remove;

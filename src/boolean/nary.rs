@@ -152,7 +152,7 @@ impl Engine<'_> {
     ) -> Result<Partial<'a>, Error> {
         let settings = Settings {
             fuse: self.options.contact == Contact::Fuse,
-            everywhere: operation == Operation::SymmetricDifference,
+            glue: operation == Operation::SymmetricDifference,
             remove_vertices: self.options.remove_vertices,
             groups: [&a.groups, &b.groups],
         };

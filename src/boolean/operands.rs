@@ -59,10 +59,12 @@ impl<'a> Operands<'a> {
     /// `near` lists the triangles of A and of B in the overlap of their boxes.
     pub(super) fn new(sides: [Operand<'a>; 2], sense: i32, largest: f64, near: [Vec<u32>; 2]) -> Self {
         const FILTER_LIMIT: f64 = f64::from_bits((1023 + 350) << 52);
-        let entries = [0, 1].map(|side| sides[side].triangles.len() * sides[1 - side].positions.len());
+        let entries =
+            [0, 1].map(|side| sides[side].triangles.len().saturating_mul(sides[1 - side].positions.len()));
         let table = |entries| std::iter::repeat_with(|| AtomicU8::new(UNKNOWN)).take(entries).collect();
         Self {
-            known_sides: (entries[0] + entries[1] <= REMEMBERED_SIDES).then(|| entries.map(table)),
+            known_sides: (entries[0].saturating_add(entries[1]) <= REMEMBERED_SIDES)
+                .then(|| entries.map(table)),
             first_of_b: sides[0].positions.len() as u32,
             sides,
             sense,

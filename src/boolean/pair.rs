@@ -35,8 +35,8 @@ const MOST_VERTICES: usize = 1 << 31;
 pub(super) struct Settings<'a> {
     /// Whether bodies that touch become one.
     pub(super) fuse: bool,
-    /// Whether bodies that touch themselves in parts of edges come apart there too.
-    pub(super) everywhere: bool,
+    /// Whether points at the same place become one where operands touch.
+    pub(super) glue: bool,
     /// Whether vertices that nobody needs are removed.
     pub(super) remove_vertices: bool,
     /// The result's group of each triangle of A and of B; empty if there are no groups.
@@ -158,7 +158,7 @@ fn body(
     let tidy_settings = tidy::Settings {
         remove_vertices: settings.remove_vertices,
         rounding: cutter.rounding,
-        everywhere: settings.everywhere,
+        glue: settings.glue,
         always: has_slivers,
     };
     let planes = Planes { operands: cutter.operands, groups: settings.groups };

@@ -14,8 +14,10 @@ use crate::Error;
 use crate::exact::{Sign, orient3d};
 use crate::parallel::Runner;
 
-/// No face, group, segment or node.
+/// No face, segment or node.
 const NONE: u32 = u32::MAX;
+/// More than two faces.
+const MANY: u32 = u32::MAX - 1;
 
 /// Which cut faces are cut as one, and which crossings are dropped.
 #[derive(Debug, Default)]
@@ -137,7 +139,12 @@ impl Borders {
             for (place, face) in faces.faces.iter().enumerate() {
                 for &edge in face.edges.iter().filter(|&&edge| edge != UNCUT) {
                     let slots = &mut beside[edge as usize];
-                    slots[usize::from(slots[0] != NONE)] = place as u32;
+                    // Where a result counts pieces twice, it has more than two faces at an edge when it is an operand.
+                    *slots = match *slots {
+                        [NONE, _] => [place as u32, NONE],
+                        [first, NONE] => [first, place as u32],
+                        [first, _] => [first, MANY],
+                    };
                 }
             }
         }
@@ -148,7 +155,8 @@ impl Borders {
                     let side = planes.operands.side_of(edges.edges[index].low);
                     let [f, g] = beside[index];
                     let triangle = |place: u32| faces[side].faces[place as usize].triangle;
-                    let means_nothing = g != NONE && planes.merge(side, triangle(f), triangle(g));
+                    let means_nothing =
+                        ![NONE, MANY].contains(&g) && planes.merge(side, triangle(f), triangle(g));
                     found.push(if means_nothing { [f, g] } else { [NONE; 2] });
                 }
                 found

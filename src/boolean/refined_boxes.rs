@@ -23,6 +23,8 @@ const PARTS_PER_TRIANGLE: usize = 2;
 /// Corners of a triangle in the frame of the boxes.
 pub(super) type Corners = [Vec3A; 3];
 
+/// Coordinates count as at least this large, so that margins do not vanish.
+const TINY: f32 = 1e-12;
 /// Capsules pay if at least one of so many triangles is a needle.
 const NEEDLES_FROM: usize = 4;
 
@@ -86,7 +88,7 @@ impl Boxes {
             let whole = corners(triangle);
             // Middles are rounded, each time by less than a unit in the last place of a coordinate.
             let largest = whole.iter().fold(0.0f32, |most, corner| most.max(corner.abs().max_element()));
-            let margin = Vec3A::splat(2.0 * MOST_HALVINGS as f32 * f32::EPSILON * largest);
+            let margin = Vec3A::splat(2.0 * MOST_HALVINGS as f32 * f32::EPSILON * largest.max(TINY));
             stack.push((whole, halvings));
             while let Some((part, halvings)) = stack.pop() {
                 let tight = box_of(&part);

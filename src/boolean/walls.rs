@@ -92,7 +92,10 @@ fn find(parent: &mut FxHashMap<(usize, u32), (usize, u32)>, mut face: (usize, u3
         if next == face {
             return face;
         }
-        face = next;
+        // Path halving.
+        let above = *parent.entry(next).or_insert(next);
+        parent.insert(face, above);
+        face = above;
     }
 }
 

@@ -17,6 +17,8 @@ const ROUNDS: usize = 8;
 /// Removes the triangles without area all of whose corners are complete.
 pub(super) fn straighten(patch: &mut Patch<'_>) {
     for _ in 0..ROUNDS {
+        // No triangle has a corner twice then.
+        patch.cancel();
         let flats: Vec<u32> = (0..patch.faces.len() as u32)
             .filter(|&index| is_exactly_flat(patch, index))
             .filter(|&index| {
@@ -38,7 +40,6 @@ pub(super) fn straighten(patch: &mut Patch<'_>) {
         for index in 0..patch.faces.len() {
             split_face(patch, index, &splits);
         }
-        patch.cancel();
     }
 }
 
@@ -71,6 +72,9 @@ impl Lines {
             // One triangle of each line through this point.
             let mut first_of_line: Vec<usize> = Vec::new();
             for &(_, place) in group {
+                if patch.position(ends[place][0]) == patch.position(ends[place][1]) {
+                    continue;
+                }
                 let same = first_of_line.iter().find(|&&other| on_one_line(patch, ends[place], ends[other]));
                 match same {
                     Some(&other) => join(&mut line_of, place, other),
@@ -137,7 +141,7 @@ fn along(patch: &Patch<'_>, u: u32, v: u32) -> std::cmp::Ordering {
     by_coordinates.unwrap_or(u.cmp(&v))
 }
 
-/// Whether two segments lie on one line, or one of them is a point.
+/// Whether two segments lie on one line.
 fn on_one_line(patch: &Patch<'_>, x: [u32; 2], y: [u32; 2]) -> bool {
     let ([p, q], ends) = (x.map(|end| patch.position(end)), y.map(|end| patch.position(end)));
     ends.iter().all(|end| collinear(p, q, end))

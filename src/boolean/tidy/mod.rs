@@ -18,8 +18,8 @@ use super::cut::Cutter;
 use super::cut_faces::BitSet;
 use super::multiplicity::Part;
 use super::planes::Planes;
-use crate::Error;
 use crate::parallel::Runner;
+use crate::{Control, Error};
 use patch::Patch;
 use rustc_hash::FxHashSet;
 
@@ -42,8 +42,8 @@ pub(super) struct Settings {
     pub(super) remove_vertices: bool,
     /// The size of rounding: edges and heights up to this are not worth a triangle.
     pub(super) rounding: f64,
-    /// Whether edges are to be subdivided alike wherever they lie on one another, not only between faces of both operands.
-    pub(super) everywhere: bool,
+    /// Whether points at the same place become one where operands touch.
+    pub(super) glue: bool,
     /// Whether to look even where nothing points to work.
     pub(super) always: bool,
 }
@@ -93,7 +93,8 @@ fn tidied(
         zero_area::mark_flat(&mut patch, cutter);
     }
     for round in 0..ROUNDS {
-        let copied_from = separate(&mut patch, cutter, settings.everywhere && round == 0);
+        let glue = settings.glue && round == 0;
+        let copied_from = separate(&mut patch, cutter, glue, runner.control)?;
         let pinched = patch.pinched(&copied_from);
         if !pinched.is_empty() {
             return Ok(Err(pinched));
@@ -115,23 +116,28 @@ fn tidied(
 
 /// Makes the patch a 2-manifold without triangles that have no area. Returns the points made, with those they are copies
 /// of.
-fn separate(patch: &mut Patch<'_>, cutter: &Cutter<'_>, everywhere: bool) -> Vec<(u32, u32)> {
+fn separate(
+    patch: &mut Patch<'_>,
+    cutter: &Cutter<'_>,
+    glue: bool,
+    control: &Control,
+) -> Result<Vec<(u32, u32)>, Error> {
     lines::straighten(patch);
     zero_area::split_chain(patch);
     patch.cancel();
-    if everywhere && cutter.operands.ties() > 0 {
+    if glue && cutter.operands.ties() > 0 {
         shared_edges::identify(patch);
     }
     #[cfg(debug_assertions)]
     let boundary = patch.boundary();
     if cutter.operands.ties() > 0 {
-        shared_edges::split(patch, cutter, true);
+        shared_edges::split(patch, cutter, control)?;
     }
     #[cfg(debug_assertions)]
     assert_eq!(patch.boundary(), boundary, "splitting edges opened the surface");
     let copied_from = manifold::make_manifold(patch);
     patch.connect();
-    copied_from
+    Ok(copied_from)
 }
 
 /// Whether some piece of an edge counts more than once or negatively: rounded surfaces that cross themselves.

@@ -4,6 +4,8 @@
 //! then pass along the whole edge and others along its parts. Bodies that touch in an edge only come apart if all faces
 //! there meet in the same edges. So every edge gets the vertices of the shorter edges that run along it.
 
+use glam::Vec3A;
+use obvhs::aabb::Aabb;
 use rustc_hash::FxHashMap;
 
 use super::super::cut::Cutter;
@@ -12,6 +14,7 @@ use super::patch::{Face, Patch};
 use super::zero_area::is_low;
 use crate::exact::collinear;
 use crate::spatial::{BoxTree, Frame};
+use crate::{Control, Error};
 
 /// An edge, from its lower point to its higher one.
 pub(super) type Edge = (u32, u32);
@@ -21,26 +24,35 @@ const ROUNDS: usize = 4;
 /// Splitting ends when the faces have become so many times as many.
 const MOST_GROWTH: usize = 4;
 
-/// Splits the edges along which shorter ones run; with `everywhere`, before that, all edges on which there are vertices.
-pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>, everywhere: bool) {
-    if everywhere {
-        split_by(patch, |patch| splits_everywhere(patch, cutter));
-    }
-    split_by(patch, |patch| splits(patch, cutter));
+/// Splits the edges between faces on which there are vertices, and then those within a face along which edges of the other
+/// operand run.
+pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>, control: &Control) -> Result<(), Error> {
+    split_by(patch, |patch| splits_between_faces(patch, cutter, control))?;
+    split_by(patch, |patch| splits_along_edges(patch, cutter, control))
 }
 
-fn split_by(patch: &mut Patch<'_>, splits: impl Fn(&Patch<'_>) -> FxHashMap<Edge, Vec<u32>>) {
+/// Edges to split, with the vertices on them from the lower end to the higher one.
+type Splits = FxHashMap<Edge, Vec<u32>>;
+
+/// So many edges are looked at between looks at the limits.
+const EDGES_BETWEEN_CHECKS: usize = 1024;
+
+fn split_by(
+    patch: &mut Patch<'_>,
+    splits: impl Fn(&Patch<'_>) -> Result<Splits, Error>,
+) -> Result<(), Error> {
     let most = MOST_GROWTH * patch.faces.len();
     for _ in 0..ROUNDS {
-        let splits = splits(patch);
+        let splits = splits(patch)?;
         if splits.is_empty() || patch.faces.len() > most {
-            return;
+            break;
         }
         for index in 0..patch.faces.len() {
             split_face(patch, index, &splits);
         }
         patch.cancel();
     }
+    Ok(())
 }
 
 /// Splits the sides of a face that are to be split. Diagonals are left alone, whatever else runs along them: they bound two
@@ -105,7 +117,7 @@ fn points(patch: &Patch<'_>) -> Vec<u32> {
 }
 
 /// All edges on which there are vertices, with these from the lower end to the higher one. (Not those inside one face.)
-fn splits_everywhere(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
+fn splits_between_faces(patch: &Patch<'_>, cutter: &Cutter<'_>, control: &Control) -> Result<Splits, Error> {
     let mut sides: Vec<(u32, u32, Origin)> = Vec::new();
     for face in patch.faces.iter().filter(|face| face.alive) {
         for k in 0..3 {
@@ -125,24 +137,31 @@ fn splits_everywhere(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, 
     let frame = Frame::of(limits(f64::min, f64::INFINITY), limits(f64::max, f64::NEG_INFINITY));
     let tree = BoxTree::new(&points, |point| frame.triangle([patch.position(point); 3]));
     let mut splits = FxHashMap::default();
-    for group in sides.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
+    for (i, group) in sides.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)).enumerate() {
+        if i % EDGES_BETWEEN_CHECKS == 0 {
+            control.check()?;
+        }
         let (u, v, origin) = group[0];
         if group.len() > 1 && group.iter().all(|side| side.2 == origin) {
             continue;
         }
         let mut on: Vec<u32> = Vec::new();
         let (p, q) = (patch.position(u), patch.position(v));
-        tree.meeting(&frame.triangle([p, q, q]), |x| {
-            if x != u && x != v && lies_between(patch, cutter, u, x, v) {
-                on.push(x);
-            }
-        });
+        for along in boxes_along(frame.point(p), frame.point(q)) {
+            tree.meeting(&along, |x| {
+                if x != u && x != v && lies_between(patch, cutter, u, x, v) {
+                    on.push(x);
+                }
+            });
+        }
         if !on.is_empty() {
+            // Boxes have points in common, and points may be at the same place.
             sort_along(patch, u, &mut on);
+            on.dedup_by(|x, y| patch.position(*x) == patch.position(*y));
             splits.insert((u, v), on);
         }
     }
-    splits
+    Ok(splits)
 }
 
 /// Sorts points by their distance from `u`.
@@ -152,29 +171,33 @@ fn sort_along(patch: &Patch<'_>, u: u32, on: &mut [u32]) {
     on.sort_by(|x, y| distance(x).total_cmp(&distance(y)).then(x.cmp(y)));
 }
 
-/// Edges to split, with the vertices on them from the lower end to the higher one: edges of one operand along which edges of
-/// the other run.
-fn splits(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
+/// Edges of one operand along which edges of the other run.
+fn splits_along_edges(patch: &Patch<'_>, cutter: &Cutter<'_>, control: &Control) -> Result<Splits, Error> {
     let edges = edges(patch);
-    // Each edge from both its ends, so that those at one point are together.
-    let mut from_points: Vec<(u32, u32, u8)> =
-        edges.iter().flat_map(|&((u, v), of)| [(u, v, of), (v, u, of)]).collect();
+    // Each edge from both its ends, so that those of the same operands at one point are together.
+    let mut from_points: Vec<(u32, u8, u32)> =
+        edges.iter().flat_map(|&((u, v), of)| [(u, of, v), (v, of, u)]).collect();
     from_points.sort_unstable();
-    let neighbours = |point: u32| {
-        let first = from_points.partition_point(|entry| entry.0 < point);
-        from_points[first..].iter().take_while(move |entry| entry.0 == point)
+    let neighbours = |point: u32, of: u8| {
+        let first = from_points.partition_point(|entry| (entry.0, entry.1) < (point, of));
+        from_points[first..]
+            .iter()
+            .take_while(move |entry| (entry.0, entry.1) == (point, of))
+            .map(|entry| entry.2)
     };
     let mut splits = FxHashMap::default();
     let complete = |&&((u, v), _): &&(Edge, u8)| patch.is_complete(u) && patch.is_complete(v);
-    for &((u, v), of) in edges.iter().filter(complete) {
+    for (i, &((u, v), of)) in edges.iter().filter(complete).enumerate() {
+        if i % EDGES_BETWEEN_CHECKS == 0 {
+            control.check()?;
+        }
         // From vertex to vertex along the edge.
         let mut on: Vec<u32> = Vec::new();
         let mut next = 0;
         let mut from = u;
         loop {
-            for &(_, x, of_x) in neighbours(from) {
-                let may_touch = of | of_x == BOTH && x != u && x != v;
-                if may_touch && !on.contains(&x) && lies_between(patch, cutter, u, x, v) {
+            for x in (1..=BOTH).filter(|&of_x| of | of_x == BOTH).flat_map(|of_x| neighbours(from, of_x)) {
+                if x != u && x != v && !on.contains(&x) && lies_between(patch, cutter, u, x, v) {
                     on.push(x);
                 }
             }
@@ -186,7 +209,23 @@ fn splits(patch: &Patch<'_>, cutter: &Cutter<'_>) -> FxHashMap<Edge, Vec<u32>> {
             splits.insert((u, v), on);
         }
     }
-    splits
+    Ok(splits)
+}
+
+/// Boxes that cover a segment: its own, or those of equal parts of a long one that lies askew, as its own is mostly empty.
+fn boxes_along(p: Vec3A, q: Vec3A) -> impl Iterator<Item = Aabb> {
+    /// From this second largest extent on, in units of the frame.
+    const ASKEW: f32 = 0.05;
+    const PARTS: u8 = 16;
+    const MARGIN: f32 = 16.0 * f32::EPSILON;
+    let [x, y, z] = (q - p).abs().to_array();
+    let parts = if x.min(y).max(x.max(y).min(z)) > ASKEW { PARTS } else { 1 };
+    let margin = if parts == 1 { 0.0 } else { MARGIN * p.abs().max(q.abs()).max_element() };
+    let at = move |i: u8| if i == parts { q } else { p + (q - p) * (f32::from(i) / f32::from(parts)) };
+    (0..parts).map(move |i| {
+        let (from, to) = (at(i), at(i + 1));
+        Aabb { min: from.min(to) - margin, max: from.max(to) + margin }
+    })
 }
 
 /// Faces of both operands.
