@@ -69,7 +69,7 @@ impl Candidates {
             + size_of::<u32>()
             + if a.capsules.is_empty() { 0 } else { size_of::<Capsule>() };
         let memory = runner.control.reserve((items * bytes_per_item) as u64)?;
-        let (tree_a, tree_b) = runner.both(|| BoxTree::of_boxes(a.boxes), || BoxTree::of_boxes(b.boxes));
+        let (tree_a, tree_b) = runner.both(|| BoxTree::of_boxes(&a.boxes), || BoxTree::of_boxes(&b.boxes));
         Ok(Self {
             trees: [tree_a, tree_b],
             triangles: [a.triangles, b.triangles],

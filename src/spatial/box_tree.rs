@@ -44,15 +44,15 @@ impl BoxTree {
 
     /// The tree of the given items.
     pub(crate) fn new(items: &[u32], box_of: impl Fn(u32) -> Aabb) -> Self {
-        let mut tree = Self::of_boxes(items.iter().map(|&item| box_of(item)).collect());
+        let mut tree = Self::of_boxes(&items.iter().map(|&item| box_of(item)).collect::<Vec<_>>());
         tree.items.iter_mut().for_each(|item| *item = items[*item as usize]);
         tree
     }
 
     /// The tree of the given boxes; items are places in their list.
-    pub(crate) fn of_boxes(unsorted: Vec<Aabb>) -> Self {
+    pub(crate) fn of_boxes(unsorted: &[Aabb]) -> Self {
         let mut bounds = Aabb { min: Vec3A::splat(f32::INFINITY), max: Vec3A::splat(f32::NEG_INFINITY) };
-        for aabb in &unsorted {
+        for aabb in unsorted {
             let centre = aabb.min + aabb.max;
             bounds.min = bounds.min.min(centre);
             bounds.max = bounds.max.max(centre);

@@ -147,7 +147,7 @@ fn splits_between_faces(patch: &Patch<'_>, cutter: &Cutter<'_>, control: &Contro
         }
         let mut on: Vec<u32> = Vec::new();
         let (p, q) = (patch.position(u), patch.position(v));
-        for along in boxes_along(frame.point(p), frame.point(q)) {
+        for along in boxes_along(frame.point(p), frame.point(q), points.len()) {
             tree.meeting(&along, |x| {
                 if x != u && x != v && lies_between(patch, cutter, u, x, v) {
                     on.push(x);
@@ -178,31 +178,41 @@ fn splits_along_edges(patch: &Patch<'_>, cutter: &Cutter<'_>, control: &Control)
     let mut from_points: Vec<(u32, u8, u32)> =
         edges.iter().flat_map(|&((u, v), of)| [(u, of, v), (v, of, u)]).collect();
     from_points.sort_unstable();
-    let neighbours = |point: u32, of: u8| {
-        let first = from_points.partition_point(|entry| (entry.0, entry.1) < (point, of));
-        from_points[first..]
-            .iter()
-            .take_while(move |entry| (entry.0, entry.1) == (point, of))
-            .map(|entry| entry.2)
+    let around = |point: u32| {
+        let first = from_points.partition_point(|entry| entry.0 < point);
+        let after = first + from_points[first..].partition_point(|entry| entry.0 == point);
+        &from_points[first..after]
     };
+    // Those of them with edges of certain operands.
+    fn neighbours(around: &[(u32, u8, u32)], of: u8) -> impl Iterator<Item = u32> {
+        let first = around.partition_point(|entry| entry.1 < of);
+        around[first..].iter().take_while(move |entry| entry.1 == of).map(|entry| entry.2)
+    }
     let mut splits = FxHashMap::default();
-    let complete = |&&((u, v), _): &&(Edge, u8)| patch.is_complete(u) && patch.is_complete(v);
-    for (i, &((u, v), of)) in edges.iter().filter(complete).enumerate() {
+    let mut around_u = (u32::MAX, [].as_slice());
+    for (i, &((u, v), of)) in edges.iter().enumerate() {
         if i % EDGES_BETWEEN_CHECKS == 0 {
             control.check()?;
+        }
+        if !patch.is_complete(u) || !patch.is_complete(v) {
+            continue;
+        }
+        if around_u.0 != u {
+            around_u = (u, around(u));
         }
         // From vertex to vertex along the edge.
         let mut on: Vec<u32> = Vec::new();
         let mut next = 0;
-        let mut from = u;
+        let mut here = around_u.1;
         loop {
-            for x in (1..=BOTH).filter(|&of_x| of | of_x == BOTH).flat_map(|of_x| neighbours(from, of_x)) {
+            for x in (1..=BOTH).filter(|&of_x| of | of_x == BOTH).flat_map(|of_x| neighbours(here, of_x)) {
                 if x != u && x != v && !on.contains(&x) && lies_between(patch, cutter, u, x, v) {
                     on.push(x);
                 }
             }
             let Some(&x) = on.get(next) else { break };
-            (from, next) = (x, next + 1);
+            here = around(x);
+            next += 1;
         }
         if !on.is_empty() {
             sort_along(patch, u, &mut on);
@@ -212,14 +222,17 @@ fn splits_along_edges(patch: &Patch<'_>, cutter: &Cutter<'_>, control: &Control)
     Ok(splits)
 }
 
-/// Boxes that cover a segment: its own, or those of equal parts of a long one that lies askew, as its own is mostly empty.
-fn boxes_along(p: Vec3A, q: Vec3A) -> impl Iterator<Item = Aabb> {
+/// Boxes that cover a segment: its own, or those of equal parts of a long one that lies askew among many points, as its own is
+/// mostly empty.
+fn boxes_along(p: Vec3A, q: Vec3A, points: usize) -> impl Iterator<Item = Aabb> {
     /// From this second largest extent on, in units of the frame.
     const ASKEW: f32 = 0.05;
+    const MANY_POINTS: usize = 50_000;
     const PARTS: u8 = 16;
     const MARGIN: f32 = 16.0 * f32::EPSILON;
     let [x, y, z] = (q - p).abs().to_array();
-    let parts = if x.min(y).max(x.max(y).min(z)) > ASKEW { PARTS } else { 1 };
+    let is_long = x.min(y).max(x.max(y).min(z)) > ASKEW;
+    let parts = if is_long && points >= MANY_POINTS { PARTS } else { 1 };
     let margin = if parts == 1 { 0.0 } else { MARGIN * p.abs().max(q.abs()).max_element() };
     let at = move |i: u8| if i == parts { q } else { p + (q - p) * (f32::from(i) / f32::from(parts)) };
     (0..parts).map(move |i| {
