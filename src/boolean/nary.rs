@@ -1,7 +1,8 @@
 //! Many operands: which pairs are combined in which order.
 //!
-//! A union merges neighbours first (space is halved again and again), so that most merges are local and pieces vanish early; a difference takes the union of all tools off the first operand in one step; an intersection
-//! starts with the smallest operands; a symmetric difference goes from left to right.
+//! A union merges neighbours first (space is halved again and again), so that most merges are local and pieces vanish
+//! early; a difference takes the union of all tools off the first operand in one step; an intersection starts with the
+//! smallest operands; a symmetric difference goes from left to right.
 
 use std::borrow::Cow;
 

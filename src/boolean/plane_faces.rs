@@ -12,6 +12,7 @@ use super::operands::Operands;
 use super::planes::Planes;
 use crate::Error;
 use crate::exact::{Sign, orient3d};
+use crate::mesh::UnionFind;
 use crate::parallel::Runner;
 
 /// No face, segment or node.
@@ -156,7 +157,7 @@ impl Borders {
                     let [f, g] = beside[index];
                     let triangle = |place: u32| faces[side].faces[place as usize].triangle;
                     let means_nothing =
-                        ![NONE, MANY].contains(&g) && planes.merge(side, triangle(f), triangle(g));
+                        ![NONE, MANY].contains(&g) && planes.are_mergeable(side, triangle(f), triangle(g));
                     found.push(if means_nothing { [f, g] } else { [NONE; 2] });
                 }
                 found
@@ -192,28 +193,16 @@ impl Borders {
 
 /// Joins faces by pairs: for each face the first of its class, and the next one.
 fn join(count: usize, pairs: impl Iterator<Item = [u32; 2]>) -> (Vec<u32>, Vec<u32>) {
-    fn root(parent: &mut [u32], mut place: u32) -> u32 {
-        while parent[place as usize] != place {
-            let above = parent[parent[place as usize] as usize];
-            parent[place as usize] = above;
-            place = above;
-        }
-        place
-    }
-    let mut first: Vec<u32> = (0..count as u32).collect();
-    for [f, g] in pairs {
-        let (f, g) = (root(&mut first, f), root(&mut first, g));
-        first[f.max(g) as usize] = f.min(g);
-    }
+    let mut classes = UnionFind::new(count);
+    pairs.for_each(|[f, g]| classes.join(f, g));
+    let first: Vec<u32> = (0..count as u32).map(|place| classes.root(place)).collect();
     let mut next = vec![NONE; count];
     // The last one met so far of each class, at the place of its first.
     let mut last: Vec<u32> = (0..count as u32).collect();
-    for place in 0..count as u32 {
-        let root = root(&mut first, place);
-        first[place as usize] = root;
-        if root != place {
-            next[last[root as usize] as usize] = place;
-            last[root as usize] = place;
+    for (place, &first) in (0..).zip(&first) {
+        if first != place {
+            next[last[first as usize] as usize] = place;
+            last[first as usize] = place;
         }
     }
     (first, next)

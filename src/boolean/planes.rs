@@ -48,7 +48,7 @@ impl Planes<'_> {
     }
 
     /// Whether two triangles of an operand are mergeable; fast where they are visibly not coplanar, as nearly all are.
-    pub(super) fn merge(&self, side: usize, t: u32, u: u32) -> bool {
+    pub(super) fn are_mergeable(&self, side: usize, t: u32, u: u32) -> bool {
         let [a, b, c] = self.operands.corners(side, t).map(|corner| corner.position);
         let visible = self.operands.corners(side, u).iter().any(|d| {
             let (determinant, bound) = orient3d_filter(&a, &b, &c, &d.position);

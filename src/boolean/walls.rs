@@ -100,7 +100,7 @@ fn find(parent: &mut FxHashMap<(usize, u32), (usize, u32)>, mut face: (usize, u3
 }
 
 /// For triangles of A and of B in exactly the same plane whether they look opposite ways; `None` for others.
-pub(super) fn touch(operands: &Operands<'_>, s: u32, t: u32) -> Option<bool> {
+fn touch(operands: &Operands<'_>, s: u32, t: u32) -> Option<bool> {
     let a = operands.corners(0, s).map(|corner| corner.position);
     let b = operands.corners(1, t).map(|corner| corner.position);
     let coplanar = b.iter().all(|p| orient3d(&a[0], &a[1], &a[2], p) == Sign::Zero);

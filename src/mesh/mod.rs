@@ -31,6 +31,7 @@ pub use diagnosis::{Diagnosis, Fault, Place};
 pub use groups::{FaceGroup, FaceGroups, Material};
 pub use self_crossing::{SelfCrossing, SelfCrossings};
 pub use solid::{Cleaning, Solid};
+pub(crate) use union_find::UnionFind;
 
 use crate::Error;
 

@@ -1,17 +1,17 @@
 //! Disjoint sets of indices.
 
 /// Sets of the indices below a limit; at first each index is alone.
-pub(super) struct UnionFind {
+pub(crate) struct UnionFind {
     parents: Vec<u32>,
 }
 
 impl UnionFind {
-    pub(super) fn new(size: usize) -> Self {
+    pub(crate) fn new(size: usize) -> Self {
         Self { parents: (0..size as u32).collect() }
     }
 
     /// The lowest index of the set `index` is in.
-    pub(super) fn root(&mut self, mut index: u32) -> u32 {
+    pub(crate) fn root(&mut self, mut index: u32) -> u32 {
         while self.parents[index as usize] != index {
             let grandparent = self.parents[self.parents[index as usize] as usize];
             self.parents[index as usize] = grandparent;
@@ -21,13 +21,13 @@ impl UnionFind {
     }
 
     /// Makes one set of two.
-    pub(super) fn join(&mut self, a: u32, b: u32) {
+    pub(crate) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.parents[a.max(b) as usize] = a.min(b);
     }
 
     /// The sets numbered in the order of their lowest indices: how many, and the number of each index.
-    pub(super) fn labels(mut self) -> (usize, Vec<u32>) {
+    pub(crate) fn labels(mut self) -> (usize, Vec<u32>) {
         let mut count = 0;
         let mut labels = vec![0; self.parents.len()];
         for index in 0..self.parents.len() {

@@ -10,6 +10,7 @@ use super::patch::Patch;
 use super::shared_edges::{Edge, split_face};
 use super::zero_area::{identify, is_exactly_flat};
 use crate::exact::collinear;
+use crate::mesh::UnionFind;
 
 /// Rounds: points that become one may leave further triangles without area.
 const ROUNDS: usize = 8;
@@ -67,7 +68,7 @@ impl Lines {
         let mut at_points: Vec<(u32, usize)> =
             (0..flats.len()).flat_map(|place| corners(place).map(|point| (point, place))).collect();
         at_points.sort_unstable();
-        let mut line_of: Vec<usize> = (0..flats.len()).collect();
+        let mut line_of = UnionFind::new(flats.len());
         for group in at_points.chunk_by(|x, y| x.0 == y.0) {
             // One triangle of each line through this point.
             let mut first_of_line: Vec<usize> = Vec::new();
@@ -77,14 +78,14 @@ impl Lines {
                 }
                 let same = first_of_line.iter().find(|&&other| on_one_line(patch, ends[place], ends[other]));
                 match same {
-                    Some(&other) => join(&mut line_of, place, other),
+                    Some(&other) => line_of.join(place as u32, other as u32),
                     None => first_of_line.push(place),
                 }
             }
         }
-        let mut members: Vec<(usize, u32)> = (0..flats.len())
+        let mut members: Vec<(u32, u32)> = (0..flats.len())
             .flat_map(|place| {
-                let line = root(&mut line_of, place);
+                let line = line_of.root(place as u32);
                 corners(place).map(|point| (line, point))
             })
             .collect();
@@ -145,17 +146,4 @@ fn along(patch: &Patch<'_>, u: u32, v: u32) -> std::cmp::Ordering {
 fn on_one_line(patch: &Patch<'_>, x: [u32; 2], y: [u32; 2]) -> bool {
     let ([p, q], ends) = (x.map(|end| patch.position(end)), y.map(|end| patch.position(end)));
     ends.iter().all(|end| collinear(p, q, end))
-}
-
-fn root(parent: &mut [usize], mut place: usize) -> usize {
-    while parent[place] != place {
-        parent[place] = parent[parent[place]];
-        place = parent[place];
-    }
-    place
-}
-
-fn join(parent: &mut [usize], x: usize, y: usize) {
-    let (x, y) = (root(parent, x), root(parent, y));
-    parent[x.max(y)] = x.min(y);
 }

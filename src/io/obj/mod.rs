@@ -106,7 +106,8 @@ fn parse_pieces<'a>(bytes: &'a [u8], count: usize, options: &ReadOptions) -> Res
         Err(Fault::Relative) => match Piece::parse(bytes, 0..bytes.len(), &options.control) {
             Ok(piece) => Ok(vec![piece]),
             Err(Fault::Error(error)) => Err(error),
-            Err(Fault::Relative) => unreachable!("the first piece knows the vertices before it: none"),
+            // The first piece knows the vertices before it: none.
+            Err(Fault::Relative) => Err(Error::InvalidArgument("an index relative to no vertex".into())),
         },
     }
 }
