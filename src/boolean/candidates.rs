@@ -14,6 +14,11 @@ use crate::spatial::{BoxTree, Cell, Frame, Occupancy, visit_pairs};
 
 /// Below this many triangles near the other operand, ruling some out costs more than it saves.
 const CULL_FROM: usize = 2_000;
+/// Grid cells along half the region, times the usual length of a triangle.
+const CELLS_PER_LENGTH: f32 = 1.4;
+/// So many triangles tell how long they usually are, and whether ruling some out pays: it does not if more than this part of them stays.
+const SAMPLE: usize = 1_000;
+const USELESS: f64 = 0.8;
 /// So many grids are marked at once.
 const MOST_GRIDS: usize = 8;
 /// So many triangles are looked up in the grid at once.
@@ -55,7 +60,8 @@ impl Candidates {
         let near = [operands.near(0), operands.near(1)];
         let culled = (near[0].len().min(near[1].len()) >= CULL_FROM)
             .then(|| cull(operands, &frame, runner))
-            .transpose()?;
+            .transpose()?
+            .flatten();
         let corners = |side: usize, t: u32| corners(operands, &frame, side, t);
         let boxes = |side: usize| {
             let items = culled.as_ref().map_or(near[side], |culled| &culled[side]);
@@ -103,12 +109,25 @@ fn corners(operands: &Operands<'_>, frame: &Frame, side: usize, triangle: u32) -
     operand.triangles[triangle as usize].map(|v| frame.point(&operand.positions[v as usize]))
 }
 
-/// The near triangles of each side that pass a grid cell which the other side passes, too.
-fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> Result<[Vec<u32>; 2], Error> {
+/// How long the boxes of triangles are on the average.
+fn usual_length(triangles: &[u32], corners: impl Fn(u32) -> Corners) -> f32 {
+    let sample = triangles.iter().step_by(triangles.len().div_ceil(SAMPLE));
+    let count = sample.len() as f32;
+    let length = |&t: &u32| {
+        let [a, b, c] = corners(t);
+        (a.max(b).max(c) - a.min(b).min(c)).max_element()
+    };
+    sample.map(length).sum::<f32>() / count
+}
+
+/// The near triangles of each side that pass a grid cell which the other side passes, too; `None` where that would be
+/// nearly all.
+fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> Result<Option<[Vec<u32>; 2]>, Error> {
     let near = [operands.near(0), operands.near(1)];
+    let corners = |side: usize, t: u32| corners(operands, frame, side, t);
     // Cells up to two triangles wide: most triangles are in one or two of them.
-    let resolution = ((near[0].len().max(near[1].len()) as f64).sqrt() / 3.0) as u32;
-    let grid = Occupancy::new(resolution);
+    let usual = |side: usize| usual_length(near[side], |t| corners(side, t));
+    let grid = Occupancy::new((CELLS_PER_LENGTH / usual(0).min(usual(1))) as u32);
     // Each vertex once, unless most of them belong to no near triangle.
     let cells_of_vertices = |side: usize| -> Vec<Cell> {
         let positions = operands.sides[side].positions;
@@ -119,7 +138,6 @@ fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> Result<[V
     };
     let (of_a, of_b) = runner.both(|| cells_of_vertices(0), || cells_of_vertices(1));
     let of_vertices = [of_a, of_b];
-    let corners = |side: usize, t: u32| corners(operands, frame, side, t);
     let cells = |grid: &Occupancy, side: usize, t: u32| {
         if of_vertices[side].is_empty() {
             return corners(side, t).map(|corner| grid.cell(corner));
@@ -149,6 +167,13 @@ fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> Result<[V
         pieces.for_each(|piece| all.extend(piece));
         Ok(all)
     };
-    let of_b = passing(&marked_by(0, near[0])?, 1)?;
-    Ok([passing(&marked_by(1, &of_b)?, 0)?, of_b])
+    let by_a = marked_by(0, near[0])?;
+    // Where surfaces run side by side, hardly anything can be ruled out.
+    let sample = near[1].iter().step_by(near[1].len().div_ceil(SAMPLE));
+    let passing_sample = sample.clone().filter(|&&t| by_a.is_marked(cells(&by_a, 1, t), || corners(1, t)));
+    if passing_sample.count() as f64 > USELESS * sample.len() as f64 {
+        return Ok(None);
+    }
+    let of_b = passing(&by_a, 1)?;
+    Ok(Some([passing(&marked_by(1, &of_b)?, 0)?, of_b]))
 }
