@@ -16,6 +16,9 @@ use crate::spatial::{Frame, Occupancy, Regions};
 const DIVIDE_FROM: usize = 1_000;
 /// At most so many cells along an axis: their numbers have 15 bits.
 const MOST_CELLS: u32 = 32;
+/// So many triangles tell how long they usually are, and so many cells they may usually pass.
+const SAMPLE: usize = 256;
+const MOST_PASSED: f32 = 8.0;
 /// So many vertices or triangles are looked at by one thread at once.
 const PIECE: usize = 1 << 14;
 
@@ -45,6 +48,8 @@ impl Place {
 pub(super) struct Overlap {
     /// The common part of the operands' boxes, if there is one.
     pub(super) common: Option<Bounds>,
+    /// The shortest side of a cell of the coarse grid, in units of the common box's frame.
+    pub(super) cell_length: f32,
     /// By side, where each vertex is; empty if all are outside the other operand's box.
     pub(super) places: [Vec<Place>; 2],
     /// By side, the triangles that may meet the other operand or leave the common box, ascending. Of every vertex that the
@@ -68,6 +73,7 @@ impl Overlap {
             let nowhere = || Regions::of(&Occupancy::over(&Aabb::INVALID, 1));
             return Ok(Self {
                 common: None,
+                cell_length: f32::INFINITY,
                 places: Default::default(),
                 near: Default::default(),
                 regions: [nowhere(), nowhere()],
@@ -75,7 +81,7 @@ impl Overlap {
         };
         let frame = Frame::of(common.low, common.high);
         let region = Aabb { min: frame.point(&common.low), max: frame.point(&common.high) };
-        let grid = Occupancy::over(&region, resolution(sides));
+        let grid = Occupancy::over(&region, resolution(sides, &frame, &region));
         let seen = |side: usize| -> Result<Seen, Error> {
             let view = View { operand: &sides[side], common: &common, frame: &frame, grid: &grid };
             let places = view.places(runner)?;
@@ -91,17 +97,40 @@ impl Overlap {
         let (near_a, near_b) = runner.both(|| meeting(0), || meeting(1));
         let near = [near_a?, near_b?];
         let regions = [1, 0].map(|other| Regions::of(&seen[other].passed));
-        Ok(Self { common: Some(common), places: seen.map(|seen| seen.places), near, regions })
+        let cell_length = grid.cell_length();
+        Ok(Self { common: Some(common), cell_length, places: seen.map(|seen| seen.places), near, regions })
     }
 }
 
-/// Cells along each axis of the coarse grid: up to three triangles wide, for the operand with fewer.
-fn resolution(sides: &[Operand<'_>; 2]) -> u32 {
+/// Cells along each axis of the coarse grid: up to three triangles wide, for the operand with fewer, but such that needles do
+/// not pass too many.
+fn resolution(sides: &[Operand<'_>; 2], frame: &Frame, region: &Aabb) -> u32 {
     let fewest = sides[0].triangles.len().min(sides[1].triangles.len());
     if fewest < DIVIDE_FROM {
         return 1;
     }
-    (1 << ((fewest as f64).sqrt() / 3.0).max(1.0).log2() as u32).min(MOST_CELLS)
+    let finest = (1 << ((fewest as f64).sqrt() / 3.0).max(1.0).log2() as u32).min(MOST_CELLS);
+    let extent = (region.max - region.min).max_element();
+    let longest = sides.iter().map(|side| usual_length(side, frame, region)).fold(0.0, f32::max);
+    (0..)
+        .map(|i| finest >> i)
+        .find(|&cells| cells <= 4 || longest * cells as f32 <= MOST_PASSED * extent)
+        .unwrap_or(1)
+}
+
+/// How long the parts of triangles in a region usually are.
+fn usual_length(operand: &Operand<'_>, frame: &Frame, region: &Aabb) -> f32 {
+    let sample = operand.triangles.iter().step_by(operand.triangles.len().div_ceil(SAMPLE));
+    let (mut sum, mut count) = (0.0, 0.0f32);
+    for triangle in sample {
+        let [a, b, c] = triangle.map(|v| frame.point(&operand.positions[v as usize]));
+        let (low, high) = (a.min(b).min(c).max(region.min), a.max(b).max(c).min(region.max));
+        if low.cmple(high).all() {
+            sum += (high - low).max_element();
+            count += 1.0;
+        }
+    }
+    sum / count.max(1.0)
 }
 
 /// What one operand looks like in the grid.

@@ -65,7 +65,7 @@ pub(super) fn combine(
     let operands = Operands::new(sides, sense(operation, settings.fuse), largest, near);
     runner.control.check()?;
 
-    let candidates = Candidates::new(&operands, overlap.common, runner)?;
+    let candidates = Candidates::new(&operands, &overlap, runner)?;
     let crossings = crossings::find(&operands, &candidates, runner)?;
     let mut edges = CutEdges::new(&operands, &crossings, runner)?;
     runner.control.check()?;

@@ -14,10 +14,11 @@ const MASK: u32 = (1 << BITS) - 1;
 const DIVIDE_FROM: u32 = 12;
 /// So often a triangle is divided at most.
 const MAX_DIVISIONS: u32 = 1 << 14;
-/// Divided parts reach a bit further, in cells, so that rounding of midpoints loses nothing: so much, and so much for each
-/// cell that the triangle reaches from the origin. (Each of fewer than 64 divisions rounds by half a unit in the last place.)
+/// Divided parts reach a bit further, in cells, so that rounding loses nothing: so much, and so much for each cell that the
+/// triangle reaches from the origin. (Three half units in the last place for a corner; one for every midpoint, of coordinates
+/// that shrink by half in two divisions.)
 const MARGIN: f32 = 1.0 / 64.0;
-const MARGIN_PER_CELL: f32 = 64.0 * f32::EPSILON;
+const MARGIN_PER_CELL: f32 = 8.0 * f32::EPSILON;
 
 /// A grid of bits over a region of a [`Frame`](super::Frame).
 #[derive(Debug)]
@@ -78,6 +79,11 @@ impl Occupancy {
     pub(crate) fn united(mut self, other: Self) -> Self {
         self.bits.iter_mut().zip(other.bits).for_each(|(word, other)| *word |= other);
         self
+    }
+
+    /// The shortest side of a cell, in units of the frame.
+    pub(crate) fn cell_length(&self) -> f32 {
+        1.0 / self.scale.max_element()
     }
 
     /// Cells along each axis.
@@ -197,16 +203,23 @@ fn cell_range(low: Vec3A, high: Vec3A, resolution: u32) -> Cells {
     Cells { low: cell(low), high: cell(high) }
 }
 
-/// Calls `visit` for each cell of a range until it returns true; returns whether it did.
+/// Calls `visit` with words and bits that hold the cells of a range, until it returns true; returns whether it did.
 #[inline]
 fn for_cells(cells: Cells, shift: u32, mut visit: impl FnMut(usize, u64) -> bool) -> bool {
-    for z in cells.low[2]..=cells.high[2] {
-        for y in cells.low[1]..=cells.high[1] {
-            for x in cells.low[0]..=cells.high[0] {
-                let (word, bit) = place([x, y, z], shift);
-                if visit(word, bit) {
+    let Cells { low, high } = cells;
+    for z in low[2]..high[2] + 1 {
+        for y in low[1]..high[1] + 1 {
+            let row = (z << shift | y) << shift;
+            let (mut first, last) = (row | low[0], row | high[0]);
+            // Cells along x are bits side by side.
+            while first / 64 < last / 64 {
+                if visit(first as usize / 64, !0 << (first % 64)) {
                     return true;
                 }
+                first = (first / 64 + 1) * 64;
+            }
+            if visit(first as usize / 64, !0 << (first % 64) & !0 >> (63 - last % 64)) {
+                return true;
             }
         }
     }
@@ -267,12 +280,16 @@ mod tests {
     #[test]
     fn triangles_with_a_common_point_meet_in_a_cell() {
         let mut rng = ChaCha8Rng::seed_from_u64(14);
-        for round in 0..3_000 {
-            let mut grid = Occupancy::new([4, 30, 128][round % 3]);
+        for round in 0..4_000 {
+            let small = Aabb { min: Vec3A::splat(-0.9), max: Vec3A::new(0.9, 1.5, 0.95) };
+            let mut grid = match round % 4 {
+                3 => Occupancy::over(&small, 32),
+                i => Occupancy::new([4, 30, 128][i]),
+            };
             let mut point =
                 |size: f32| Vec3A::new(rng.random(), rng.random(), rng.random()) * 2.0 * size - size;
             // Two triangles through one point: its barycentric coordinates in both are a third.
-            let size = [1.2, 0.05, 1e-4][round / 3 % 3];
+            let size = [1.2, 0.05, 1e-4, 3e4][round / 4 % 4];
             let (a, b, centre) = (point(size), point(size), point(0.9));
             let first = [centre + a, centre + b, centre - a - b];
             let (a, b) = (point(1.5), point(1e-3));
