@@ -4,7 +4,8 @@
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
-use super::capsule::Capsule;
+use super::capsule::{self, Capsule};
+use super::capsule_tree::{self, CapsuleTree};
 use super::operands::Operands;
 use super::overlap::{Overlap, joined};
 use super::refined_boxes::{self, Boxes, Corners};
@@ -15,6 +16,9 @@ use crate::spatial::{BoxTree, Cell, Frame, Occupancy, visit_pairs};
 
 /// Below this many triangles near the other operand, ruling some out costs more than it saves.
 const CULL_FROM: usize = 2_000;
+/// Capsules pay from so many pairs of triangles on, if at least one of so many triangles is a needle.
+const CAPSULES_FROM_PAIRS: usize = 1 << 14;
+const NEEDLES_FROM: usize = 4;
 /// The cells must be so many times shorter than those of the overlap.
 const FINER: f32 = 2.0;
 /// More grid cells for each triangle, on the average, are too many.
@@ -29,14 +33,17 @@ const MOST_GRIDS: usize = 8;
 /// So many triangles are looked up in the grid at once.
 const TRIANGLES_PER_PIECE: usize = 1 << 14;
 
-/// The triangles of both operands that may meet the other, in hierarchies of boxes.
+/// The triangles of both operands that may meet the other, in hierarchies.
 pub(super) struct Candidates {
-    /// Hierarchies over places in the lists below.
-    trees: [BoxTree; 2],
-    triangles: [Vec<u32>; 2],
-    /// Capsules in the boxes; empty where there are few needles.
-    capsules: [Vec<Capsule>; 2],
+    hierarchies: Hierarchies,
     _memory: Reservation,
+}
+
+enum Hierarchies {
+    /// Of boxes, over places in lists of triangles.
+    Boxes([BoxTree; 2], [Vec<u32>; 2]),
+    /// Of capsules, over triangles, where there are many needles.
+    Capsules([CapsuleTree; 2]),
 }
 
 impl Candidates {
@@ -47,14 +54,9 @@ impl Candidates {
     pub(super) fn new(operands: &Operands<'_>, overlap: &Overlap, runner: Runner<'_>) -> Result<Self, Error> {
         runner.control.check()?;
         let Some(common) = overlap.common else {
-            let nothing = runner.control.reserve(0)?;
             let trees = [BoxTree::empty(), BoxTree::empty()];
-            return Ok(Self {
-                trees,
-                triangles: Default::default(),
-                capsules: Default::default(),
-                _memory: nothing,
-            });
+            let hierarchies = Hierarchies::Boxes(trees, Default::default());
+            return Ok(Self { hierarchies, _memory: runner.control.reserve(0)? });
         };
         let frame = Frame::of(common.low, common.high);
         let near = [operands.near(0), operands.near(1)];
@@ -62,46 +64,48 @@ impl Candidates {
             .then(|| cull(operands, &frame, overlap.cell_length, runner))
             .transpose()?
             .flatten();
+        let items = [0, 1].map(|side| culled.as_ref().map_or(near[side], |culled| &culled[side]));
         let corners = |side: usize, t: u32| corners(operands, &frame, side, t);
-        let boxes = |side: usize| {
-            let items = culled.as_ref().map_or(near[side], |culled| &culled[side]);
-            Boxes::new(items, |t| corners(side, t))
-        };
+        let many = items[0].len().saturating_mul(items[1].len()) >= CAPSULES_FROM_PAIRS;
+        if many && (0..2).any(|side| has_needles(items[side], |t| corners(side, t))) {
+            let bytes = (items[0].len() + items[1].len()) * CapsuleTree::BYTES_PER_ITEM;
+            let memory = runner.control.reserve(bytes as u64)?;
+            let tree = |side: usize| CapsuleTree::new(items[side], |t| Capsule::of(&corners(side, t)));
+            let (a, b) = runner.both(|| tree(0), || tree(1));
+            return Ok(Self { hierarchies: Hierarchies::Capsules([a, b]), _memory: memory });
+        }
+        let boxes = |side: usize| Boxes::new(items[side], |t| corners(side, t));
         let (a, b) = runner.both(|| boxes(0), || boxes(1));
         let common = Aabb { min: frame.point(&common.low), max: frame.point(&common.high) };
         let [a, b] = refined_boxes::refine([a, b], &common, corners);
-        let items = a.boxes.len() + b.boxes.len();
-        let bytes_per_item = BoxTree::BYTES_PER_ITEM
-            + size_of::<u32>()
-            + if a.capsules.is_empty() { 0 } else { size_of::<Capsule>() };
-        let memory = runner.control.reserve((items * bytes_per_item) as u64)?;
+        let bytes = (a.boxes.len() + b.boxes.len()) * (BoxTree::BYTES_PER_ITEM + size_of::<u32>());
+        let memory = runner.control.reserve(bytes as u64)?;
         let (tree_a, tree_b) = runner.both(|| BoxTree::of_boxes(&a.boxes), || BoxTree::of_boxes(&b.boxes));
-        Ok(Self {
-            trees: [tree_a, tree_b],
-            triangles: [a.triangles, b.triangles],
-            capsules: [a.capsules, b.capsules],
-            _memory: memory,
-        })
+        let hierarchies = Hierarchies::Boxes([tree_a, tree_b], [a.triangles, b.triangles]);
+        Ok(Self { hierarchies, _memory: memory })
     }
 
-    /// Calls `visit` for all pairs of a triangle of A and one of B whose boxes meet; more than once where several of their
-    /// boxes do.
+    /// Calls `visit` for all pairs of a triangle of A and one of B that the hierarchies do not tell apart; more than once
+    /// where several of their boxes meet.
     pub(super) fn visit<T: Send>(
         &self,
         runner: Runner<'_>,
         visit: impl Fn(u32, u32, &mut Vec<T>) + Sync,
     ) -> Result<Vec<T>, Error> {
-        let [of_a, of_b] = &self.triangles;
-        let [a, b] = &self.trees;
-        if self.capsules[0].is_empty() || self.capsules[1].is_empty() {
-            return visit_pairs(a, b, runner, |i, j, found| visit(of_a[i as usize], of_b[j as usize], found));
-        }
-        visit_pairs(a, b, runner, |i, j, found| {
-            if !self.capsules[0][i as usize].is_apart(&self.capsules[1][j as usize]) {
-                visit(of_a[i as usize], of_b[j as usize], found);
+        match &self.hierarchies {
+            Hierarchies::Boxes([a, b], [of_a, of_b]) => {
+                visit_pairs(a, b, runner, |i, j, found| visit(of_a[i as usize], of_b[j as usize], found))
             }
-        })
+            Hierarchies::Capsules([a, b]) => capsule_tree::visit_pairs(a, b, runner, visit),
+        }
     }
+}
+
+/// Whether many triangles are needles.
+fn has_needles(triangles: &[u32], corners: impl Fn(u32) -> Corners) -> bool {
+    let sample = triangles.iter().step_by(triangles.len().div_ceil(SAMPLE).max(1));
+    let needles = sample.clone().filter(|&&t| capsule::is_needle(&corners(t))).count();
+    needles * NEEDLES_FROM >= sample.len()
 }
 
 fn corners(operands: &Operands<'_>, frame: &Frame, side: usize, triangle: u32) -> Corners {

@@ -6,6 +6,8 @@ use glam::Vec3A;
 const SLENDER: f32 = 8.0;
 /// Widening of a capsule, in units of its largest coordinate: far more than single precision loses below.
 const MARGIN: f32 = 1e-4;
+/// Widening of a capsule round two, in the same units.
+const ROUNDING: f32 = 16.0 * f32::EPSILON;
 /// Lines at an angle whose sine squared is less are taken for parallel.
 const PARALLEL: f32 = 1e-4;
 /// Coordinates count as at least this large, so that squares do not vanish unnoticed.
@@ -33,6 +35,69 @@ impl Capsule {
             radius: (r - p).cross(direction).length() + MARGIN * largest.max(TINY),
             half_length: 0.5 * length,
         }
+    }
+
+    pub(super) fn middle(&self) -> Vec3A {
+        self.middle
+    }
+
+    pub(super) fn direction(&self) -> Vec3A {
+        self.direction
+    }
+
+    #[cfg(test)]
+    pub(super) fn radius(&self) -> f32 {
+        self.radius
+    }
+
+    /// Whether this is much longer than wide.
+    pub(super) fn is_slender(&self) -> bool {
+        2.0 * self.half_length > SLENDER * self.radius
+    }
+
+    /// How far it reaches from its middle.
+    pub(super) fn reach(&self) -> f32 {
+        self.half_length + self.radius
+    }
+
+    /// A capsule round both.
+    pub(super) fn united(&self, other: &Self) -> Self {
+        let longer = if self.half_length >= other.half_length { self } else { other };
+        let between = (other.middle - self.middle).normalize_or(longer.direction);
+        let (first, second) = (self.around(other, longer.direction), self.around(other, between));
+        // The one with less room in it.
+        let room = |capsule: &Self| capsule.radius * capsule.radius * capsule.reach();
+        if room(&second) < room(&first) { second } else { first }
+    }
+
+    /// The capsule round both along a direction.
+    fn around(&self, other: &Self, direction: Vec3A) -> Self {
+        let ends = [self, other].map(|capsule| {
+            let half = capsule.half_length * capsule.direction;
+            [capsule.middle - half, capsule.middle + half]
+        });
+        let middle = 0.25 * ((ends[0][0] + ends[0][1]) + (ends[1][0] + ends[1][1]));
+        let along = ends.map(|of_one| of_one.map(|end| (end - middle).dot(direction)));
+        let low = along.iter().flatten().copied().fold(f32::INFINITY, f32::min);
+        let high = along.iter().flatten().copied().fold(f32::NEG_INFINITY, f32::max);
+        let mut radius = 0.0;
+        for (capsule, ends) in [self, other].into_iter().zip(ends) {
+            for end in ends {
+                let needed = (end - middle).cross(direction).length() + capsule.radius;
+                // What is undefined reaches everywhere.
+                radius = if needed <= radius {
+                    radius
+                } else if needed.is_nan() {
+                    f32::INFINITY
+                } else {
+                    needed
+                };
+            }
+        }
+        let middle = middle + 0.5 * (low + high) * direction;
+        let half_length = 0.5 * (high - low);
+        let largest = middle.abs().max_element() + half_length + radius;
+        Self { middle, direction, radius: radius + ROUNDING * largest, half_length }
     }
 
     /// Whether two capsules are certainly apart. (What overflows or is undefined is not.)
@@ -94,6 +159,10 @@ mod tests {
             }
             let is_apart = Capsule::of(&a).is_apart(&Capsule::of(&b));
             assert!(round % 2 == 1 || !is_apart, "round {round}");
+            // Nor has a capsule round others.
+            let (united, third) = (Capsule::of(&a).united(&Capsule::of(&triangle())), Capsule::of(&b));
+            assert!(is_apart || !united.is_apart(&third), "round {round}");
+            assert!(is_apart || !united.united(&Capsule::of(&triangle())).is_apart(&third), "round {round}");
             apart += u32::from(is_apart);
             met += u32::from(!is_apart);
         }

@@ -20,6 +20,7 @@
 mod assemble;
 mod candidates;
 mod capsule;
+mod capsule_tree;
 mod certificate;
 mod crossings;
 mod cut;

@@ -6,8 +6,6 @@
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
-use super::capsule::{self, Capsule};
-
 /// Fewer pairs of triangles than this are not worth it.
 const FROM_PAIRS: usize = 1 << 14;
 /// Triangles are halved while their box is so many times as wide as the other operand's boxes usually are long.
@@ -25,23 +23,18 @@ pub(super) type Corners = [Vec3A; 3];
 
 /// Coordinates count as at least this large, so that margins do not vanish.
 const TINY: f32 = 1e-12;
-/// Capsules pay if at least one of so many triangles is a needle.
-const NEEDLES_FROM: usize = 4;
-
 /// Boxes with the triangles they belong to.
 #[derive(Debug, Default)]
 pub(super) struct Boxes {
     pub(super) triangles: Vec<u32>,
     pub(super) boxes: Vec<Aabb>,
-    /// A capsule round what is in each box; empty where there are few needles.
-    pub(super) capsules: Vec<Capsule>,
 }
 
 impl Boxes {
     /// One box for each triangle.
     pub(super) fn new(triangles: &[u32], corners: impl Fn(u32) -> Corners) -> Self {
         let boxes = triangles.iter().map(|&t| box_of(&corners(t))).collect();
-        Self { triangles: triangles.to_vec(), boxes, capsules: Vec::new() }
+        Self { triangles: triangles.to_vec(), boxes }
     }
 
     /// How long boxes are on the average.
@@ -51,23 +44,9 @@ impl Boxes {
         (sum / sample.len().max(1) as f64) as f32
     }
 
-    /// Whether many triangles are needles.
-    fn has_needles(&self, corners: impl Fn(u32) -> Corners) -> bool {
-        let sample = self.triangles.iter().step_by(self.triangles.len().div_ceil(SAMPLE).max(1));
-        let needles = sample.clone().filter(|&&t| capsule::is_needle(&corners(t))).count();
-        needles * NEEDLES_FROM >= sample.len()
-    }
-
-    /// Puts a capsule round every triangle.
-    fn with_capsules(mut self, corners: impl Fn(u32) -> Corners) -> Self {
-        self.capsules = self.triangles.iter().map(|&t| Capsule::of(&corners(t))).collect();
-        self
-    }
-
-    fn push(&mut self, triangle: u32, aabb: Aabb, capsule: Option<Capsule>) {
+    fn push(&mut self, triangle: u32, aabb: Aabb) {
         self.triangles.push(triangle);
         self.boxes.push(aabb);
-        self.capsules.extend(capsule);
     }
 
     /// Gives triangles that are large next to those of `other` several boxes. Parts outside `common` have none.
@@ -80,9 +59,9 @@ impl Boxes {
         let halvings = (room / wide).checked_ilog2().unwrap_or(0).min(MOST_HALVINGS);
         let mut refined = Self::default();
         let mut stack = Vec::new();
-        for (place, (&triangle, aabb)) in self.triangles.iter().zip(&self.boxes).enumerate() {
+        for (&triangle, aabb) in self.triangles.iter().zip(&self.boxes) {
             if width(aabb) <= widest || halvings == 0 {
-                refined.push(triangle, *aabb, self.capsules.get(place).copied());
+                refined.push(triangle, *aabb);
                 continue;
             }
             let whole = corners(triangle);
@@ -98,8 +77,7 @@ impl Boxes {
                     continue;
                 }
                 if halvings == 0 || width(&part_box) <= widest {
-                    let capsule = self.capsules.first().map(|_| Capsule::of(&part));
-                    refined.push(triangle, part_box, capsule);
+                    refined.push(triangle, part_box);
                 } else {
                     stack.extend(halves(&part).map(|half| (half, halvings - 1)));
                 }
@@ -119,12 +97,6 @@ pub(super) fn refine(both: [Boxes; 2], common: &Aabb, corners: impl Fn(usize, u3
     let usual = both.each_ref().map(Boxes::usual_length);
     let corners = &corners;
     let [a, b] = both;
-    let has_needles = a.has_needles(|t| corners(0, t)) || b.has_needles(|t| corners(1, t));
-    let [a, b] = if has_needles {
-        [a.with_capsules(|t| corners(0, t)), b.with_capsules(|t| corners(1, t))]
-    } else {
-        [a, b]
-    };
     [
         a.refined(usual[1], room, common, |t| corners(0, t)),
         b.refined(usual[0], room, common, |t| corners(1, t)),
