@@ -11,6 +11,7 @@ mod kept;
 mod lines;
 pub(crate) mod manifold;
 mod patch;
+mod point_grid;
 mod remove;
 mod shared_edges;
 mod short_edges;

@@ -4,6 +4,8 @@
 //! then pass along the whole edge and others along its parts. Bodies that touch in an edge only come apart if all faces
 //! there meet in the same edges. So every edge gets the vertices of the shorter edges that run along it.
 
+use std::cell::LazyCell;
+
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use rustc_hash::FxHashMap;
@@ -13,6 +15,7 @@ use super::super::cut_faces::BitSet;
 use super::buckets::Buckets;
 use super::manifold::{HalfEdges, Surface};
 use super::patch::{Face, Patch};
+use super::point_grid::PointGrid;
 use super::zero_area::is_low;
 use crate::exact::collinear;
 use crate::spatial::{BoxTree, Frame};
@@ -67,6 +70,9 @@ impl Splits {
 
 /// So many edges are looked at between looks at the limits.
 const EDGES_BETWEEN_CHECKS: usize = 1024;
+
+/// Edges that pass more cells of the grid are long.
+const MOST_CELLS: usize = 64;
 
 fn split_by(
     patch: &mut Patch<'_>,
@@ -162,7 +168,9 @@ fn splits_between_faces(
         })
     };
     let frame = Frame::of(limits(f64::min, f64::INFINITY), limits(f64::max, f64::NEG_INFINITY));
-    let tree = BoxTree::new(&points, |point| frame.triangle([patch.position(point); 3]));
+    // A grid finds the points near short edges faster than a tree does, which is needed for long ones alone.
+    let grid = PointGrid::new(&points, |point| patch.position(point));
+    let tree = LazyCell::new(|| BoxTree::new(&points, |point| frame.triangle([patch.position(point); 3])));
     let mut splits = Splits::new(patch);
     let origin = |triangle: u32| patch.faces[triangle as usize].origin;
     for (i, (u, v, mut triangles)) in half_edges.edges_with_triangles().enumerate() {
@@ -178,12 +186,15 @@ fn splits_between_faces(
         }
         let mut on: Vec<u32> = Vec::new();
         let (p, q) = (patch.position(u), patch.position(v));
-        for along in boxes_along(frame.point(p), frame.point(q), points.len()) {
-            tree.meeting(&along, |x| {
-                if x != u && x != v && lies_between(patch, cutter, u, x, v) {
-                    on.push(x);
-                }
-            });
+        let mut look_at = |x: u32| {
+            if x != u && x != v && lies_between(patch, cutter, u, x, v) {
+                on.push(x);
+            }
+        };
+        if !grid.in_box(p, q, MOST_CELLS, &mut look_at) {
+            for along in boxes_along(frame.point(p), frame.point(q), points.len()) {
+                tree.meeting(&along, &mut look_at);
+            }
         }
         if !on.is_empty() {
             // Boxes have points in common, and points may be at the same place.
