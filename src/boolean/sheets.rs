@@ -74,7 +74,7 @@ impl Solid {
         let count = self.mesh().triangles.len() as u32;
         let mut whole = Whole { mesh: self.mesh().clone(), source: (0..count).collect() };
         let half_edges = HalfEdges::of(&whole);
-        make_manifold(&mut whole, half_edges);
+        make_manifold(&mut whole, &half_edges);
         let separated = Self::from_closed_unchecked(whole.mesh);
         if let Some(known) = self.known_self_crossings() {
             separated.remember_self_crossings(known.clone());

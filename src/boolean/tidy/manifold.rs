@@ -37,7 +37,7 @@ pub(crate) trait Surface {
 }
 
 /// Makes a surface 2-manifold, given its half-edges. Returns the points made, with the ones they are copies of.
-pub(crate) fn make_manifold(surface: &mut impl Surface, half_edges: HalfEdges) -> Vec<(u32, u32)> {
+pub(crate) fn make_manifold(surface: &mut impl Surface, half_edges: &HalfEdges) -> Vec<(u32, u32)> {
     let (twins, crowded) = pair_half_edges(surface, half_edges);
     let copies = split_points(surface, &twins);
     separate_parallel_edges(surface, &twins, &crowded);
@@ -102,7 +102,7 @@ fn alive(surface: &impl Surface) -> impl Iterator<Item = (u32, [u32; 3])> + Clon
 
 /// For each half-edge the opposite one it is paired with, [`NONE`] at the patch's border; and the half-edges at edges where
 /// several pairs meet.
-fn pair_half_edges(surface: &impl Surface, half_edges: HalfEdges) -> (Vec<HalfEdge>, Vec<HalfEdge>) {
+fn pair_half_edges(surface: &impl Surface, half_edges: &HalfEdges) -> (Vec<HalfEdge>, Vec<HalfEdge>) {
     let mut twins = vec![NONE; 3 * surface.len()];
     let mut crowded = Vec::new();
     for (u, v, group) in half_edges.edges() {

@@ -144,7 +144,7 @@ fn separate(
     };
     #[cfg(debug_assertions)]
     assert_eq!(patch.boundary(), boundary, "splitting edges opened the surface");
-    let copied_from = manifold::make_manifold(patch, half_edges);
+    let copied_from = manifold::make_manifold(patch, &half_edges);
     patch.connect();
     Ok(copied_from)
 }
