@@ -29,6 +29,11 @@ impl BitSet {
         })
     }
 
+    /// Its bits, 64 in a word.
+    pub(super) fn words(&self) -> &[u64] {
+        &self.0
+    }
+
     #[inline]
     pub(super) fn contains(&self, index: u32) -> bool {
         self.0[index as usize / 64] >> (index % 64) & 1 == 1

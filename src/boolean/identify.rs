@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 
 use super::crossings::Crossings;
 use super::cut_edges::CutEdges;
-use super::cut_faces::{CutFace, CutFaces, UNCUT};
+use super::cut_faces::{BitSet, CutFace, CutFaces, UNCUT};
 use super::operands::Operands;
 use super::plane_faces::PlaneFaces;
 use crate::Error;
@@ -20,6 +20,8 @@ const FEW: usize = 12;
 #[derive(Debug, Default)]
 pub(super) struct Identification {
     parent: FxHashMap<u32, u32>,
+    /// The points that are stored: most are told from them by this alone.
+    stored: BitSet,
 }
 
 impl Identification {
@@ -71,6 +73,10 @@ impl Identification {
             }
         }
         result.flatten();
+        if !result.is_empty() {
+            result.stored = BitSet::new(operands.vertex_count() as usize + edges.positions.len());
+            result.parent.keys().for_each(|&point| result.stored.insert(point));
+        }
         Ok(result)
     }
 
@@ -82,7 +88,10 @@ impl Identification {
     /// The point that stands for a point: the lowest number of its class.
     #[inline]
     pub(super) fn representative(&self, point: u32) -> u32 {
-        if self.parent.is_empty() { point } else { self.parent.get(&point).copied().unwrap_or(point) }
+        if self.parent.is_empty() || !self.stored.contains(point) {
+            return point;
+        }
+        self.parent.get(&point).copied().unwrap_or(point)
     }
 
     /// All points that another stands for, in no particular order.

@@ -2,7 +2,7 @@
 
 use super::origins::Origins;
 use super::outcome::Origin;
-use super::tidy::manifold::{Surface, make_manifold};
+use super::tidy::manifold::{HalfEdges, Surface, make_manifold};
 use crate::{Mesh, Solid};
 
 /// A whole mesh that is taken apart.
@@ -35,6 +35,10 @@ impl Surface for Whole {
 
     fn position(&self, point: u32) -> [f64; 3] {
         self.mesh.positions[point as usize]
+    }
+
+    fn point_count(&self) -> usize {
+        self.mesh.positions.len()
     }
 
     fn add_point(&mut self, position: [f64; 3]) -> u32 {
@@ -70,7 +74,8 @@ impl Solid {
     pub fn separated(&self) -> (Self, Vec<u32>) {
         let count = self.mesh().triangles.len() as u32;
         let mut whole = Whole { mesh: self.mesh().clone(), source: (0..count).collect() };
-        make_manifold(&mut whole);
+        let half_edges = HalfEdges::of(&whole);
+        make_manifold(&mut whole, &half_edges);
         let separated = Self::from_closed_unchecked(whole.mesh);
         if let Some(known) = self.known_self_crossings() {
             separated.remember_self_crossings(known.clone());

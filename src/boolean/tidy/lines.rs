@@ -6,8 +6,10 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::super::cut_faces::BitSet;
+use super::manifold::Surface;
 use super::patch::Patch;
-use super::shared_edges::{Edge, split_face};
+use super::shared_edges::{Edge, Splits, split_face};
 use super::zero_area::{identify, is_exactly_flat};
 use crate::exact::collinear;
 use crate::mesh::UnionFind;
@@ -106,12 +108,18 @@ impl Lines {
     }
 
     /// The edges with points between their ends; these from the edge's lower number to the higher one.
-    fn splits(&self, patch: &Patch<'_>) -> FxHashMap<Edge, Vec<u32>> {
-        let mut splits = FxHashMap::default();
+    fn splits(&self, patch: &Patch<'_>) -> Splits {
+        let mut splits = Splits::new(patch);
+        // Most points are on none of the lines.
+        let mut is_on_line = BitSet::new(patch.point_count());
+        self.through.keys().for_each(|&point| is_on_line.insert(point));
         let mut seen: FxHashSet<Edge> = FxHashSet::default();
         for face in patch.faces.iter().filter(|face| face.alive) {
             for k in 0..3 {
                 let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
+                if !is_on_line.contains(u) || !is_on_line.contains(v) {
+                    continue;
+                }
                 let (Some(of_u), Some(of_v)) = (self.through.get(&u), self.through.get(&v)) else { continue };
                 let Some(line) = of_u.iter().find(|line| of_v.contains(line)) else { continue };
                 let edge = (u.min(v), u.max(v));

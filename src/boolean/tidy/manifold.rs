@@ -3,6 +3,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::buckets::Buckets;
 use crate::exact::{Sign, orient2d, orient3d};
 
 /// A side of a triangle: three times the triangle's index plus the corner it starts at.
@@ -27,18 +28,66 @@ pub(crate) trait Surface {
         let corner = self.corners(triangle).map_or(0, |corners| corners[(side + 2) % 3]);
         self.position(corner)
     }
+    /// Points are numbered below this.
+    fn point_count(&self) -> usize;
     /// A new point.
     fn add_point(&mut self, position: [f64; 3]) -> u32;
     /// Whether all triangles at a point are known.
     fn is_complete(&self, point: u32) -> bool;
 }
 
-/// Makes a surface 2-manifold. Returns the points made, with the ones they are copies of.
-pub(crate) fn make_manifold(surface: &mut impl Surface) -> Vec<(u32, u32)> {
-    let twins = pair_half_edges(surface);
+/// Makes a surface 2-manifold, given its half-edges. Returns the points made, with the ones they are copies of.
+pub(crate) fn make_manifold(surface: &mut impl Surface, half_edges: &HalfEdges) -> Vec<(u32, u32)> {
+    let (twins, crowded) = pair_half_edges(surface, half_edges);
     let copies = split_points(surface, &twins);
-    separate_parallel_edges(surface, &twins);
+    separate_parallel_edges(surface, &twins, &crowded);
     copies
+}
+
+/// A half-edge by the lower end of its edge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct AtLowerEnd {
+    higher_end: u32,
+    /// Whether it runs from the higher end to the lower one.
+    runs_back: bool,
+    half_edge: HalfEdge,
+}
+
+/// All half-edges of a surface, edge by edge.
+pub(crate) struct HalfEdges {
+    by_lower_end: Buckets<AtLowerEnd>,
+}
+
+impl HalfEdges {
+    /// Those of the triangles that were not dropped.
+    pub(crate) fn of(surface: &impl Surface) -> Self {
+        let all = alive(surface).flat_map(|(i, corners)| {
+            [0, 1, 2].map(|k| {
+                let (u, v) = (corners[k], corners[(k + 1) % 3]);
+                let entry =
+                    AtLowerEnd { higher_end: u.max(v), runs_back: u > v, half_edge: 3 * i + k as u32 };
+                (u.min(v), entry)
+            })
+        });
+        let mut by_lower_end = Buckets::new(surface.point_count(), all);
+        by_lower_end.each_mut().for_each(<[AtLowerEnd]>::sort_unstable);
+        Self { by_lower_end }
+    }
+
+    /// All edges, ascending: ends, and half-edges, first those from the lower end to the higher one.
+    fn edges(&self) -> impl Iterator<Item = (u32, u32, &[AtLowerEnd])> {
+        (0..).zip(self.by_lower_end.each()).flat_map(|(u, all)| {
+            all.chunk_by(|x, y| x.higher_end == y.higher_end)
+                .map(move |group| (u, group[0].higher_end, group))
+        })
+    }
+
+    /// All edges, ascending: ends, and the triangles there.
+    pub(super) fn edges_with_triangles(
+        &self,
+    ) -> impl Iterator<Item = (u32, u32, impl ExactSizeIterator<Item = u32> + Clone)> {
+        self.edges().map(|(u, v, group)| (u, v, group.iter().map(|entry| entry.half_edge / 3)))
+    }
 }
 
 fn ends(surface: &impl Surface, half_edge: HalfEdge) -> (u32, u32) {
@@ -47,39 +96,34 @@ fn ends(surface: &impl Surface, half_edge: HalfEdge) -> (u32, u32) {
 }
 
 /// The triangles that were not dropped, with their corners.
-fn alive(surface: &impl Surface) -> impl Iterator<Item = (u32, [u32; 3])> {
+fn alive(surface: &impl Surface) -> impl Iterator<Item = (u32, [u32; 3])> + Clone {
     (0..surface.len() as u32).filter_map(|i| Some((i, surface.corners(i)?)))
 }
 
-/// For each half-edge the opposite one it is paired with; [`NONE`] at the patch's border.
-fn pair_half_edges(surface: &impl Surface) -> Vec<HalfEdge> {
+/// For each half-edge the opposite one it is paired with, [`NONE`] at the patch's border; and the half-edges at edges where
+/// several pairs meet.
+fn pair_half_edges(surface: &impl Surface, half_edges: &HalfEdges) -> (Vec<HalfEdge>, Vec<HalfEdge>) {
     let mut twins = vec![NONE; 3 * surface.len()];
-    let mut order: Vec<(u32, u32, bool, HalfEdge)> = Vec::with_capacity(twins.len());
-    for (i, corners) in alive(surface) {
-        for k in 0..3 {
-            let (u, v) = (corners[k], corners[(k + 1) % 3]);
-            order.push((u.min(v), u.max(v), u > v, 3 * i + k as u32));
-        }
-    }
-    order.sort_unstable();
-    for group in order.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
-        let forward = group.partition_point(|entry| !entry.2);
+    let mut crowded = Vec::new();
+    for (u, v, group) in half_edges.edges() {
+        let forward = group.partition_point(|entry| !entry.runs_back);
         if forward * 2 != group.len() {
             // At the border: the rest of the triangles at this edge lies beyond.
             continue;
         }
-        let pairs = if group.len() == 2 {
-            vec![(group[0].3, group[1].3)]
-        } else {
-            let half_edges: Vec<HalfEdge> = group.iter().map(|entry| entry.3).collect();
-            pair_by_angle(surface, group[0].0, group[0].1, &half_edges)
-        };
-        for (x, y) in pairs {
+        let mut pair = |x: HalfEdge, y: HalfEdge| {
             twins[x as usize] = y;
             twins[y as usize] = x;
+        };
+        if let [x, y] = group {
+            pair(x.half_edge, y.half_edge);
+        } else {
+            let start = crowded.len();
+            crowded.extend(group.iter().map(|entry| entry.half_edge));
+            pair_by_angle(surface, u, v, &crowded[start..]).into_iter().for_each(|(x, y)| pair(x, y));
         }
     }
-    twins
+    (twins, crowded)
 }
 
 /// Pairs the half-edges at the edge from `u` to `v` so that each pair bounds a wedge of the solid.
@@ -186,30 +230,24 @@ impl Around {
 
 /// Gives every fan of triangles at a complete point a point of its own; the first fan keeps the old one.
 fn split_points(surface: &mut impl Surface, twins: &[HalfEdge]) -> Vec<(u32, u32)> {
-    let mut all: Vec<(u32, HalfEdge)> = Vec::new();
-    for (i, corners) in alive(surface) {
-        for k in 0..3 {
-            if surface.is_complete(corners[k]) {
-                all.push((corners[k], 3 * i + k as u32));
-            }
-        }
-    }
-    all.sort_unstable();
+    let corners_of = |(i, corners): (u32, [u32; 3])| [0, 1, 2].map(|k| (corners[k], 3 * i + k as u32));
+    let all = alive(surface).flat_map(corners_of).filter(|&(point, _)| surface.is_complete(point));
+    let by_point = Buckets::new(surface.point_count(), all);
+    let mut seen = vec![false; twins.len()];
     let mut copies = Vec::new();
     let mut changes = Vec::new();
-    for group in all.chunk_by(|x, y| x.0 == y.0) {
-        let point = group[0].0;
-        let mut seen: FxHashMap<HalfEdge, ()> = FxHashMap::default();
+    let mut fan = Vec::new();
+    for (point, group) in (0..).zip(by_point.each()) {
         let mut first = true;
-        for &(_, start) in group {
-            if seen.contains_key(&start) {
+        for &start in group {
+            if seen[start as usize] {
                 continue;
             }
             // Round the fan: the half-edge before the corner arrives at the point; its twin leaves it.
-            let mut fan = Vec::new();
+            fan.clear();
             let mut corner = start;
             let closed = loop {
-                if seen.insert(corner, ()).is_some() {
+                if std::mem::replace(&mut seen[corner as usize], true) {
                     break corner == start;
                 }
                 fan.push(corner);
@@ -225,7 +263,7 @@ fn split_points(surface: &mut impl Surface, twins: &[HalfEdge]) -> Vec<(u32, u32
             }
             let copy = surface.add_point(surface.position(point));
             copies.push((copy, point));
-            changes.extend(fan.into_iter().map(|corner| (corner, copy)));
+            changes.extend(fan.iter().map(|&corner| (corner, copy)));
         }
     }
     for (corner, copy) in changes {
@@ -237,16 +275,14 @@ fn split_points(surface: &mut impl Surface, twins: &[HalfEdge]) -> Vec<(u32, u32
     copies
 }
 
-/// Where two pairs of triangles still share both ends of an edge, one of the pairs gets a vertex in its middle.
-fn separate_parallel_edges(surface: &mut impl Surface, twins: &[HalfEdge]) {
+/// Where two pairs of triangles still share both ends of an edge, one of the pairs gets a vertex in its middle. That can only
+/// be where there were several pairs.
+fn separate_parallel_edges(surface: &mut impl Surface, twins: &[HalfEdge], crowded: &[HalfEdge]) {
     let mut forward: Vec<(u32, u32, HalfEdge)> = Vec::new();
-    for (i, corners) in alive(surface) {
-        for k in 0..3 {
-            let half_edge = 3 * i + k as u32;
-            let (u, v) = (corners[k], corners[(k + 1) % 3]);
-            if u < v && twins[half_edge as usize] != NONE {
-                forward.push((u, v, half_edge));
-            }
+    for &half_edge in crowded.iter().filter(|&&half_edge| twins[half_edge as usize] != NONE) {
+        let (u, v) = ends(surface, half_edge);
+        if u < v {
+            forward.push((u, v, half_edge));
         }
     }
     forward.sort_unstable();

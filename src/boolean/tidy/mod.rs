@@ -5,9 +5,13 @@
 //! pair (make it 2-manifold), flip, remove, collapse. They work on a patch: the pieces of cut faces and the kept triangles
 //! round their points. All else keeps its bits and its order.
 
+mod adjacency;
+mod buckets;
+mod kept;
 mod lines;
 pub(crate) mod manifold;
 mod patch;
+mod point_grid;
 mod remove;
 mod shared_edges;
 mod short_edges;
@@ -20,6 +24,7 @@ use super::multiplicity::Part;
 use super::planes::Planes;
 use crate::parallel::Runner;
 use crate::{Control, Error};
+use manifold::HalfEdges;
 use patch::Patch;
 use rustc_hash::FxHashSet;
 
@@ -89,6 +94,8 @@ fn tidied(
     mut candidates: Vec<u32>,
     runner: Runner<'_>,
 ) -> Result<Result<Tidied, FxHashSet<u32>>, Error> {
+    // By the patch's own numbers; those that are not in it need no look.
+    candidates = candidates.into_iter().filter_map(|point| patch.here(point)).collect();
     if cutter.operands.ties() > 0 {
         zero_area::mark_flat(&mut patch, cutter);
     }
@@ -97,7 +104,7 @@ fn tidied(
         let copied_from = separate(&mut patch, cutter, glue, runner.control)?;
         let pinched = patch.pinched(&copied_from);
         if !pinched.is_empty() {
-            return Ok(Err(pinched));
+            return Ok(Err(pinched.into_iter().map(|point| patch.number(point)).collect()));
         }
         candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
         runner.control.check()?;
@@ -130,12 +137,14 @@ fn separate(
     }
     #[cfg(debug_assertions)]
     let boundary = patch.boundary();
-    if cutter.operands.ties() > 0 {
-        shared_edges::split(patch, cutter, control)?;
-    }
+    let half_edges = if cutter.operands.ties() > 0 {
+        shared_edges::split(patch, cutter, control)?
+    } else {
+        HalfEdges::of(patch)
+    };
     #[cfg(debug_assertions)]
     assert_eq!(patch.boundary(), boundary, "splitting edges opened the surface");
-    let copied_from = manifold::make_manifold(patch);
+    let copied_from = manifold::make_manifold(patch, &half_edges);
     patch.connect();
     Ok(copied_from)
 }

@@ -9,6 +9,9 @@ use super::super::multiplicity::Part;
 use super::super::outcome::Origin;
 use super::super::planes::source_and_axes;
 use super::Tidied;
+use super::adjacency::Adjacency;
+use super::buckets::Buckets;
+use super::kept::{Numbers, edges_beyond, kept_triangles};
 use super::manifold::Surface;
 use crate::exact::{Sign, orient2d};
 
@@ -25,38 +28,26 @@ pub(super) struct Face {
 }
 
 /// Triangles round the intersection curve with their adjacency.
+///
+/// The patch has numbers of its own for its points, without gaps and in the order of the others: what is kept for each point
+/// is then a list, and points near each other are so in memory.
 pub(super) struct Patch<'a> {
     cutter: &'a Cutter<'a>,
     pub(super) faces: Vec<Face>,
+    /// For each point which vertex or node it is, ascending; copies are not among them.
+    numbers: Vec<u32>,
+    /// How many of the points are vertices; they come first.
+    vertices: u32,
+    /// Where each point is, the copies last.
+    positions: Vec<[f64; 3]>,
     /// Points all of whose triangles are here.
-    complete: Flags,
-    /// The triangle to the left of each directed edge; filled by [`connect`](Self::connect).
-    left_of: FxHashMap<(u32, u32), u32>,
-    /// Some triangle at each point.
-    some_face: FxHashMap<u32, u32>,
+    complete: BitSet,
+    /// Filled by [`connect`](Self::connect).
+    adjacency: Adjacency,
     /// Directed edges of the result outside the patch between points of the patch.
     beyond: FxHashSet<(u32, u32)>,
     /// Uncut triangles that were taken into the patch.
     taken: [Vec<u32>; 2],
-    first_copy: u32,
-    copies: Vec<[f64; 3]>,
-}
-
-/// A flag for every vertex and node.
-struct Flags {
-    bits: BitSet,
-}
-
-impl Flags {
-    fn new(count: usize) -> Self {
-        Self { bits: BitSet::new(count) }
-    }
-    fn set(&mut self, point: u32) {
-        self.bits.insert(point);
-    }
-    fn get(&self, point: u32) -> bool {
-        self.bits.contains(point)
-    }
 }
 
 impl<'a> Patch<'a> {
@@ -67,42 +58,70 @@ impl<'a> Patch<'a> {
         pieces: &[NewTriangle],
         others: &FxHashSet<u32>,
     ) -> Self {
-        let operands = cutter.operands;
-        let points = operands.vertex_count() as usize + cutter.edges.positions.len();
-        let mut complete = Flags::new(points);
+        let count = cutter.operands.vertex_count() as usize + cutter.edges.positions.len();
+        let mut complete = BitSet::new(count);
         for point in pieces.iter().flat_map(|piece| piece.corners) {
-            complete.set(point);
+            complete.insert(point);
         }
         // Kept triangles of both operands may share a point where all that was cut cancelled.
         for point in cutter.identification.representatives().into_iter().chain(others.iter().copied()) {
-            complete.set(point);
+            complete.insert(point);
         }
-        let mut patch = Self {
-            cutter,
-            faces: Vec::with_capacity(2 * pieces.len()),
-            complete,
-            left_of: FxHashMap::default(),
-            some_face: FxHashMap::default(),
-            beyond: FxHashSet::default(),
-            taken: [Vec::new(), Vec::new()],
-            first_copy: points as u32,
-            copies: Vec::new(),
-        };
-        patch.take_kept_triangles(parts);
-        patch.faces.extend(pieces.iter().map(|piece| Face {
+        let (mut faces, taken) = kept_triangles(cutter, parts, &complete);
+        faces.extend(pieces.iter().map(|piece| Face {
             corners: piece.corners,
             origin: piece.origin,
             untouched: false,
             flat: piece.flat,
             alive: true,
         }));
-        patch.note_edges_beyond(parts, points);
-        patch
+        let numbers = Numbers::of(count, faces.iter().flat_map(|face| face.corners));
+        let beyond = edges_beyond(cutter, parts, &complete, &numbers);
+        for face in &mut faces {
+            face.corners = face.corners.map(|point| numbers.here(point));
+        }
+        let numbers = numbers.all();
+        let mut complete_here = BitSet::new(numbers.len());
+        for (here, &point) in (0..).zip(&numbers) {
+            if complete.contains(point) {
+                complete_here.insert(here);
+            }
+        }
+        Self {
+            cutter,
+            faces,
+            vertices: numbers.partition_point(|&point| point < cutter.operands.vertex_count()) as u32,
+            positions: numbers.iter().map(|&point| *cutter.position(point)).collect(),
+            numbers,
+            complete: complete_here,
+            adjacency: Adjacency::default(),
+            beyond,
+            taken,
+        }
+    }
+
+    /// The patch's number of a vertex or node; `None` if it is not in the patch.
+    pub(super) fn here(&self, point: u32) -> Option<u32> {
+        self.numbers.binary_search(&point).ok().map(|here| here as u32)
+    }
+
+    /// The number of a point outside the patch: copies come after the nodes.
+    pub(super) fn number(&self, point: u32) -> u32 {
+        match self.numbers.get(point as usize) {
+            Some(&number) => number,
+            None => self.first_copy() + (point - self.numbers.len() as u32),
+        }
+    }
+
+    /// The number outside the patch of the first copy.
+    fn first_copy(&self) -> u32 {
+        self.cutter.operands.vertex_count() + self.cutter.edges.positions.len() as u32
     }
 
     /// Whether all triangles at a point are in the patch.
+    #[inline]
     pub(super) fn is_complete(&self, point: u32) -> bool {
-        point >= self.first_copy || self.complete.get(point)
+        point as usize >= self.numbers.len() || self.complete.contains(point)
     }
 
     /// Points, not all of whose triangles are here, at which triangles came apart all the same: at edges to a point of
@@ -127,16 +146,13 @@ impl<'a> Patch<'a> {
 
     /// Whether the operation made a point.
     pub(super) fn is_new(&self, point: u32) -> bool {
-        point >= self.cutter.operands.vertex_count()
+        point >= self.vertices
     }
 
     /// Where a point is.
+    #[inline]
     pub(super) fn position(&self, point: u32) -> &[f64; 3] {
-        if point >= self.first_copy {
-            &self.copies[(point - self.first_copy) as usize]
-        } else {
-            self.cutter.position(point)
-        }
+        &self.positions[point as usize]
     }
 
     /// Whether a triangle looks the way of the face it was cut from.
@@ -149,89 +165,35 @@ impl<'a> Patch<'a> {
         orient2d(a, b, c) == Sign::Positive
     }
 
-    /// Calls `found` for every kept uncut triangle: part, triangle, its points, and how often it counts (negative where
-    /// it is turned over once more).
-    fn for_kept(&self, parts: &[Part], mut found: impl FnMut(Part, u32, [u32; 3], i32)) {
-        let cutter = self.cutter;
-        for &part in parts {
-            let first = cutter.operands.first_vertex(part.side);
-            let windings = &cutter.windings[part.side];
-            for (t, corners) in cutter.operands.sides[part.side].triangles.iter().enumerate() {
-                if cutter.faces[part.side].is_cut(t as u32) {
-                    continue;
-                }
-                let count = part.multiplicity(windings[corners[0] as usize]);
-                if count != 0 {
-                    let points = corners.map(|v| cutter.identification.representative(first + v));
-                    found(part, t as u32, points, count);
-                }
-            }
-        }
-    }
-
-    fn take_kept_triangles(&mut self, parts: &[Part]) {
-        let mut faces = Vec::new();
-        let mut taken = [Vec::new(), Vec::new()];
-        self.for_kept(parts, |part, t, points, count| {
-            if !points.iter().any(|&point| self.complete.get(point)) {
-                return;
-            }
-            taken[part.side].push(t);
-            let reversed = part.reversed != (count < 0);
-            let [a, b, c] = points;
-            let face = Face {
-                corners: if reversed { [a, c, b] } else { [a, b, c] },
-                origin: Origin { operand: part.side as u32, triangle: t, reversed },
-                untouched: count == 1,
-                flat: false,
-                alive: true,
-            };
-            faces.extend(std::iter::repeat_n(face, count.unsigned_abs() as usize));
-        });
-        self.faces = faces;
-        self.taken = taken;
-    }
-
-    fn note_edges_beyond(&mut self, parts: &[Part], points: usize) {
-        let mut here = Flags::new(points);
-        for face in &self.faces {
-            face.corners.iter().for_each(|&point| here.set(point));
-        }
-        let mut beyond = FxHashSet::default();
-        self.for_kept(parts, |part, _, points, count| {
-            if points.iter().any(|&point| self.complete.get(point)) {
-                return;
-            }
-            for k in 0..3 {
-                let (u, v) = (points[k], points[(k + 1) % 3]);
-                if here.get(u) && here.get(v) {
-                    beyond.insert(if part.reversed != (count < 0) { (v, u) } else { (u, v) });
-                }
-            }
-        });
-        self.beyond = beyond;
-    }
-
     /// Drops triangles with a repeated corner, and pairs of opposite triangles.
     pub(super) fn cancel(&mut self) {
-        let mut order: Vec<([u32; 3], bool, u32)> = Vec::with_capacity(self.faces.len());
-        for (i, face) in self.faces.iter_mut().enumerate().filter(|(_, face)| face.alive) {
+        for face in self.faces.iter_mut().filter(|face| face.alive) {
             let [a, b, c] = face.corners;
-            if a == b || b == c || c == a {
-                face.alive = false;
-                continue;
-            }
-            let mut sorted = face.corners;
-            sorted.sort_unstable();
-            let even = [[a, b, c], [b, c, a], [c, a, b]].contains(&sorted);
-            order.push((sorted, even, i as u32));
+            face.alive = a != b && b != c && c != a;
         }
-        order.sort_unstable();
-        for group in order.chunk_by(|x, y| x.0 == y.0) {
-            let odd = group.partition_point(|entry| !entry.1);
-            let pairs = odd.min(group.len() - odd);
-            for entry in group[..pairs].iter().chain(&group[group.len() - pairs..]) {
-                self.faces[entry.2 as usize].alive = false;
+        // Triangles with the same corners have the same lowest one.
+        let alive = (0..).zip(&self.faces).filter(|(_, face)| face.alive);
+        let mut by_lowest = Buckets::new(
+            self.positions.len(),
+            alive.map(|(i, face)| {
+                let [a, b, c] = face.corners;
+                let lowest = a.min(b).min(c);
+                let (next, last) = match lowest {
+                    _ if lowest == a => (b, c),
+                    _ if lowest == b => (c, a),
+                    _ => (a, b),
+                };
+                (lowest, (next.min(last), next.max(last), next < last, i))
+            }),
+        );
+        for bucket in by_lowest.each_mut().filter(|bucket| bucket.len() > 1) {
+            bucket.sort_unstable();
+            for group in bucket.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
+                let odd = group.partition_point(|entry| !entry.2);
+                let pairs = odd.min(group.len() - odd);
+                for entry in group[..pairs].iter().chain(&group[group.len() - pairs..]) {
+                    self.faces[entry.3 as usize].alive = false;
+                }
             }
         }
     }
@@ -251,36 +213,22 @@ impl<'a> Patch<'a> {
 
     /// Builds the adjacency; from now on every directed edge occurs once.
     pub(super) fn connect(&mut self) {
-        self.left_of.clear();
-        self.some_face.clear();
-        for index in 0..self.faces.len() as u32 {
-            if self.faces[index as usize].alive {
-                self.link(index);
-            }
-        }
-    }
-
-    fn link(&mut self, index: u32) {
-        let corners = self.faces[index as usize].corners;
-        for k in 0..3 {
-            self.left_of.insert((corners[k], corners[(k + 1) % 3]), index);
-            self.some_face.insert(corners[k], index);
-        }
+        self.adjacency = Adjacency::new(self.positions.len(), &self.faces);
     }
 
     /// The triangle to the left of a directed edge.
     pub(super) fn left_of(&self, from: u32, to: u32) -> Option<u32> {
-        self.left_of.get(&(from, to)).copied()
+        self.adjacency.left_of(from, to)
     }
 
     /// Whether a directed edge exists, here or beyond.
     pub(super) fn has_edge(&self, from: u32, to: u32) -> bool {
-        self.left_of.contains_key(&(from, to)) || self.beyond.contains(&(from, to))
+        self.left_of(from, to).is_some() || self.beyond.contains(&(from, to))
     }
 
     /// The triangles round a complete point with the corner that follows it in each, counter-clockwise.
     pub(super) fn star(&self, point: u32) -> Option<Vec<(u32, u32)>> {
-        let start = *self.some_face.get(&point)?;
+        let start = self.adjacency.some_face(point)?;
         let mut star = Vec::new();
         let mut face = start;
         loop {
@@ -301,10 +249,7 @@ impl<'a> Patch<'a> {
     pub(super) fn replace(&mut self, old: &[u32], new: &[([u32; 3], Origin)]) {
         for &index in old {
             let corners = self.faces[index as usize].corners;
-            for k in 0..3 {
-                self.left_of.remove(&(corners[k], corners[(k + 1) % 3]));
-                self.some_face.remove(&corners[k]);
-            }
+            self.adjacency.unlink(corners);
             self.faces[index as usize].alive = false;
         }
         for (i, &(corners, origin)) in new.iter().enumerate() {
@@ -319,23 +264,12 @@ impl<'a> Patch<'a> {
                     self.faces.len() as u32 - 1
                 }
             };
-            self.link(index);
+            self.adjacency.link(index, corners);
         }
         // Points that lost the triangle they were known by, but still have others.
         for &index in old {
-            for (from, to) in self.border_of(index) {
-                if !self.some_face.contains_key(&from)
-                    && let Some(face) = self.left_of(from, to)
-                {
-                    self.some_face.insert(from, face);
-                }
-            }
+            self.adjacency.find_some_faces(self.faces[index as usize].corners);
         }
-    }
-
-    fn border_of(&self, index: u32) -> Vec<(u32, u32)> {
-        let corners = self.faces[index as usize].corners;
-        (0..3).map(|k| (corners[k], corners[(k + 1) % 3])).collect()
     }
 
     /// The new triangles, and which uncut ones they replace.
@@ -348,13 +282,16 @@ impl<'a> Patch<'a> {
         let mut new = Vec::new();
         for face in self.faces.iter().filter(|face| face.alive) {
             if face.untouched {
+                // It stays as it was.
                 replaced[face.origin.operand as usize].remove(face.origin.triangle);
             } else {
-                new.push(NewTriangle { corners: face.corners, origin: face.origin, flat: face.flat });
+                let corners = face.corners.map(|point| self.number(point));
+                new.push(NewTriangle { corners, origin: face.origin, flat: face.flat });
             }
         }
         new.sort_by_key(|triangle| (triangle.origin.operand, triangle.origin.triangle));
-        Tidied { new, replaced, copies: self.copies }
+        let copies = self.positions[self.numbers.len()..].to_vec();
+        Tidied { new, replaced, copies }
     }
 }
 
@@ -396,9 +333,13 @@ impl Surface for Patch<'_> {
             .unwrap_or(corners[2])
     }
 
+    fn point_count(&self) -> usize {
+        self.positions.len()
+    }
+
     fn add_point(&mut self, position: [f64; 3]) -> u32 {
-        self.copies.push(position);
-        self.first_copy + self.copies.len() as u32 - 1
+        self.positions.push(position);
+        self.positions.len() as u32 - 1
     }
 
     fn is_complete(&self, point: u32) -> bool {

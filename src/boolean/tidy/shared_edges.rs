@@ -4,13 +4,18 @@
 //! then pass along the whole edge and others along its parts. Bodies that touch in an edge only come apart if all faces
 //! there meet in the same edges. So every edge gets the vertices of the shorter edges that run along it.
 
+use std::cell::LazyCell;
+
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use rustc_hash::FxHashMap;
 
 use super::super::cut::Cutter;
-use super::super::outcome::Origin;
+use super::super::cut_faces::BitSet;
+use super::buckets::Buckets;
+use super::manifold::{HalfEdges, Surface};
 use super::patch::{Face, Patch};
+use super::point_grid::PointGrid;
 use super::zero_area::is_low;
 use crate::exact::collinear;
 use crate::spatial::{BoxTree, Frame};
@@ -26,40 +31,74 @@ const MOST_GROWTH: usize = 4;
 
 /// Splits the edges between faces on which there are vertices, and then those within a face along which edges of the other
 /// operand run.
-pub(super) fn split(patch: &mut Patch<'_>, cutter: &Cutter<'_>, control: &Control) -> Result<(), Error> {
-    split_by(patch, |patch| splits_between_faces(patch, cutter, control))?;
-    split_by(patch, |patch| splits_along_edges(patch, cutter, control))
+///
+/// Returns the half-edges of what has become of the patch.
+pub(super) fn split(
+    patch: &mut Patch<'_>,
+    cutter: &Cutter<'_>,
+    control: &Control,
+) -> Result<HalfEdges, Error> {
+    let half_edges = HalfEdges::of(patch);
+    let half_edges =
+        split_by(patch, half_edges, |patch, edges| splits_between_faces(patch, edges, cutter, control))?;
+    split_by(patch, half_edges, |patch, edges| splits_along_edges(patch, edges, cutter, control))
 }
 
-/// Edges to split, with the vertices on them from the lower end to the higher one.
-type Splits = FxHashMap<Edge, Vec<u32>>;
+/// Edges to split, with the vertices on them.
+pub(super) struct Splits {
+    /// The vertices from the lower end to the higher one.
+    on: FxHashMap<Edge, Vec<u32>>,
+    /// The lower ends: most edges are told from those to split by this alone.
+    lower_ends: BitSet,
+}
+
+impl Splits {
+    pub(super) fn new(patch: &Patch<'_>) -> Self {
+        Self { on: FxHashMap::default(), lower_ends: BitSet::new(patch.point_count()) }
+    }
+
+    pub(super) fn insert(&mut self, edge: Edge, on: Vec<u32>) {
+        self.lower_ends.insert(edge.0);
+        self.on.insert(edge, on);
+    }
+
+    /// The vertices on an edge that is to be split.
+    fn get(&self, edge: Edge) -> Option<&Vec<u32>> {
+        if self.lower_ends.contains(edge.0) { self.on.get(&edge) } else { None }
+    }
+}
 
 /// So many edges are looked at between looks at the limits.
 const EDGES_BETWEEN_CHECKS: usize = 1024;
 
+/// Edges that pass more cells of the grid are long.
+const MOST_CELLS: usize = 64;
+
 fn split_by(
     patch: &mut Patch<'_>,
-    splits: impl Fn(&Patch<'_>) -> Result<Splits, Error>,
-) -> Result<(), Error> {
+    mut half_edges: HalfEdges,
+    splits: impl Fn(&Patch<'_>, &HalfEdges) -> Result<Splits, Error>,
+) -> Result<HalfEdges, Error> {
     let most = MOST_GROWTH * patch.faces.len();
     for _ in 0..ROUNDS {
-        let splits = splits(patch)?;
-        if splits.is_empty() || patch.faces.len() > most {
+        let splits = splits(patch, &half_edges)?;
+        if splits.on.is_empty() || patch.faces.len() > most {
             break;
         }
         for index in 0..patch.faces.len() {
             split_face(patch, index, &splits);
         }
         patch.cancel();
+        half_edges = HalfEdges::of(patch);
     }
-    Ok(())
+    Ok(half_edges)
 }
 
 /// Splits the sides of a face that are to be split. Diagonals are left alone, whatever else runs along them: they bound two
 /// triangles of this face and so do not matter to others.
-pub(super) fn split_face(patch: &mut Patch<'_>, index: usize, splits: &FxHashMap<Edge, Vec<u32>>) {
+pub(super) fn split_face(patch: &mut Patch<'_>, index: usize, splits: &Splits) {
     let face = patch.faces[index];
-    let on_side = |from: u32, to: u32| splits.get(&(from.min(to), from.max(to)));
+    let on_side = |from: u32, to: u32| splits.get((from.min(to), from.max(to)));
     let is_split = |k: usize| on_side(face.corners[k], face.corners[(k + 1) % 3]).is_some();
     if !face.alive || !(0..3).any(is_split) {
         return;
@@ -106,28 +145,22 @@ pub(super) fn identify(patch: &mut Patch<'_>) {
     }
 }
 
-/// The points all of whose triangles are known.
+/// The points all of whose triangles are known, ascending.
 fn points(patch: &Patch<'_>) -> Vec<u32> {
-    let alive = patch.faces.iter().filter(|face| face.alive);
-    let mut points: Vec<u32> =
-        alive.flat_map(|face| face.corners).filter(|&point| patch.is_complete(point)).collect();
-    points.sort_unstable();
-    points.dedup();
-    points
+    let mut is_here = vec![false; patch.point_count()];
+    for face in patch.faces.iter().filter(|face| face.alive) {
+        face.corners.iter().for_each(|&point| is_here[point as usize] = true);
+    }
+    (0..patch.point_count() as u32).filter(|&x| is_here[x as usize] && patch.is_complete(x)).collect()
 }
 
 /// All edges on which there are vertices, with these from the lower end to the higher one. (Not those inside one face.)
-fn splits_between_faces(patch: &Patch<'_>, cutter: &Cutter<'_>, control: &Control) -> Result<Splits, Error> {
-    let mut sides: Vec<(u32, u32, Origin)> = Vec::new();
-    for face in patch.faces.iter().filter(|face| face.alive) {
-        for k in 0..3 {
-            let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
-            if patch.is_complete(u) || patch.is_complete(v) {
-                sides.push((u.min(v), u.max(v), face.origin));
-            }
-        }
-    }
-    sides.sort_unstable_by_key(|side| (side.0, side.1, side.2.operand, side.2.triangle));
+fn splits_between_faces(
+    patch: &Patch<'_>,
+    half_edges: &HalfEdges,
+    cutter: &Cutter<'_>,
+    control: &Control,
+) -> Result<Splits, Error> {
     let points = points(patch);
     let limits = |pick: fn(f64, f64) -> f64, from: f64| -> [f64; 3] {
         points.iter().fold([from; 3], |limit, &point| {
@@ -135,24 +168,33 @@ fn splits_between_faces(patch: &Patch<'_>, cutter: &Cutter<'_>, control: &Contro
         })
     };
     let frame = Frame::of(limits(f64::min, f64::INFINITY), limits(f64::max, f64::NEG_INFINITY));
-    let tree = BoxTree::new(&points, |point| frame.triangle([patch.position(point); 3]));
-    let mut splits = FxHashMap::default();
-    for (i, group) in sides.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)).enumerate() {
+    // A grid finds the points near short edges faster than a tree does, which is needed for long ones alone.
+    let grid = PointGrid::new(&points, |point| patch.position(point));
+    let tree = LazyCell::new(|| BoxTree::new(&points, |point| frame.triangle([patch.position(point); 3])));
+    let mut splits = Splits::new(patch);
+    let origin = |triangle: u32| patch.faces[triangle as usize].origin;
+    for (i, (u, v, mut triangles)) in half_edges.edges_with_triangles().enumerate() {
         if i % EDGES_BETWEEN_CHECKS == 0 {
             control.check()?;
         }
-        let (u, v, origin) = group[0];
-        if group.len() > 1 && group.iter().all(|side| side.2 == origin) {
+        if !patch.is_complete(u) && !patch.is_complete(v) {
+            continue;
+        }
+        let first = triangles.next().map(origin);
+        if triangles.len() > 0 && triangles.all(|triangle| Some(origin(triangle)) == first) {
             continue;
         }
         let mut on: Vec<u32> = Vec::new();
         let (p, q) = (patch.position(u), patch.position(v));
-        for along in boxes_along(frame.point(p), frame.point(q), points.len()) {
-            tree.meeting(&along, |x| {
-                if x != u && x != v && lies_between(patch, cutter, u, x, v) {
-                    on.push(x);
-                }
-            });
+        let mut look_at = |x: u32| {
+            if x != u && x != v && lies_between(patch, cutter, u, x, v) {
+                on.push(x);
+            }
+        };
+        if !grid.in_box(p, q, MOST_CELLS, &mut look_at) {
+            for along in boxes_along(frame.point(p), frame.point(q), points.len()) {
+                tree.meeting(&along, &mut look_at);
+            }
         }
         if !on.is_empty() {
             // Boxes have points in common, and points may be at the same place.
@@ -172,24 +214,28 @@ fn sort_along(patch: &Patch<'_>, u: u32, on: &mut [u32]) {
 }
 
 /// Edges of one operand along which edges of the other run.
-fn splits_along_edges(patch: &Patch<'_>, cutter: &Cutter<'_>, control: &Control) -> Result<Splits, Error> {
-    let edges = edges(patch);
-    // Each edge from both its ends, so that those of the same operands at one point are together.
-    let mut from_points: Vec<(u32, u8, u32)> =
-        edges.iter().flat_map(|&((u, v), of)| [(u, of, v), (v, of, u)]).collect();
-    from_points.sort_unstable();
-    let around = |point: u32| {
-        let first = from_points.partition_point(|entry| entry.0 < point);
-        let after = first + from_points[first..].partition_point(|entry| entry.0 == point);
-        &from_points[first..after]
-    };
-    // Those of them with edges of certain operands.
-    fn neighbours(around: &[(u32, u8, u32)], of: u8) -> impl Iterator<Item = u32> {
-        let first = around.partition_point(|entry| entry.1 < of);
-        around[first..].iter().take_while(move |entry| entry.1 == of).map(|entry| entry.2)
+fn splits_along_edges(
+    patch: &Patch<'_>,
+    half_edges: &HalfEdges,
+    cutter: &Cutter<'_>,
+    control: &Control,
+) -> Result<Splits, Error> {
+    // With a bit for each operand whose faces are there.
+    let edges = half_edges.edges_with_triangles().map(|(u, v, triangles)| {
+        let operand = |triangle: u32| patch.faces[triangle as usize].origin.operand;
+        ((u, v), triangles.fold(0u8, |of, triangle| of | 1 << operand(triangle)))
+    });
+    let edges: Vec<(Edge, u8)> = edges.collect();
+    // Each edge from both its ends, those of the same operands together.
+    let from_ends = edges.iter().flat_map(|&((u, v), of)| [(u, (of, v)), (v, (of, u))]);
+    let mut from_points = Buckets::new(patch.point_count(), from_ends);
+    from_points.each_mut().for_each(<[(u8, u32)]>::sort_unstable);
+    // Those of a point's edges that are of certain operands: where they lead to.
+    fn neighbours(around: &[(u8, u32)], of: u8) -> impl Iterator<Item = u32> {
+        let of_these = around.iter().skip_while(move |entry| entry.0 < of);
+        of_these.take_while(move |entry| entry.0 == of).map(|entry| entry.1)
     }
-    let mut splits = FxHashMap::default();
-    let mut around_u = (u32::MAX, [].as_slice());
+    let mut splits = Splits::new(patch);
     for (i, &((u, v), of)) in edges.iter().enumerate() {
         if i % EDGES_BETWEEN_CHECKS == 0 {
             control.check()?;
@@ -197,13 +243,10 @@ fn splits_along_edges(patch: &Patch<'_>, cutter: &Cutter<'_>, control: &Control)
         if !patch.is_complete(u) || !patch.is_complete(v) {
             continue;
         }
-        if around_u.0 != u {
-            around_u = (u, around(u));
-        }
         // From vertex to vertex along the edge.
         let mut on: Vec<u32> = Vec::new();
         let mut next = 0;
-        let mut here = around_u.1;
+        let mut here = from_points.get(u);
         loop {
             for x in (1..=BOTH).filter(|&of_x| of | of_x == BOTH).flat_map(|of_x| neighbours(here, of_x)) {
                 if x != u && x != v && !on.contains(&x) && lies_between(patch, cutter, u, x, v) {
@@ -211,7 +254,7 @@ fn splits_along_edges(patch: &Patch<'_>, cutter: &Cutter<'_>, control: &Control)
                 }
             }
             let Some(&x) = on.get(next) else { break };
-            here = around(x);
+            here = from_points.get(x);
             next += 1;
         }
         if !on.is_empty() {
@@ -244,35 +287,23 @@ fn boxes_along(p: Vec3A, q: Vec3A, points: usize) -> impl Iterator<Item = Aabb> 
 /// Faces of both operands.
 const BOTH: u8 = 3;
 
-/// All edges, from the lower point to the higher one, and whose faces are there: a bit for each operand.
-fn edges(patch: &Patch<'_>) -> Vec<(Edge, u8)> {
-    let mut sides: Vec<(Edge, u8)> = Vec::with_capacity(3 * patch.faces.len());
-    for face in patch.faces.iter().filter(|face| face.alive) {
-        let [a, b, c] = face.corners;
-        sides.extend([(a, b), (b, c), (c, a)].map(|(u, v)| ((u.min(v), u.max(v)), 1 << face.origin.operand)));
-    }
-    sides.sort_unstable();
-    sides
-        .chunk_by(|x, y| x.0 == y.0)
-        .map(|group| (group[0].0, group[0].1 | group[group.len() - 1].1))
-        .collect()
-}
-
 /// Whether `x` lies on the segment from `u` to `v`, not at its ends: exactly as given, or before it was rounded. Both parts
 /// are shorter than the whole, so splitting comes to an end.
 fn lies_between(patch: &Patch<'_>, cutter: &Cutter<'_>, u: u32, x: u32, v: u32) -> bool {
     let (p, at, q) = (patch.position(u), patch.position(x), patch.position(v));
     // Nearly always one look says no: rounding moves a point by less than a unit in the last place.
-    let is_within = (0..3).all(|k| p[k].min(q[k]) <= at[k] && at[k] <= p[k].max(q[k]));
+    if !(0..3).all(|k| p[k].min(q[k]) <= at[k] && at[k] <= p[k].max(q[k])) {
+        return false;
+    }
     let length = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|k| (q[k] - p[k]).powi(2)).sum::<f64>();
     let [u_v, u_x]: [[f64; 3]; 2] = [q, at].map(|end| std::array::from_fn(|k| end[k] - p[k]));
     let twice_area = (0..3)
         .map(|k| (u_v[(k + 1) % 3] * u_x[(k + 2) % 3] - u_v[(k + 2) % 3] * u_x[(k + 1) % 3]).powi(2))
         .sum::<f64>();
     let is_off = twice_area > (2.0 * cutter.rounding).powi(2) * length(p, q);
-    is_within
-        && !is_off
+    !is_off
         && length(p, at).max(length(at, q)) < length(p, q)
         && (collinear(p, at, q)
-            || (is_low([p, at, q], cutter.rounding) && cutter.were_on_one_line([u, x, v])))
+            || (is_low([p, at, q], cutter.rounding)
+                && cutter.were_on_one_line([u, x, v].map(|point| patch.number(point)))))
 }

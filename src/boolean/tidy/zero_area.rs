@@ -65,7 +65,7 @@ pub(super) fn mark_flat(patch: &mut Patch<'_>, cutter: &Cutter<'_>) {
     for index in 0..patch.faces.len() as u32 {
         let corners = patch.faces[index as usize].corners;
         let is_low = is_lower(patch, index, cutter.rounding) && !is_exactly_flat(patch, index);
-        if is_low && cutter.were_on_one_line(corners) {
+        if is_low && cutter.were_on_one_line(corners.map(|point| patch.number(point))) {
             patch.faces[index as usize].flat = true;
         }
     }
