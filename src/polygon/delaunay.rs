@@ -1,6 +1,7 @@
 //! Constrained Delaunay triangulation: of big polygons, and between edges by winding number.
 
 use rustc_hash::FxHashMap;
+use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 use super::winding::{CountedEdge, CountedTriangle};
@@ -67,13 +68,20 @@ pub(super) fn between(points: &[[f64; 2]], edges: &[CountedEdge]) -> Option<Vec<
         })
         .collect();
     let count = vertices.len();
-    let pairs = constraints.iter().map(|&(u, v)| [place(u), place(v)]).collect();
-    let mut conflict = false;
-    let triangulation =
-        ConstrainedDelaunayTriangulation::<Vertex>::try_bulk_load_cdt(vertices, pairs, |_| conflict = true)
-            .ok()?;
-    if conflict || triangulation.num_vertices() != count {
+    // Loading vertices and edges at once would depend on the order of a hash set where points lie on one circle.
+    let mut triangulation = ConstrainedDelaunayTriangulation::<Vertex>::bulk_load(vertices).ok()?;
+    if triangulation.num_vertices() != count {
         return None;
+    }
+    let mut handles: Vec<Option<FixedVertexHandle>> = vec![None; count];
+    for vertex in triangulation.vertices() {
+        handles[place(vertex.data().index)] = Some(vertex.fix());
+    }
+    for &(u, v) in &constraints {
+        let (from, to) = handles[place(u)].zip(handles[place(v)])?;
+        if triangulation.try_add_constraint(from, to).is_empty() {
+            return None;
+        }
     }
     // Flood from outside, where the winding number is 0; an edge passed from its right to its left adds its count.
     let mut winding: Vec<Option<i32>> = vec![None; triangulation.num_all_faces()];

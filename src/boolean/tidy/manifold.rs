@@ -4,7 +4,7 @@
 use rustc_hash::FxHashMap;
 
 use super::buckets::Buckets;
-use crate::exact::{Sign, orient2d, orient3d};
+use crate::exact::{Sign, collinear, orient2d, orient3d};
 
 /// A side of a triangle: three times the triangle's index plus the corner it starts at.
 type HalfEdge = u32;
@@ -141,24 +141,26 @@ fn pair_by_angle(
         half_edge: HalfEdge,
         opens: bool,
         apex: [f64; 3],
+        /// Whether the apex lies on the line of the edge: no angle then.
+        is_flat: bool,
     }
     let (from, to) = (surface.position(u), surface.position(v));
     let mut spokes: Vec<Spoke> = half_edges
         .iter()
         .map(|&half_edge| {
             let apex = surface.left_of_side(half_edge / 3, half_edge as usize % 3);
-            Spoke { half_edge, opens: ends(surface, half_edge).0 == v, apex }
+            let is_flat = collinear(&from, &to, &apex);
+            Spoke { half_edge, opens: ends(surface, half_edge).0 == v, apex, is_flat }
         })
         .collect();
-    let reference = spokes[0].apex;
+    let reference = spokes.iter().find(|spoke| !spoke.is_flat).map(|spoke| spoke.apex);
     let around = Around { from, to };
+    let by_angle = |x: &Spoke, y: &Spoke| match (reference, x.is_flat || y.is_flat) {
+        (Some(reference), false) => around.compare(&reference, &x.apex, &y.apex),
+        _ => y.is_flat.cmp(&x.is_flat),
+    };
     // At equal angles wedges close before others open: what touches stays apart.
-    spokes.sort_by(|x, y| {
-        around
-            .compare(&reference, &x.apex, &y.apex)
-            .then(x.opens.cmp(&y.opens))
-            .then(x.half_edge.cmp(&y.half_edge))
-    });
+    spokes.sort_by(|x, y| by_angle(x, y).then(x.opens.cmp(&y.opens)).then(x.half_edge.cmp(&y.half_edge)));
     // Start where the nesting is lowest, so that no wedge closes before it has opened.
     let mut depth = 0i32;
     let mut lowest = (0, 0);
