@@ -85,15 +85,27 @@ impl Candidates {
         runner: Runner<'_>,
         visit: impl Fn(u32, u32, &mut Vec<T>) + Sync,
     ) -> Result<Vec<T>, Error> {
+        self.visit_batches(runner, |pairs, found| pairs.iter().for_each(|&[s, t]| visit(s, t, found)))
+    }
+
+    /// The same, some hundred pairs at once.
+    pub(super) fn visit_batches<T: Send>(
+        &self,
+        runner: Runner<'_>,
+        visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
+    ) -> Result<Vec<T>, Error> {
         let [of_a, of_b] = &self.triangles;
         let [a, b] = &self.trees;
-        if self.capsules[0].is_empty() || self.capsules[1].is_empty() {
-            return visit_pairs(a, b, runner, |i, j, found| visit(of_a[i as usize], of_b[j as usize], found));
-        }
-        visit_pairs(a, b, runner, |i, j, found| {
-            if !self.capsules[0][i as usize].is_apart(&self.capsules[1][j as usize]) {
-                visit(of_a[i as usize], of_b[j as usize], found);
+        let has_capsules = !self.capsules[0].is_empty() && !self.capsules[1].is_empty();
+        visit_pairs(a, b, runner, |pairs, found| {
+            let mut triangles = Vec::with_capacity(pairs.len());
+            for &[i, j] in pairs {
+                let (i, j) = (i as usize, j as usize);
+                if !has_capsules || !self.capsules[0][i].is_apart(&self.capsules[1][j]) {
+                    triangles.push([of_a[i], of_b[j]]);
+                }
             }
+            visit(&triangles, found);
         })
     }
 }
