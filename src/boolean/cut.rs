@@ -29,6 +29,9 @@ pub(super) struct Piece {
     pub(super) triangle: u32,
 }
 
+/// Faces that are cut between looks at the limits.
+const FACES_AT_ONCE: usize = 512;
+
 /// What was cut out of the faces of a part.
 #[derive(Debug, Default)]
 pub(super) struct Cut {
@@ -74,20 +77,40 @@ impl Cutter<'_> {
         runner: Runner<'_>,
     ) -> Result<Cut, Error> {
         let all = &self.faces[part.side].faces;
-        let pieces = runner.pieces(all.len(), 512, |range| {
-            let mut scratch = Scratch::default();
-            let mut cut = Cut::default();
-            for place in range {
-                let is_done = !done.is_empty() && done.contains(&(part.side, all[place].triangle));
-                if !is_done && !self.plane_faces.belongs_to_earlier(part.side, place as u32) {
-                    self.cut_face(part, place as u32, &mut scratch, &mut cut);
+        let mut parts = runner
+            .pieces(all.len(), if runner.is_parallel() { FACES_AT_ONCE } else { all.len() }, |range| {
+                let mut scratch = Scratch::default();
+                let mut cut = Cut::default();
+                for start in range.clone().step_by(FACES_AT_ONCE) {
+                    runner.control.check()?;
+                    let some = start..(start + FACES_AT_ONCE).min(range.end);
+                    let Self { operands, crossings, edges, .. } = *self;
+                    self.faces[part.side].for_each_place(
+                        some,
+                        part.side,
+                        operands,
+                        crossings,
+                        edges,
+                        |place| {
+                            let is_done =
+                                !done.is_empty() && done.contains(&(part.side, all[place as usize].triangle));
+                            if !is_done && !self.plane_faces.belongs_to_earlier(part.side, place) {
+                                self.cut_face(part, place, &mut scratch, &mut cut);
+                            }
+                        },
+                    );
                 }
-            }
-            cut
-        })?;
-        let has_inverted = pieces.iter().any(|cut| cut.has_inverted);
-        let has_slivers = pieces.iter().any(|cut| cut.has_slivers);
-        Ok(Cut { pieces: pieces.into_iter().flat_map(|cut| cut.pieces).collect(), has_inverted, has_slivers })
+                Ok::<Cut, Error>(cut)
+            })?
+            .into_iter();
+        let mut all = parts.next().unwrap_or(Ok(Cut::default()))?;
+        for part in parts {
+            let mut part = part?;
+            all.pieces.append(&mut part.pieces);
+            all.has_inverted |= part.has_inverted;
+            all.has_slivers |= part.has_slivers;
+        }
+        Ok(all)
     }
 
     /// Where a point is.
