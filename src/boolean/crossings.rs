@@ -7,7 +7,7 @@ use super::candidates::Candidates;
 use super::operands::{Corner, Operands, Plane};
 use crate::Error;
 use crate::parallel::Runner;
-use crate::spatial::radix_sort;
+use crate::spatial::{radix_sort, read_ahead};
 
 /// A crossing of an edge of one operand with a triangle of the other. Every cut edge runs from `low` to `high`, its
 /// vertices in ascending order.
@@ -82,6 +82,11 @@ pub(super) fn find(
     let found = candidates.visit_batches(runner, |pairs, found| {
         let mut corners = Vec::with_capacity(PAIRS_AT_ONCE);
         for pairs in pairs.chunks(PAIRS_AT_ONCE) {
+            // First which corners, then where they are.
+            for side in 0..2 {
+                let triangles = operands.sides[side].triangles;
+                read_ahead(pairs.iter().map(|pair| triangles[pair[side] as usize][0]));
+            }
             corners.clear();
             corners.extend(pairs.iter().map(|&[s, t]| [operands.corners(0, s), operands.corners(1, t)]));
             found.extend(
@@ -174,7 +179,8 @@ fn number_nodes(
     for (pair, place) in found.iter().zip((0u32..).step_by(2)) {
         order.extend([key(&pair.tail, place), key(&pair.head, place + 1)]);
     }
-    sort(&mut order, 97, operands.vertex_count(), runner);
+    let mut other = Vec::new();
+    sort(&mut order, &mut other, 97, operands.vertex_count(), runner);
     runner.control.check()?;
     let mut nodes: Vec<Crossing> = Vec::with_capacity(order.len() / 2);
     let mut node_of = vec![0u32; order.len()];
@@ -196,7 +202,7 @@ fn number_nodes(
     order.extend(found.iter().zip(0u64..).map(|(pair, i)| {
         u128::from(pair.triangles[0]) << 96 | u128::from(pair.triangles[1]) << 64 | u128::from(i)
     }));
-    sort(&mut order, 96, operands.sides[0].triangles.len() as u32, runner);
+    sort(&mut order, &mut other, 96, operands.sides[0].triangles.len() as u32, runner);
     // A pair may have been found more than once.
     order.dedup_by_key(|key| *key >> 64);
     let segments = order
@@ -212,12 +218,12 @@ fn number_nodes(
 }
 
 /// Sorts keys that differ. The bits from `shift` on are a number below `limit`, which few keys have in common.
-fn sort(keys: &mut Vec<u128>, shift: u32, limit: u32, runner: Runner<'_>) {
+fn sort(keys: &mut Vec<u128>, other: &mut Vec<u128>, shift: u32, limit: u32, runner: Runner<'_>) {
     if runner.threads() > RADIX_THREADS {
         runner.sort(keys);
         return;
     }
-    radix_sort(keys, |&key| (key >> shift) as u32, u32::BITS - limit.leading_zeros());
+    radix_sort(keys, other, |&key| (key >> shift) as u32, u32::BITS - limit.leading_zeros());
     for group in keys.chunk_by_mut(|x, y| x >> shift == y >> shift) {
         group.sort_unstable();
     }

@@ -64,6 +64,7 @@ pub(super) struct Cutter<'a> {
 struct Scratch {
     triangulator: Triangulator,
     boundary: Vec<[u32; 2]>,
+    positions: Vec<[f64; 3]>,
     points: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
 }
@@ -76,7 +77,8 @@ impl Cutter<'_> {
         done: &FxHashSet<(usize, u32)>,
         runner: Runner<'_>,
     ) -> Result<Cut, Error> {
-        let all = &self.faces[part.side].faces;
+        let faces = &self.faces[part.side];
+        let all = &faces.faces;
         let mut parts = runner
             .pieces(all.len(), if runner.is_parallel() { FACES_AT_ONCE } else { all.len() }, |range| {
                 let mut scratch = Scratch::default();
@@ -85,20 +87,15 @@ impl Cutter<'_> {
                     runner.control.check()?;
                     let some = start..(start + FACES_AT_ONCE).min(range.end);
                     let Self { operands, crossings, edges, .. } = *self;
-                    self.faces[part.side].for_each_place(
-                        some,
-                        part.side,
-                        operands,
-                        crossings,
-                        edges,
-                        |place| {
-                            let is_done =
-                                !done.is_empty() && done.contains(&(part.side, all[place as usize].triangle));
-                            if !is_done && !self.plane_faces.belongs_to_earlier(part.side, place) {
-                                self.cut_face(part, place, &mut scratch, &mut cut);
-                            }
-                        },
-                    );
+                    let winding = |v: u32| self.windings[part.side][v as usize] as u32;
+                    let visit = |place: u32| {
+                        let is_done =
+                            !done.is_empty() && done.contains(&(part.side, all[place as usize].triangle));
+                        if !is_done && !self.plane_faces.belongs_to_earlier(part.side, place) {
+                            self.cut_face(part, place, &mut scratch, &mut cut);
+                        }
+                    };
+                    faces.for_each_place(some, part.side, operands, crossings, edges, winding, visit);
                 }
                 Ok::<Cut, Error>(cut)
             })?
@@ -143,16 +140,15 @@ impl Cutter<'_> {
         for edge in &mut scratch.boundary {
             *edge = edge.map(local);
         }
+        scratch.positions.clear();
+        scratch.positions.extend(points.iter().map(|&point| *self.position(point)));
         let (x, y) = self.projection(part, face);
         scratch.points.clear();
-        scratch.points.extend(points.iter().map(|&point| {
-            let position = self.position(point);
-            [position[x], position[y]]
-        }));
+        scratch.points.extend(scratch.positions.iter().map(|position| [position[x], position[y]]));
         scratch.triangles.clear();
         let shape =
             scratch.triangulator.triangulate(&scratch.points, &scratch.boundary, &mut scratch.triangles);
-        cut.has_slivers |= shape >= Shape::Flat || self.has_short_edge(&points, &scratch.boundary);
+        cut.has_slivers |= shape >= Shape::Flat || self.has_short_edge(&scratch.positions, &scratch.boundary);
         cut.has_inverted |= shape == Shape::Folded;
         cut.pieces.extend(scratch.triangles.iter().map(|corners| Piece {
             corners: corners.map(|point| points[point as usize]),
@@ -213,9 +209,9 @@ impl Cutter<'_> {
     }
 
     /// Whether two consecutive points of a boundary are no further apart than rounding.
-    fn has_short_edge(&self, points: &[u32], boundary: &[[u32; 2]]) -> bool {
+    fn has_short_edge(&self, positions: &[[f64; 3]], boundary: &[[u32; 2]]) -> bool {
         boundary.iter().any(|edge| {
-            let [p, q] = edge.map(|i| self.position(points[i as usize]));
+            let [p, q] = edge.map(|i| positions[i as usize]);
             (0..3).all(|k| (p[k] - q[k]).abs() <= self.rounding)
         })
     }

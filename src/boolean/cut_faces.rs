@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::crossings::{Crossing, Crossings};
 use super::cut_edges::CutEdges;
 use super::operands::Operands;
-use crate::spatial::radix_sort;
+use crate::spatial::{radix_sort, read_ahead};
 
 /// A set of small integers.
 #[derive(Debug, Default)]
@@ -43,12 +43,6 @@ pub(super) struct CutFace {
 /// Faces or segments whose data are read at once.
 const READ_AHEAD: usize = 64;
 
-/// Reads values that are needed soon, so that cache misses overlap instead of being waited for one by one.
-#[inline(always)]
-fn read_ahead(values: impl Iterator<Item = u32>) {
-    std::hint::black_box(values.fold(0, |sum, value| sum ^ value));
-}
-
 /// Marks a side without crossings.
 pub(super) const UNCUT: u32 = u32::MAX;
 
@@ -71,7 +65,7 @@ impl CutFaces {
             let mut order: Vec<[u32; 2]> =
                 all.iter().zip(0..).map(|(segment, i)| [segment.triangles[1], i]).collect();
             let bits = u32::BITS - (operands.sides[1].triangles.len() as u32).leading_zeros();
-            radix_sort(&mut order, |key| key[0], bits);
+            radix_sort(&mut order, &mut Vec::new(), |key| key[0], bits);
             order.iter().map(|key| key[1]).collect()
         };
         let first_vertex = operands.first_vertex(side);
@@ -143,8 +137,8 @@ impl CutFaces {
         self.faces.sort_by_key(|face| face.triangle);
     }
 
-    /// Cuts a range of places of faces into parts, and calls `visit` for each place, when what is looked up for the part has been
-    /// read ahead.
+    /// Calls `visit` for a range of places of faces. What will be looked up for some dozens of them is read ahead, and
+    /// `of_vertex` of the corners.
     pub(super) fn for_each_place(
         &self,
         range: Range<usize>,
@@ -152,11 +146,12 @@ impl CutFaces {
         operands: &Operands<'_>,
         crossings: &Crossings,
         edges: &CutEdges,
+        of_vertex: impl Fn(u32) -> u32,
         mut visit: impl FnMut(u32),
     ) {
         for start in range.clone().step_by(READ_AHEAD) {
             let part = start..(start + READ_AHEAD).min(range.end);
-            self.read(part.clone(), side, operands, crossings, edges);
+            self.read(part.clone(), side, operands, crossings, edges, &of_vertex);
             part.for_each(|place| visit(place as u32));
         }
     }
@@ -169,14 +164,15 @@ impl CutFaces {
         operands: &Operands<'_>,
         crossings: &Crossings,
         edges: &CutEdges,
+        of_vertex: impl Fn(u32) -> u32,
     ) {
         let operand = &operands.sides[side];
         let low_bits = |position: &[f64; 3]| (position[0].to_bits() ^ position[2].to_bits()) as u32;
         let faces = &self.faces[range];
         read_ahead(faces.iter().map(|face| {
             let [u, v, w] = operand.triangles[face.triangle as usize];
-            let position = |v: u32| low_bits(&operand.positions[v as usize]);
-            position(u) ^ position(v) ^ position(w)
+            let of_corner = |v: u32| low_bits(&operand.positions[v as usize]) ^ of_vertex(v);
+            of_corner(u) ^ of_corner(v) ^ of_corner(w)
         }));
         let cut_edges = faces.iter().flat_map(|face| face.edges).filter(|&edge| edge != UNCUT);
         read_ahead(cut_edges.map(|edge| {

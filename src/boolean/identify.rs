@@ -41,16 +41,24 @@ impl Identification {
             let all = &faces[side].faces;
             let pairs = runner.gather(all.len(), 1024, 0, |range, pairs| {
                 let mut points = Vec::new();
-                faces[side].for_each_place(range, side, operands, crossings, edges, |place| {
-                    if plane_faces.belongs_to_earlier(side, place) {
-                        return;
-                    }
-                    points.clear();
-                    for member in plane_faces.members(side, place) {
-                        collect(side, &all[member as usize], &mut points);
-                    }
-                    coincidences(&mut points, pairs);
-                });
+                faces[side].for_each_place(
+                    range,
+                    side,
+                    operands,
+                    crossings,
+                    edges,
+                    |_| 0,
+                    |place| {
+                        if plane_faces.belongs_to_earlier(side, place) {
+                            return;
+                        }
+                        points.clear();
+                        for member in plane_faces.members(side, place) {
+                            collect(side, &all[member as usize], &mut points);
+                        }
+                        coincidences(&mut points, pairs);
+                    },
+                );
             })?;
             for [u, v] in pairs {
                 result.join(u, v);

@@ -3,7 +3,7 @@
 use crate::parallel::Runner;
 use crate::{Control, Error};
 
-use super::box_tree::{BoxTree, LANES, bits};
+use super::box_tree::{BoxTree, LANES, for_each_bit};
 
 /// The pairs of subtrees at the top are opened until there are so many, which are shared out in about as many runs.
 const TASKS: usize = 256;
@@ -72,27 +72,27 @@ impl Walk<'_> {
         }
         let mut level = a.top().min(b.top());
         // The packs of the higher tree that meet the box of the lower one.
-        let (higher, lower, order) = if a.top() >= b.top() { (a, b, [0, 1]) } else { (b, a, [1, 0]) };
+        let (higher, lower, side) = if a.top() >= b.top() { (a, b, 0) } else { (b, a, 1) };
         let (low, high) = (lower.bounds().min.to_array(), lower.bounds().max.to_array());
         let mut tasks = vec![[0, 0]];
         for above in (level + 1..=higher.top()).rev() {
             self.control.check()?;
             let mut opened = Vec::new();
             for pair in tasks {
-                let place = pair[order[0]];
+                let place = pair[side];
                 let meeting = higher.level(above)[place as usize].meeting(low, high);
-                opened.extend(bits(meeting).map(|lane| {
+                for_each_bit(meeting, |lane| {
                     let mut pair = [0; 2];
-                    pair[order[0]] = LANES as u32 * place + lane as u32;
-                    pair
-                }));
+                    pair[side] = LANES as u32 * place + lane;
+                    opened.push(pair);
+                });
             }
             tasks = opened;
         }
         while tasks.len() < TASKS && level > 0 {
             let mut opened = Vec::new();
             for &pair in &tasks {
-                opened.extend(self.open(level, pair));
+                self.open(level, pair, |pair| opened.push(pair));
             }
             tasks = opened;
             level -= 1;
@@ -100,19 +100,18 @@ impl Walk<'_> {
         Ok(Some((level, tasks)))
     }
 
-    /// The pairs of lanes of two packs whose boxes meet: pairs of packs of the level below, or of items.
+    /// Calls `found` for the pairs of lanes of two packs whose boxes meet: pairs of packs of the level below, or of items.
     #[inline(always)]
-    fn open(&self, level: usize, pair: Packs) -> impl Iterator<Item = Packs> {
+    fn open(&self, level: usize, pair: Packs, mut found: impl FnMut(Packs)) {
         let [x, y] = pair;
         let mut meeting = self.a.level(level)[x as usize].meeting_pack(&self.b.level(level)[y as usize]);
         if self.within && x == y {
             // A box above the lowest level is opened against itself.
             meeting &= if level == 0 { 0x08ce } else { 0x8cef };
         }
-        bits(meeting).map(move |lanes| {
-            let lanes = lanes as u32;
-            [LANES as u32 * x + lanes / LANES as u32, LANES as u32 * y + lanes % LANES as u32]
-        })
+        for_each_bit(meeting, |lanes| {
+            found([LANES as u32 * x + lanes / LANES as u32, LANES as u32 * y + lanes % LANES as u32]);
+        });
     }
 
     /// Hands on all pairs of items below some pairs of packs.
@@ -128,12 +127,11 @@ impl Walk<'_> {
                 if steps % STEPS_BETWEEN_CHECKS == 0 {
                     self.control.check()?;
                 }
-                let opened = self.open(level as usize, pair);
                 if level > 0 {
-                    stack.extend(opened.map(|pair| (level - 1, pair)));
+                    self.open(level as usize, pair, |pair| stack.push((level - 1, pair)));
                     continue;
                 }
-                batch.extend(opened.map(|[i, j]| [of_a[i as usize], of_b[j as usize]]));
+                self.open(0, pair, |[i, j]| batch.push([of_a[i as usize], of_b[j as usize]]));
                 if batch.len() >= BATCH {
                     found(&batch);
                     batch.clear();
@@ -157,6 +155,9 @@ fn concatenated<T>(pieces: Vec<Result<Vec<T>, Error>>) -> Result<Vec<T>, Error> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::CancelToken;
+    use glam::Vec3A;
+    use obvhs::aabb::Aabb;
     use rand::rngs::ChaCha8Rng;
     use rand::{RngExt, SeedableRng};
 
@@ -173,7 +174,20 @@ mod tests {
     #[test]
     fn pairs_and_queries_agree_with_all_against_all() {
         let mut rng = ChaCha8Rng::seed_from_u64(10);
-        for (n, m, size) in [(0, 5, 0.1), (1, 1, 1.0), (7, 300, 0.2), (500, 400, 0.05), (64, 64, 0.0)] {
+        for (n, m, size) in [
+            (0, 5, 0.1),
+            (5, 0, 0.1),
+            (0, 0, 0.1),
+            (1, 1, 1.0),
+            (1, 2_000, 0.1),
+            (2_000, 1, 0.1),
+            (3, 4, 1.0),
+            (5, 16, 1.0),
+            (7, 300, 0.2),
+            (300, 17, 0.2),
+            (500, 400, 0.05),
+            (64, 64, 0.0),
+        ] {
             let (a, b) = (random_boxes(&mut rng, n, size), random_boxes(&mut rng, m, size));
             let tree = |boxes: &[Aabb]| {
                 let items: Vec<u32> = (0..boxes.len() as u32).collect();
@@ -181,9 +195,10 @@ mod tests {
             };
             let (tree_a, tree_b) = (tree(&a), tree(&b));
             let control = Control::new();
-            let mut pairs =
-                visit_pairs(&tree_a, &tree_b, Runner::new(&control, true), |i, j, found| found.push([i, j]))
-                    .expect("no limits");
+            let mut pairs = visit_pairs(&tree_a, &tree_b, Runner::new(&control, true), |pairs, found| {
+                found.extend_from_slice(pairs)
+            })
+            .expect("no limits");
             pairs.sort_unstable();
             let mut expected = Vec::new();
             for (i, x) in a.iter().enumerate() {
@@ -200,9 +215,29 @@ mod tests {
     }
 
     #[test]
+    fn order_and_limits_do_not_depend_on_threads() {
+        let mut rng = ChaCha8Rng::seed_from_u64(21);
+        let tree = |boxes: Vec<Aabb>| BoxTree::of_boxes(&boxes);
+        let (a, b) = (tree(random_boxes(&mut rng, 6_000, 0.1)), tree(random_boxes(&mut rng, 900, 0.1)));
+        let control = Control::new();
+        let pairs = |parallel: bool| {
+            let runner = Runner::new(&control, parallel);
+            let of_two = visit_pairs(&a, &b, runner, |pairs, found| found.extend_from_slice(pairs));
+            (of_two.expect("no limits"), self_overlapping_pairs(&a, runner, |_| true).expect("no limits"))
+        };
+        assert_eq!(pairs(true), pairs(false));
+        let token = CancelToken::new();
+        token.cancel();
+        let cancelled = Control::new().cancel(&token);
+        assert!(visit_pairs(&a, &b, Runner::new(&cancelled, false), |_, _: &mut Vec<u32>| {}).is_err());
+    }
+
+    #[test]
     fn pairs_within_one_tree_agree_with_all_against_all() {
         let mut rng = ChaCha8Rng::seed_from_u64(13);
-        for (n, size) in [(0, 0.1), (1, 1.0), (2, 1.0), (300, 0.2), (2_000, 0.05)] {
+        for (n, size) in
+            [(0, 0.1), (1, 1.0), (2, 1.0), (4, 1.0), (5, 1.0), (17, 1.0), (300, 0.2), (2_000, 0.05)]
+        {
             let boxes = random_boxes(&mut rng, n, size);
             let items: Vec<u32> = (0..n as u32).collect();
             let tree = BoxTree::new(&items, |i| boxes[i as usize]);

@@ -10,11 +10,15 @@ use obvhs::aabb::Aabb;
 use smallvec::{SmallVec, smallvec};
 
 use super::radix;
+use super::read_ahead::read_ahead;
 
 /// Boxes in a pack.
 pub(super) const LANES: usize = 4;
 /// The centres of boxes are told apart on a grid of so many bits along each axis.
 const BITS: u32 = 10;
+
+/// Items whose boxes are read at once; a multiple of [`LANES`].
+const AT_ONCE: usize = 64;
 
 /// Four boxes, coordinate by coordinate. A lane that is not used holds no numbers, and so meets nothing.
 #[derive(Clone, Copy, Debug)]
@@ -105,16 +109,19 @@ impl BoxTree {
             .enumerate()
             .map(|(i, aabb)| u64::from(morton((aabb.min + aabb.max - centres.min) * scale)) << 32 | i as u64)
             .collect();
-        radix::sort(&mut order, |&key| (key >> 32) as u32, 3 * BITS);
+        radix::sort(&mut order, &mut Vec::new(), |&key| (key >> 32) as u32, 3 * BITS);
         let items: Vec<u32> = order.iter().map(|&key| key as u32).collect();
         drop(order);
 
         let mut packs = Vec::with_capacity(items.len().div_ceil(LANES - 1) + 1);
         let mut boxes = Vec::with_capacity(items.len().div_ceil(LANES));
-        for group in items.chunks(LANES) {
-            let boxes_of_items = group.iter().map(|&item| unsorted[item as usize]);
-            packs.push(Pack::new(boxes_of_items.clone()));
-            boxes.push(union(boxes_of_items));
+        for some in items.chunks(AT_ONCE) {
+            read_ahead(some.iter().map(|&item| unsorted[item as usize].min.x.to_bits()));
+            for group in some.chunks(LANES) {
+                let boxes_of_items = group.iter().map(|&item| unsorted[item as usize]);
+                packs.push(Pack::new(boxes_of_items.clone()));
+                boxes.push(union(boxes_of_items));
+            }
         }
         let mut levels = vec![0];
         while boxes.len() > 1 {
@@ -164,27 +171,25 @@ impl BoxTree {
         let mut stack: SmallVec<[(usize, usize); 64]> = smallvec![(self.top(), 0)];
         while let Some((level, place)) = stack.pop() {
             let meeting = self.level(level)[place].meeting(low, high);
-            for lane in bits(meeting) {
+            for_each_bit(meeting, |lane| {
+                let place = LANES * place + lane as usize;
                 if level == 0 {
-                    found(self.items[LANES * place + lane]);
+                    found(self.items[place]);
                 } else {
-                    stack.push((level - 1, LANES * place + lane));
+                    stack.push((level - 1, place));
                 }
-            }
+            });
         }
     }
 }
 
-/// The places of the ones, ascending.
+/// Calls `found` for the places of the ones, ascending.
 #[inline(always)]
-pub(super) fn bits(mut mask: u32) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lowest = mask.trailing_zeros();
-        (mask != 0).then(|| {
-            mask &= mask - 1;
-            lowest as usize
-        })
-    })
+pub(super) fn for_each_bit(mut mask: u32, mut found: impl FnMut(u32)) {
+    while mask != 0 {
+        found(mask.trailing_zeros());
+        mask &= mask - 1;
+    }
 }
 
 fn union(boxes: impl Iterator<Item = Aabb>) -> Aabb {
@@ -208,18 +213,6 @@ fn morton(point: Vec3A) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::rngs::ChaCha8Rng;
-    use rand::{RngExt, SeedableRng};
-
-    fn random_boxes(rng: &mut ChaCha8Rng, count: usize, size: f32) -> Vec<Aabb> {
-        (0..count)
-            .map(|_| {
-                let min = Vec3A::new(rng.random(), rng.random(), rng.random());
-                let extent = Vec3A::new(rng.random(), rng.random(), rng.random()) * size;
-                Aabb { min, max: min + extent }
-            })
-            .collect()
-    }
 
     #[test]
     fn equal_and_nested_boxes_keep_the_tree_flat() {
@@ -231,6 +224,18 @@ mod tests {
             .collect();
         let items: Vec<u32> = (0..10_000).collect();
         let tree = BoxTree::new(&items, |i| boxes[i as usize]);
-        assert!(tree.levels.len() < 16);
+        assert!(tree.levels.len() < 10);
+    }
+
+    #[test]
+    fn unused_lanes_meet_nothing() {
+        let everything = Aabb { min: Vec3A::splat(f32::NEG_INFINITY), max: Vec3A::splat(f32::INFINITY) };
+        for count in 0..40 {
+            let tree = BoxTree::of_boxes(&vec![everything; count]);
+            let mut found = Vec::new();
+            tree.meeting(&everything, |item| found.push(item));
+            found.sort_unstable();
+            assert!(found.into_iter().eq(0..count as u32));
+        }
     }
 }

@@ -5,8 +5,14 @@ const DIGIT: u32 = 11;
 /// Below this many items comparisons are faster.
 const FEW: usize = 256;
 
-/// Sorts by a key of so many `bits`, keeping the order of items with equal keys. Takes memory for a second copy.
-pub(crate) fn sort<T: Copy>(items: &mut Vec<T>, key: impl Fn(&T) -> u32, bits: u32) {
+/// Sorts by a key of so many `bits`, keeping the order of items with equal keys. `other` is memory for a second copy, with
+/// any contents before and after.
+pub(crate) fn sort<T: Copy + Default>(
+    items: &mut Vec<T>,
+    other: &mut Vec<T>,
+    key: impl Fn(&T) -> u32,
+    bits: u32,
+) {
     if items.len() < FEW {
         items.sort_by_key(key);
         return;
@@ -22,7 +28,11 @@ pub(crate) fn sort<T: Copy>(items: &mut Vec<T>, key: impl Fn(&T) -> u32, bits: u
             counts[((pass << digit) | (key >> (pass * digit) & mask)) as usize] += 1;
         }
     }
-    let mut other = items.clone();
+    if other.is_empty() {
+        // Fresh memory is zero without being written to.
+        *other = vec![T::default(); items.len()];
+    }
+    other.resize(items.len(), T::default());
     for pass in 0..passes {
         let starts = &mut counts[(pass << digit) as usize..((pass + 1) << digit) as usize];
         let mut start = 0;
@@ -34,7 +44,7 @@ pub(crate) fn sort<T: Copy>(items: &mut Vec<T>, key: impl Fn(&T) -> u32, bits: u
             other[*place as usize] = *item;
             *place += 1;
         }
-        std::mem::swap(items, &mut other);
+        std::mem::swap(items, other);
     }
 }
 
@@ -47,6 +57,7 @@ mod tests {
     #[test]
     fn agrees_with_a_stable_sort() {
         let mut rng = ChaCha8Rng::seed_from_u64(17);
+        let mut other = Vec::new();
         for (count, bits) in
             [(0, 1), (1, 30), (255, 8), (256, 1), (5_000, 11), (5_000, 12), (20_000, 30), (9_000, 32)]
         {
@@ -54,7 +65,7 @@ mod tests {
             let mut items: Vec<(u32, usize)> = (0..count).map(|i| (rng.random::<u32>() & mask, i)).collect();
             let mut expected = items.clone();
             expected.sort_by_key(|item| item.0);
-            sort(&mut items, |item| item.0, bits);
+            sort(&mut items, &mut other, |item| item.0, bits);
             assert_eq!(items, expected, "{count} items of {bits} bits");
         }
     }
