@@ -1,14 +1,16 @@
 //! The result's arrays: untouched triangles in their order, then what was cut.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::cut_edges::CutEdges;
 use super::cut_faces::{BitSet, CutFaces};
 use super::identify::Identification;
 use super::multiplicity::Part;
+use super::numbers::Numbers;
 use super::operands::Operands;
+use super::origins::Origins;
 use super::outcome::Origin;
+use super::overlap::joined;
 use crate::Error;
 use crate::parallel::{Runner, ranges};
 
@@ -27,7 +29,7 @@ pub(super) struct NewTriangle {
 pub(super) struct Assembled {
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) origins: Vec<Origin>,
+    pub(super) origins: Origins,
     /// Decisions that plain positions left open.
     pub(super) ties: u64,
     /// Whether rounding turned over some triangle.
@@ -47,7 +49,7 @@ impl Assembled {
         let offset = self.positions.len() as u32;
         self.positions.extend(other.positions);
         self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|v| v + offset)));
-        self.origins.extend(other.origins);
+        self.origins.append(&other.origins);
         self.has_inverted |= other.has_inverted;
         Ok(self)
     }
@@ -70,59 +72,27 @@ pub(super) struct Ingredients<'a> {
 }
 
 impl Ingredients<'_> {
-    /// How often an uncut triangle counts in a part.
-    #[inline]
-    fn count(&self, part: Part, triangle: u32, corners: [u32; 3]) -> u32 {
-        if self.faces[part.side].is_cut(triangle)
-            || self.replaced.is_some_and(|r| r[part.side].contains(triangle))
-        {
-            return 0;
-        }
-        let winding = self.windings[part.side].get(corners[0] as usize).copied().unwrap_or(0);
-        part.multiplicity(winding).unsigned_abs()
-    }
-
     /// Builds the arrays.
     pub(super) fn assemble(&self, runner: Runner<'_>) -> Result<Assembled, Error> {
-        let operands = self.operands;
-        let points = operands.vertex_count() as usize + self.edges.positions.len() + self.copies.len();
-        // First mark the points in use, then number them in order: A's, B's, nodes, copies.
-        let number: Vec<AtomicU32> = std::iter::repeat_with(|| AtomicU32::new(UNUSED)).take(points).collect();
-        let mark = |point: u32| number[point as usize].store(USED, Ordering::Relaxed);
+        let numbers = self.numbers(runner)?;
         let pieces = self.pieces(runner);
         let grain = if runner.is_parallel() { 1 } else { pieces.len() };
-        let counts = runner.pieces(pieces.len(), grain, |range| {
-            let mut count = 0;
-            for piece in &pieces[range] {
-                self.for_kept(piece, |_, times, points| {
-                    count += times as usize;
-                    points.into_iter().for_each(mark);
-                });
-            }
-            count
-        })?;
-        self.new.iter().flat_map(|triangle| triangle.corners).for_each(mark);
-        let mut positions = Vec::new();
-        for (point, entry) in number.iter().enumerate() {
-            if entry.load(Ordering::Relaxed) == USED {
-                entry.store(positions.len() as u32, Ordering::Relaxed);
-                positions.push(self.position(point as u32));
-            }
-        }
-
-        let total = counts.iter().sum::<usize>() + self.new.len();
+        // Room for all: memory that is not written to costs nothing.
+        let room =
+            |pieces: &[(Part, Range<usize>)]| -> usize { pieces.iter().map(|(_, range)| range.len()).sum() };
         let runs = runner.pieces(pieces.len(), grain, |range| {
-            // The first run has room for all.
-            let room = if range.start == 0 { total } else { counts[range.start] };
-            let mut run = Run { triangles: Vec::with_capacity(room), origins: Vec::with_capacity(room) };
-            for piece in &pieces[range] {
-                self.for_kept(piece, |origin, times, points| {
-                    let [a, b, c] = points.map(|point| number[point as usize].load(Ordering::Relaxed));
-                    for _ in 0..times {
-                        run.triangles.push(if origin.reversed { [a, c, b] } else { [a, b, c] });
-                        run.origins.push(origin);
-                    }
-                });
+            let is_first = range.start == 0;
+            let room = room(if is_first { &pieces } else { &pieces[range.clone()] });
+            let mut run = Run {
+                triangles: Vec::with_capacity(if is_first { room + self.new.len() } else { room }),
+                origins: Origins::default(),
+            };
+            for (part, range) in &pieces[range] {
+                if self.is_simple(*part, &numbers) {
+                    self.append_simple(*part, range.clone(), &numbers, &mut run);
+                } else {
+                    self.append(*part, range.clone(), &numbers, &mut run);
+                }
             }
             run
         })?;
@@ -130,13 +100,57 @@ impl Ingredients<'_> {
         let Run { mut triangles, mut origins } = runs.next().unwrap_or_default();
         for run in runs {
             triangles.extend(run.triangles);
-            origins.extend(run.origins);
+            origins.append(&run.origins);
         }
         for triangle in self.new {
-            triangles.push(triangle.corners.map(|point| number[point as usize].load(Ordering::Relaxed)));
+            triangles.push(triangle.corners.map(|point| numbers.of(point)));
             origins.push(triangle.origin);
         }
-        Ok(Assembled { positions, triangles, origins, ..Assembled::default() })
+        Ok(Assembled { positions: numbers.into_positions(), triangles, origins, ..Assembled::default() })
+    }
+
+    /// Numbers the points in use: A's, B's, nodes, copies.
+    fn numbers(&self, runner: Runner<'_>) -> Result<Numbers, Error> {
+        let operands = self.operands;
+        let points = operands.vertex_count() as usize + self.edges.positions.len() + self.copies.len();
+        let mut numbers = Numbers::new(points);
+        for side in 0..2 {
+            let mut of_side = self.parts.iter().filter(|part| part.side == side);
+            let (first, second) = (of_side.next(), of_side.next());
+            let is_kept = |winding: i32| {
+                let counts = |part: Option<&Part>| part.is_some_and(|part| part.multiplicity(winding) != 0);
+                counts(first) || counts(second)
+            };
+            numbers.add_vertices(&self.windings[side], is_kept);
+        }
+        numbers.add_others();
+        // Only at cut and replaced faces may there be kept vertices that no triangle of the result has.
+        for side in 0..2 {
+            let first = operands.first_vertex(side);
+            let triangles = operands.sides[side].triangles;
+            let mut doubt = |t: u32| triangles[t as usize].into_iter().for_each(|v| numbers.doubt(first + v));
+            self.faces[side].faces.iter().for_each(|face| doubt(face.triangle));
+            self.replaced.iter().for_each(|replaced| replaced[side].iter().for_each(&mut doubt));
+        }
+        self.identification.identified().for_each(|point| numbers.doubt(point));
+        self.new.iter().flat_map(|triangle| triangle.corners).for_each(|point| numbers.mark(point));
+        if numbers.are_doubtful() {
+            let pieces = self.pieces(runner);
+            let grain = if runner.is_parallel() { 1 } else { pieces.len() };
+            let used = runner.pieces(pieces.len(), grain, |range| {
+                let mut used = Vec::new();
+                for (part, range) in &pieces[range] {
+                    let first = operands.first_vertex(part.side);
+                    self.for_kept(*part, range.clone(), |_, corners, _| {
+                        used.extend(corners.map(|v| first + v).iter().filter(|&&v| numbers.is_doubtful(v)));
+                    });
+                }
+                used
+            })?;
+            joined(used).into_iter().for_each(|v| numbers.mark(self.identification.representative(v)));
+        }
+        numbers.count(|point| *self.position(point), |point| self.identification.representative(point));
+        Ok(numbers)
     }
 
     /// What one thread looks at: parts of the result, or of these.
@@ -149,34 +163,77 @@ impl Ingredients<'_> {
         self.parts.iter().flat_map(share).collect()
     }
 
-    /// Calls `found` for every uncut triangle that stays: origin, how often it counts, and its points.
+    /// Whether a triangle was not cut, nor replaced.
     #[inline]
-    fn for_kept(&self, (part, range): &(Part, Range<usize>), mut found: impl FnMut(Origin, u32, [u32; 3])) {
-        let first = self.operands.first_vertex(part.side);
-        let triangles = &self.operands.sides[part.side].triangles[range.clone()];
-        for (t, &corners) in range.clone().zip(triangles) {
-            let times = self.count(*part, t as u32, corners);
-            if times == 0 {
-                continue;
+    fn is_whole(&self, side: usize, triangle: u32) -> bool {
+        !self.faces[side].is_cut(triangle) && !self.replaced.is_some_and(|r| r[side].contains(triangle))
+    }
+
+    /// Calls `found` for every whole triangle that stays: triangle, corners, and how often it counts (negative where it is
+    /// turned over once more).
+    #[inline]
+    fn for_kept(&self, part: Part, range: Range<usize>, mut found: impl FnMut(u32, [u32; 3], i32)) {
+        let windings = &self.windings[part.side];
+        for (t, corners) in range.clone().zip(&self.operands.sides[part.side].triangles[range]) {
+            let count = part.multiplicity(windings[corners[0] as usize]);
+            if count != 0 && self.is_whole(part.side, t as u32) {
+                found(t as u32, *corners, count);
             }
-            // A negative multiplicity turns the triangle over once more.
-            let winding = self.windings[part.side].get(corners[0] as usize).copied().unwrap_or(0);
-            let reversed = part.reversed != (part.multiplicity(winding) < 0);
-            let origin = Origin { operand: part.side as u32, triangle: t as u32, reversed };
-            found(origin, times, corners.map(|v| self.identification.representative(first + v)));
         }
     }
 
-    fn position(&self, point: u32) -> [f64; 3] {
+    /// Whether a part keeps exactly the whole triangles whose vertices have numbers, once each.
+    fn is_simple(&self, part: Part, numbers: &Numbers) -> bool {
+        numbers.are_once(part.side) && self.parts.iter().filter(|other| other.side == part.side).count() == 1
+    }
+
+    /// Appends whole triangles of a simple part.
+    fn append_simple(&self, part: Part, range: Range<usize>, numbers: &Numbers, run: &mut Run) {
+        let numbers = numbers.of_side(self.operands.first_vertex(part.side));
+        let triangles = &self.operands.sides[part.side].triangles[range.clone()];
+        // Triangles before this one belong to the last run.
+        let (mut first, mut next) = (0, 0);
+        let origin = |first: usize| Origin {
+            operand: part.side as u32,
+            triangle: first as u32,
+            reversed: part.reversed,
+        };
+        for (t, corners) in range.zip(triangles) {
+            let [a, b, c] = corners.map(|v| numbers[v as usize]);
+            if a == Numbers::NONE || !self.is_whole(part.side, t as u32) {
+                continue;
+            }
+            run.triangles.push(if part.reversed { [a, c, b] } else { [a, b, c] });
+            if t != next {
+                run.origins.push_run(origin(first), (next - first) as u32);
+                first = t;
+            }
+            next = t + 1;
+        }
+        run.origins.push_run(origin(first), (next - first) as u32);
+    }
+
+    /// Appends whole triangles of any part.
+    fn append(&self, part: Part, range: Range<usize>, numbers: &Numbers, run: &mut Run) {
+        let first = self.operands.first_vertex(part.side);
+        self.for_kept(part, range, |triangle, corners, count| {
+            let reversed = part.reversed != (count < 0);
+            let [a, b, c] = corners.map(|v| numbers.of(first + v));
+            for _ in 0..count.unsigned_abs() {
+                run.triangles.push(if reversed { [a, c, b] } else { [a, b, c] });
+                run.origins.push(Origin { operand: part.side as u32, triangle, reversed });
+            }
+        });
+    }
+
+    fn position(&self, point: u32) -> &[f64; 3] {
         let first_node = self.operands.vertex_count();
         if point < first_node {
-            return *self.operands.position(point);
+            return self.operands.position(point);
         }
         let node = (point - first_node) as usize;
-        match self.edges.positions.get(node) {
-            Some(position) => *position,
-            None => self.copies[node - self.edges.positions.len()],
-        }
+        let first_copy = self.edges.positions.len();
+        self.edges.positions.get(node).unwrap_or_else(|| &self.copies[node - first_copy])
     }
 }
 
@@ -184,10 +241,8 @@ impl Ingredients<'_> {
 #[derive(Default)]
 struct Run {
     triangles: Vec<[u32; 3]>,
-    origins: Vec<Origin>,
+    origins: Origins,
 }
 
 /// How many triangles one thread looks at.
 const TRIANGLES_PER_PIECE: usize = 1 << 16;
-const UNUSED: u32 = u32::MAX;
-const USED: u32 = u32::MAX - 1;

@@ -1,19 +1,29 @@
 //! Pairs of triangles that may meet (Vyatkin 2019, step 1: hierarchies of axis-aligned boxes), after most triangles have
 //! been ruled out by a coarse grid.
 
+use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
 use super::capsule::Capsule;
 use super::operands::Operands;
+use super::overlap::{Overlap, joined};
 use super::refined_boxes::{self, Boxes, Corners};
 use crate::Error;
 use crate::control::Reservation;
-use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Cell, Frame, Occupancy, visit_pairs};
 
 /// Below this many triangles near the other operand, ruling some out costs more than it saves.
 const CULL_FROM: usize = 2_000;
+/// The cells must be so many times shorter than those of the overlap.
+const FINER: f32 = 2.0;
+/// More grid cells for each triangle, on the average, are too many.
+const MOST_CELLS_PER_TRIANGLE: f32 = 12.0;
+/// Grid cells along half the region, times the usual length of a triangle.
+const CELLS_PER_LENGTH: f32 = 1.4;
+/// So many triangles tell how long they usually are, and whether ruling some out pays: it does not if more than this part of them stays.
+const SAMPLE: usize = 1_000;
+const USELESS: f64 = 0.8;
 /// So many grids are marked at once.
 const MOST_GRIDS: usize = 8;
 /// So many triangles are looked up in the grid at once.
@@ -30,18 +40,13 @@ pub(super) struct Candidates {
 }
 
 impl Candidates {
-    /// Rules out what a coarse grid can, and builds the hierarchies of the rest. `common` is the common part of the
-    /// operands' boxes, if there is one.
+    /// Rules out what a grid finer than that of the overlap can, and builds the hierarchies of the rest.
     ///
     /// # Errors
     /// Only limits.
-    pub(super) fn new(
-        operands: &Operands<'_>,
-        common: Option<Bounds>,
-        runner: Runner<'_>,
-    ) -> Result<Self, Error> {
+    pub(super) fn new(operands: &Operands<'_>, overlap: &Overlap, runner: Runner<'_>) -> Result<Self, Error> {
         runner.control.check()?;
-        let Some(common) = common else {
+        let Some(common) = overlap.common else {
             let nothing = runner.control.reserve(0)?;
             let trees = [BoxTree::empty(), BoxTree::empty()];
             return Ok(Self {
@@ -54,8 +59,9 @@ impl Candidates {
         let frame = Frame::of(common.low, common.high);
         let near = [operands.near(0), operands.near(1)];
         let culled = (near[0].len().min(near[1].len()) >= CULL_FROM)
-            .then(|| cull(operands, &frame, runner))
-            .transpose()?;
+            .then(|| cull(operands, &frame, overlap.cell_length, runner))
+            .transpose()?
+            .flatten();
         let corners = |side: usize, t: u32| corners(operands, &frame, side, t);
         let boxes = |side: usize| {
             let items = culled.as_ref().map_or(near[side], |culled| &culled[side]);
@@ -115,12 +121,54 @@ fn corners(operands: &Operands<'_>, frame: &Frame, side: usize, triangle: u32) -
     operand.triangles[triangle as usize].map(|v| frame.point(&operand.positions[v as usize]))
 }
 
-/// The near triangles of each side that pass a grid cell which the other side passes, too.
-fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> Result<[Vec<u32>; 2], Error> {
+/// How large the triangles of a list usually are.
+struct UsualSize {
+    count: usize,
+    length: f32,
+    /// How many cells one covers in a grid with cells of length 1: along its length, and by its area.
+    area: f32,
+}
+
+impl UsualSize {
+    fn new(triangles: &[u32], corners: impl Fn(u32) -> Corners) -> Self {
+        let sample = triangles.iter().step_by(triangles.len().div_ceil(SAMPLE));
+        let count = sample.len() as f32;
+        let (mut length, mut area) = (0.0, 0.0);
+        for &t in sample {
+            let [a, b, c] = corners(t).map(|corner| corner.clamp(Vec3A::splat(-2.0), Vec3A::splat(2.0)));
+            length += (a.max(b).max(c) - a.min(b).min(c)).max_element();
+            area += 0.5 * (b - a).cross(c - a).length();
+        }
+        Self { count: triangles.len(), length: length / count, area: area / count }
+    }
+
+    /// How many cells of a given length all triangles cover, about.
+    fn cells(&self, cell: f32) -> f32 {
+        self.count as f32 * (1.0 + self.length / cell + self.area / (cell * cell))
+    }
+}
+
+/// The near triangles of each side that pass a grid cell which the other side passes, too; `None` where that would be
+/// nearly all, or the grid no finer than that of the overlap, whose cells are `coarse_cell` long.
+fn cull(
+    operands: &Operands<'_>,
+    frame: &Frame,
+    coarse_cell: f32,
+    runner: Runner<'_>,
+) -> Result<Option<[Vec<u32>; 2]>, Error> {
     let near = [operands.near(0), operands.near(1)];
+    let corners = |side: usize, t: u32| corners(operands, frame, side, t);
     // Cells up to two triangles wide: most triangles are in one or two of them.
-    let resolution = ((near[0].len().max(near[1].len()) as f64).sqrt() / 3.0) as u32;
-    let grid = Occupancy::new(resolution);
+    let usual = [0, 1].map(|side| UsualSize::new(near[side], |t| corners(side, t)));
+    let grid = Occupancy::new((CELLS_PER_LENGTH / usual[0].length.min(usual[1].length)) as u32);
+    if grid.cell_length() * FINER > coarse_cell {
+        return Ok(None);
+    }
+    // Needles in a grid made for small triangles take longer than the hierarchies save.
+    let cells: f32 = usual.iter().map(|usual| usual.cells(grid.cell_length())).sum();
+    if cells > MOST_CELLS_PER_TRIANGLE * (near[0].len() + near[1].len()) as f32 {
+        return Ok(None);
+    }
     // Each vertex once, unless most of them belong to no near triangle.
     let cells_of_vertices = |side: usize| -> Vec<Cell> {
         let positions = operands.sides[side].positions;
@@ -131,7 +179,6 @@ fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> Result<[V
     };
     let (of_a, of_b) = runner.both(|| cells_of_vertices(0), || cells_of_vertices(1));
     let of_vertices = [of_a, of_b];
-    let corners = |side: usize, t: u32| corners(operands, frame, side, t);
     let cells = |grid: &Occupancy, side: usize, t: u32| {
         if of_vertices[side].is_empty() {
             return corners(side, t).map(|corner| grid.cell(corner));
@@ -156,11 +203,15 @@ fn cull(operands: &Operands<'_>, frame: &Frame, runner: Runner<'_>) -> Result<[V
         let pieces = runner.pieces(near[side].len(), grain, |range| {
             near[side][range].iter().copied().filter(is_marked).collect::<Vec<u32>>()
         })?;
-        let mut pieces = pieces.into_iter();
-        let mut all = pieces.next().unwrap_or_default();
-        pieces.for_each(|piece| all.extend(piece));
-        Ok(all)
+        Ok(joined(pieces))
     };
-    let of_b = passing(&marked_by(0, near[0])?, 1)?;
-    Ok([passing(&marked_by(1, &of_b)?, 0)?, of_b])
+    let by_a = marked_by(0, near[0])?;
+    // Where surfaces run side by side, hardly anything can be ruled out.
+    let sample = near[1].iter().step_by(near[1].len().div_ceil(SAMPLE));
+    let passing_sample = sample.clone().filter(|&&t| by_a.is_marked(cells(&by_a, 1, t), || corners(1, t)));
+    if passing_sample.count() as f64 > USELESS * sample.len() as f64 {
+        return Ok(None);
+    }
+    let of_b = passing(&by_a, 1)?;
+    Ok(Some([passing(&marked_by(1, &of_b)?, 0)?, of_b]))
 }

@@ -24,6 +24,14 @@ impl BitSet {
         self.0[index as usize / 64] &= !(1 << (index % 64));
     }
 
+    /// The elements, ascending.
+    pub(super) fn iter(&self) -> impl Iterator<Item = u32> {
+        let words = self.0.iter().enumerate().filter(|&(_, &word)| word != 0);
+        words.flat_map(|(i, &word)| {
+            (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| 64 * i as u32 + bit)
+        })
+    }
+
     #[inline]
     pub(super) fn contains(&self, index: u32) -> bool {
         self.0[index as usize / 64] >> (index % 64) & 1 == 1

@@ -91,6 +91,11 @@ impl Identification {
         if self.parent.is_empty() { point } else { self.parent.get(&point).copied().unwrap_or(point) }
     }
 
+    /// All points that another stands for, in no particular order.
+    pub(super) fn identified(&self) -> impl Iterator<Item = u32> {
+        self.parent.keys().copied()
+    }
+
     /// All points that stand for others, ascending.
     pub(super) fn representatives(&self) -> Vec<u32> {
         let mut all: Vec<u32> = self.parent.values().copied().collect();

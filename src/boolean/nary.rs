@@ -9,6 +9,7 @@ use std::borrow::Cow;
 use super::certificate::{Notes, OperandState};
 use super::cut::dominant_axis;
 use super::merge_order;
+use super::origins::Origins;
 use super::pair::{self, Settings};
 use super::sheets;
 use super::{Contact, Operation, Options, Origin, Outcome};
@@ -43,21 +44,6 @@ impl<'a> Partial<'a> {
     }
 }
 
-/// Where triangles came from: those of an operand itself need no list.
-enum Origins {
-    Operand(u32),
-    List(Vec<Origin>),
-}
-
-impl Origins {
-    fn of(&self, triangle: u32) -> Origin {
-        match self {
-            Self::Operand(operand) => Origin { operand: *operand, triangle, reversed: false },
-            Self::List(list) => list[triangle as usize],
-        }
-    }
-}
-
 /// Runs an operation over all operands.
 pub(super) fn run(
     options: &Options,
@@ -72,11 +58,12 @@ pub(super) fn run(
         .map(|(i, solid)| {
             if solid.is_edge_manifold() {
                 let groups = groups.of_operand(i, solid);
-                return Partial::new(Cow::Borrowed(*solid), Origins::Operand(i as u32), groups);
+                let origins = Origins::of_operand(i as u32, solid.mesh().triangles.len());
+                return Partial::new(Cow::Borrowed(*solid), origins, groups);
             }
             let (solid, source) = solid.separated();
             let groups = groups.of_operand(i, &solid);
-            Partial::new(Cow::Owned(solid), Origins::List(sheets::origins(i as u32, &source)), groups)
+            Partial::new(Cow::Owned(solid), sheets::origins(i as u32, &source), groups)
         })
         .collect();
     let engine = Engine { options, runner };
@@ -169,14 +156,10 @@ impl Engine<'_> {
                 .map(|origin| sources[origin.operand as usize].groups[origin.triangle as usize])
                 .collect()
         };
-        let source = |origin: Origin| {
-            let source = sources[origin.operand as usize].origins.of(origin.triangle);
-            Origin { reversed: source.reversed != origin.reversed, ..source }
-        };
-        let origins = made.origins.into_iter().map(source).collect();
+        let origins = made.origins.through([&a.origins, &b.origins]);
         Ok(Partial {
             solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(made.positions, made.triangles))),
-            origins: Origins::List(origins),
+            origins,
             groups,
             ties: a.ties + b.ties + made.ties,
             may_be_inverted: a.may_be_inverted || b.may_be_inverted || made.has_inverted,
@@ -188,17 +171,16 @@ impl Engine<'_> {
 fn count_inverted(result: &Partial<'_>, operands: &[&Solid]) -> u64 {
     let mesh = result.solid.mesh();
     let corners = |mesh: &Mesh, t: u32| mesh.triangles[t as usize].map(|v| mesh.positions[v as usize]);
-    let is_inverted = |t: u32| {
-        let origin = result.origins.of(t);
+    let is_inverted = |(t, origin): &(u32, Origin)| {
         let source = corners(operands[origin.operand as usize].mesh(), origin.triangle);
-        let triangle = corners(mesh, t);
+        let triangle = corners(mesh, *t);
         let (axis, positive) = dominant_axis(&source);
         let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
         let [a, b, c] = triangle.map(|p| [p[x], p[y]]);
         let expected = if positive != origin.reversed { Sign::Positive } else { Sign::Negative };
         ![expected, Sign::Zero].contains(&orient2d(a, b, c))
     };
-    (0..mesh.triangles.len() as u32).filter(|&t| is_inverted(t)).count() as u64
+    (0..).zip(result.origins.iter()).filter(is_inverted).count() as u64
 }
 
 fn no_operands() -> Error {
@@ -206,14 +188,9 @@ fn no_operands() -> Error {
 }
 
 fn finish(result: Partial<'_>, list: Vec<FaceGroup>, notes: Notes) -> Outcome {
-    let count = result.solid.mesh().triangles.len() as u32;
-    let origins = match result.origins {
-        Origins::List(list) => list,
-        operand @ Origins::Operand(_) => (0..count).map(|t| operand.of(t)).collect(),
-    };
     let mut solid = result.solid.into_owned();
     solid.set_groups(FaceGroups { list, of_triangle: result.groups });
-    Outcome::new(solid, origins, notes)
+    Outcome::new(solid, result.origins, notes)
 }
 
 /// The groups of all operands together; equal ones become one.

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use rustc_hash::FxHashMap;
 
 use super::certificate::{Certificate, Notes};
+use super::origins::Origins;
 use crate::Solid;
 
 /// Where a triangle of a result came from.
@@ -23,14 +24,16 @@ pub struct Origin {
 #[derive(Clone, Debug)]
 pub struct Outcome {
     solid: Solid,
-    origins: Vec<Origin>,
+    origins: Origins,
+    /// The same one by one, once asked for.
+    list: OnceLock<Vec<Origin>>,
     notes: Notes,
     certificate: OnceLock<Certificate>,
 }
 
 impl Outcome {
-    pub(super) fn new(solid: Solid, origins: Vec<Origin>, notes: Notes) -> Self {
-        Self { solid, origins, notes, certificate: OnceLock::new() }
+    pub(super) fn new(solid: Solid, origins: Origins, notes: Notes) -> Self {
+        Self { solid, origins, list: OnceLock::new(), notes, certificate: OnceLock::new() }
     }
 
     /// The result; an empty one is a success.
@@ -45,10 +48,10 @@ impl Outcome {
         self.solid
     }
 
-    /// For every triangle of the result, where it came from.
+    /// For every triangle of the result, where it came from. The list is made when first asked for; O(n).
     #[must_use]
     pub fn origins(&self) -> &[Origin] {
-        &self.origins
+        self.list.get_or_init(|| self.origins.iter().collect())
     }
 
     /// What is known of the result. Computed once, when first asked for; O(n).
@@ -63,7 +66,7 @@ impl Outcome {
     pub fn curves(&self) -> Vec<Vec<u32>> {
         let mut side_of: FxHashMap<(u32, u32), u32> = FxHashMap::default();
         let mut edges = Vec::new();
-        for (corners, origin) in self.solid.mesh().triangles.iter().zip(&self.origins) {
+        for (corners, origin) in self.solid.mesh().triangles.iter().zip(self.origins.iter()) {
             for k in 0..3 {
                 let (u, v) = (corners[k], corners[(k + 1) % 3]);
                 match side_of.remove(&(v, u)) {

@@ -1,38 +1,252 @@
 //! What of each operand can meet the other: a few passes over the arrays, before anything is built.
+//!
+//! The common part of the operands' boxes is divided into a coarse grid. Cells that the other operand's surface does not pass
+//! form regions (`spatial::Regions`), in each of which it winds round everything equally often. Triangles that touch no
+//! passed cell need not be looked at again.
+
+use obvhs::aabb::Aabb;
 
 use super::operands::Operand;
+use crate::Error;
 use crate::mesh::Bounds;
+use crate::parallel::Runner;
+use crate::spatial::{Frame, Occupancy, Regions};
 
-/// For each vertex on which sides of a box it lies outside, as six bits; 0 inside or on the boundary.
-pub(super) fn outcodes(operand: &Operand<'_>, bounds: &Bounds) -> Vec<u8> {
-    let Bounds { low, high } = bounds;
-    operand
-        .positions
-        .iter()
-        .map(|position| {
-            let mut code = 0;
-            for k in 0..3 {
-                code |= u8::from(position[k] < low[k]) << (2 * k);
-                code |= u8::from(position[k] > high[k]) << (2 * k + 1);
-            }
-            code
-        })
-        .collect()
+/// Below so many triangles of the smaller operand, ruling some out costs more than it saves.
+const DIVIDE_FROM: usize = 1_000;
+/// At most so many cells along an axis: their numbers have 15 bits.
+const MOST_CELLS: u32 = 32;
+/// So many triangles tell how long they usually are, and so many cells they may usually pass.
+const SAMPLE: usize = 256;
+const MOST_PASSED: f32 = 8.0;
+/// So many vertices or triangles are looked at by one thread at once.
+const PIECE: usize = 1 << 14;
+
+/// Where a vertex is: the number of its cell in the coarse grid, or that it is outside, and beyond which sides of the common
+/// box (two bits for each axis).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place(u16);
+
+impl Place {
+    const OUTSIDE: u16 = 1 << 15;
+
+    /// Whether the vertex lies outside the other operand's box.
+    #[inline]
+    pub(super) fn is_outside(self) -> bool {
+        self.0 & Self::OUTSIDE != 0
+    }
+
+    /// The number of the cell of a vertex that is not outside.
+    #[inline]
+    pub(super) fn cell(self) -> u32 {
+        u32::from(self.0)
+    }
 }
 
-/// The triangles whose box meets the one the outcodes were made with, ascending.
-pub(super) fn near_triangles(operand: &Operand<'_>, outcodes: &[u8]) -> Vec<u32> {
-    operand
-        .triangles
-        .iter()
-        .enumerate()
-        .filter(|(_, t)| outcodes[t[0] as usize] & outcodes[t[1] as usize] & outcodes[t[2] as usize] == 0)
-        .map(|(i, _)| i as u32)
-        .collect()
+/// Where the operands may meet.
+#[derive(Debug)]
+pub(super) struct Overlap {
+    /// The common part of the operands' boxes, if there is one.
+    pub(super) common: Option<Bounds>,
+    /// The shortest side of a cell of the coarse grid, in units of the common box's frame.
+    pub(super) cell_length: f32,
+    /// By side, where each vertex is; empty if all are outside the other operand's box.
+    pub(super) places: [Vec<Place>; 2],
+    /// By side, the triangles that may meet the other operand or leave the common box, ascending. Of every vertex that the
+    /// other operand's surface may touch, all triangles are among them.
+    pub(super) near: [Vec<u32>; 2],
+    /// By side, the regions of cells that the other operand does not pass.
+    pub(super) regions: [Regions; 2],
+}
+
+impl Overlap {
+    /// Finds it for operands with the given boxes.
+    ///
+    /// # Errors
+    /// Only limits.
+    pub(super) fn new(
+        sides: &[Operand<'_>; 2],
+        bounds: &[Bounds; 2],
+        runner: Runner<'_>,
+    ) -> Result<Self, Error> {
+        let Some(common) = intersection(&bounds[0], &bounds[1]) else {
+            let nowhere = || Regions::of(&Occupancy::over(&Aabb::INVALID, 1));
+            return Ok(Self {
+                common: None,
+                cell_length: f32::INFINITY,
+                places: Default::default(),
+                near: Default::default(),
+                regions: [nowhere(), nowhere()],
+            });
+        };
+        let frame = Frame::of(common.low, common.high);
+        let region = Aabb { min: frame.point(&common.low), max: frame.point(&common.high) };
+        let grid = Occupancy::over(&region, resolution(sides, &frame, &region));
+        let seen = |side: usize| -> Result<Seen, Error> {
+            let view = View { operand: &sides[side], common: &common, frame: &frame, grid: &grid };
+            let places = view.places(runner)?;
+            let (near, passed) = view.near(&places, runner)?;
+            Ok(Seen { places, near, passed })
+        };
+        let (a, b) = runner.both(|| seen(0), || seen(1));
+        let seen = [a?, b?];
+        let meeting = |side: usize| -> Result<Vec<u32>, Error> {
+            let view = View { operand: &sides[side], common: &common, frame: &frame, grid: &grid };
+            view.meeting(&seen[side], &seen[1 - side].passed, runner)
+        };
+        let (near_a, near_b) = runner.both(|| meeting(0), || meeting(1));
+        let near = [near_a?, near_b?];
+        let regions = [1, 0].map(|other| Regions::of(&seen[other].passed));
+        let cell_length = grid.cell_length();
+        Ok(Self { common: Some(common), cell_length, places: seen.map(|seen| seen.places), near, regions })
+    }
+}
+
+/// Cells along each axis of the coarse grid: up to three triangles wide, for the operand with fewer, but such that needles do
+/// not pass too many.
+fn resolution(sides: &[Operand<'_>; 2], frame: &Frame, region: &Aabb) -> u32 {
+    let fewest = sides[0].triangles.len().min(sides[1].triangles.len());
+    if fewest < DIVIDE_FROM {
+        return 1;
+    }
+    let finest = (1 << ((fewest as f64).sqrt() / 3.0).max(1.0).log2() as u32).min(MOST_CELLS);
+    let extent = (region.max - region.min).max_element();
+    let longest = sides.iter().map(|side| usual_length(side, frame, region)).fold(0.0, f32::max);
+    (0..)
+        .map(|i| finest >> i)
+        .find(|&cells| cells <= 4 || longest * cells as f32 <= MOST_PASSED * extent)
+        .unwrap_or(1)
+}
+
+/// How long the parts of triangles in a region usually are.
+fn usual_length(operand: &Operand<'_>, frame: &Frame, region: &Aabb) -> f32 {
+    let sample = operand.triangles.iter().step_by(operand.triangles.len().div_ceil(SAMPLE));
+    let (mut sum, mut count) = (0.0, 0.0f32);
+    for triangle in sample {
+        let [a, b, c] = triangle.map(|v| frame.point(&operand.positions[v as usize]));
+        let (low, high) = (a.min(b).min(c).max(region.min), a.max(b).max(c).min(region.max));
+        if low.cmple(high).all() {
+            sum += (high - low).max_element();
+            count += 1.0;
+        }
+    }
+    sum / count.max(1.0)
+}
+
+/// What one operand looks like in the grid.
+struct Seen {
+    places: Vec<Place>,
+    /// The triangles whose box meets the common box.
+    near: Vec<u32>,
+    /// The cells they pass.
+    passed: Occupancy,
+}
+
+/// One operand, and the grid.
+struct View<'a> {
+    operand: &'a Operand<'a>,
+    common: &'a Bounds,
+    frame: &'a Frame,
+    grid: &'a Occupancy,
+}
+
+impl View<'_> {
+    fn places(&self, runner: Runner<'_>) -> Result<Vec<Place>, Error> {
+        let positions = self.operand.positions;
+        let Bounds { low, high } = self.common;
+        let is_divided = self.grid.resolution() > 1;
+        let place = |position: &[f64; 3]| {
+            let mut beyond = 0;
+            for k in 0..3 {
+                beyond |= u16::from(position[k] < low[k]) << (2 * k);
+                beyond |= u16::from(position[k] > high[k]) << (2 * k + 1);
+            }
+            if beyond != 0 {
+                Place(Place::OUTSIDE | beyond)
+            } else if is_divided {
+                Place(self.grid.number(self.grid.cell(self.frame.point(position))) as u16)
+            } else {
+                Place(0)
+            }
+        };
+        let grain = if runner.is_parallel() { PIECE } else { positions.len().max(1) };
+        let pieces = runner.pieces(positions.len(), grain, |range| {
+            positions[range].iter().map(place).collect::<Vec<Place>>()
+        })?;
+        Ok(joined(pieces))
+    }
+
+    /// Triangles whose box meets the common box, and the cells they pass.
+    fn near(&self, places: &[Place], runner: Runner<'_>) -> Result<(Vec<u32>, Occupancy), Error> {
+        let triangles = self.operand.triangles;
+        let grain = if runner.is_parallel() { PIECE } else { triangles.len().max(1) };
+        let pieces = runner.pieces(triangles.len(), grain, |range| {
+            let mut passed = self.grid.empty();
+            let mut near = Vec::new();
+            for (t, corners) in range.clone().zip(&triangles[range]) {
+                let [a, b, c] = corners.map(|v| places[v as usize].0);
+                let (all, any) = (a & b & c, a | b | c);
+                if all & Place::OUTSIDE != 0 && all != Place::OUTSIDE {
+                    continue;
+                }
+                near.push(t as u32);
+                if any & Place::OUTSIDE != 0 {
+                    let corners = self.corners(*corners);
+                    passed.mark(corners.map(|corner| self.grid.cell(corner)), || corners);
+                } else if a == b && b == c {
+                    passed.mark_number(u32::from(a));
+                } else {
+                    let cells = [a, b, c].map(|place| self.grid.numbered(u32::from(place)));
+                    passed.mark(cells, || self.corners(*corners));
+                }
+            }
+            (near, passed)
+        })?;
+        let (near, grids): (Vec<Vec<u32>>, Vec<Occupancy>) = pieces.into_iter().unzip();
+        let passed = grids.into_iter().reduce(Occupancy::united).unwrap_or_else(|| self.grid.empty());
+        Ok((joined(near), passed))
+    }
+
+    /// Those of the near triangles that touch a cell the other operand passes, or leave the common box.
+    fn meeting(&self, seen: &Seen, passed: &Occupancy, runner: Runner<'_>) -> Result<Vec<u32>, Error> {
+        if self.grid.resolution() == 1 {
+            return Ok(seen.near.clone());
+        }
+        let may_meet = |t: &u32| {
+            let corners = self.operand.triangles[*t as usize];
+            let [a, b, c] = corners.map(|v| seen.places[v as usize].0);
+            if (a | b | c) & Place::OUTSIDE != 0 {
+                return true;
+            }
+            if a == b && b == c {
+                return passed.is_number_marked(u32::from(a));
+            }
+            let cells = [a, b, c].map(|place| self.grid.numbered(u32::from(place)));
+            passed.is_marked(cells, || self.corners(corners))
+        };
+        let near = &seen.near;
+        let grain = if runner.is_parallel() { PIECE } else { near.len().max(1) };
+        let pieces = runner.pieces(near.len(), grain, |range| {
+            near[range].iter().copied().filter(may_meet).collect::<Vec<u32>>()
+        })?;
+        Ok(joined(pieces))
+    }
+
+    fn corners(&self, triangle: [u32; 3]) -> [glam::Vec3A; 3] {
+        triangle.map(|v| self.frame.point(&self.operand.positions[v as usize]))
+    }
+}
+
+/// Lists one after the other.
+pub(super) fn joined<T>(lists: Vec<Vec<T>>) -> Vec<T> {
+    let mut lists = lists.into_iter();
+    let mut all = lists.next().unwrap_or_default();
+    lists.for_each(|list| all.extend(list));
+    all
 }
 
 /// The common part of two boxes, if there is one (touching boxes have one).
-pub(super) fn intersection(a: &Bounds, b: &Bounds) -> Option<Bounds> {
+fn intersection(a: &Bounds, b: &Bounds) -> Option<Bounds> {
     let low: [f64; 3] = std::array::from_fn(|k| a.low[k].max(b.low[k]));
     let high: [f64; 3] = std::array::from_fn(|k| a.high[k].min(b.high[k]));
     (0..3).all(|k| low[k] <= high[k]).then_some(Bounds { low, high })

@@ -13,7 +13,7 @@ use super::identify::Identification;
 use super::multiplicity::{self, Part};
 use super::operands::{Operand, Operands};
 use super::outcome::Origin;
-use super::overlap;
+use super::overlap::Overlap;
 use super::plane_faces::PlaneFaces;
 use super::planes::Planes;
 use super::tidy;
@@ -59,18 +59,13 @@ pub(super) fn combine(
     let parts = multiplicity::parts(operation);
 
     let _tables = runner.control.reserve(fixed_tables(&sides))?;
-    let near_other = |side: usize| {
-        let outcodes = overlap::outcodes(&sides[side], &bounds[1 - side]);
-        let near = overlap::near_triangles(&sides[side], &outcodes);
-        (outcodes, near)
-    };
-    let ((outcodes_a, near_a), (outcodes_b, near_b)) = runner.both(|| near_other(0), || near_other(1));
-    let (outcodes, near) = ([outcodes_a, outcodes_b], [near_a, near_b]);
+    let mut overlap = Overlap::new(&sides, &bounds, runner)?;
     let largest = largest_coordinate(&bounds);
+    let near = std::mem::take(&mut overlap.near);
     let operands = Operands::new(sides, sense(operation, settings.fuse), largest, near);
     runner.control.check()?;
 
-    let candidates = Candidates::new(&operands, overlap::intersection(&bounds[0], &bounds[1]), runner)?;
+    let candidates = Candidates::new(&operands, &overlap, runner)?;
     let crossings = crossings::find(&operands, &candidates, runner)?;
     let mut edges = CutEdges::new(&operands, &crossings, runner)?;
     runner.control.check()?;
@@ -81,8 +76,16 @@ pub(super) fn combine(
     let mut faces = [faces_a, faces_b];
     runner.control.check()?;
     let winding_of = |side: usize| {
-        let (codes, box_of_other, faces) = (&outcodes[side], &bounds[1 - side], &faces[side]);
-        winding::of_vertices(&operands, side, codes, box_of_other, &crossings, &edges, faces, runner)
+        winding::of_vertices(
+            &operands,
+            side,
+            &overlap,
+            &bounds[1 - side],
+            &crossings,
+            &edges,
+            &faces[side],
+            runner,
+        )
     };
     let (windings_a, windings_b) = runner.both(|| winding_of(0), || winding_of(1));
     let windings = [windings_a?, windings_b?];

@@ -1,5 +1,6 @@
 //! Operands that touch themselves, as sheets: the perturbation moves vertices, so every sheet needs its own.
 
+use super::origins::Origins;
 use super::outcome::Origin;
 use super::tidy::manifold::{Surface, make_manifold};
 use crate::{Mesh, Solid};
@@ -79,6 +80,6 @@ impl Solid {
 }
 
 /// The origins of the triangles of a separated operand.
-pub(super) fn origins(operand: u32, source: &[u32]) -> Vec<Origin> {
+pub(super) fn origins(operand: u32, source: &[u32]) -> Origins {
     source.iter().map(|&triangle| Origin { operand, triangle, reversed: false }).collect()
 }

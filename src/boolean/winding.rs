@@ -8,21 +8,23 @@
 use super::crossings::Crossings;
 use super::cut_edges::CutEdges;
 use super::cut_faces::{CutFaces, UNCUT};
-use super::operands::{Corner, Operands};
+use super::operands::{Corner, Operand, Operands};
+use super::overlap::{Overlap, Place};
 use crate::Error;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
-use crate::spatial::{BoxTree, Frame};
+use crate::spatial::{BoxTree, Frame, Regions};
 
-/// From this many box tests on a tree is built for the rays.
+/// From this many box tests on, and this many rays, a tree is built for them.
 const TREE_FROM: usize = 1 << 20;
+const TREE_FROM_RAYS: usize = 16;
 
-/// The winding number of the other operand round each vertex of `side`. Vertices with a non-zero outcode lie outside the
-/// other operand's box `bounds` and have 0.
+/// The winding number of the other operand round each vertex of `side`. `bounds` is the other operand's box, outside which
+/// all have 0.
 pub(super) fn of_vertices(
     operands: &Operands<'_>,
     side: usize,
-    outcodes: &[u8],
+    overlap: &Overlap,
     bounds: &Bounds,
     crossings: &Crossings,
     edges: &CutEdges,
@@ -31,7 +33,11 @@ pub(super) fn of_vertices(
 ) -> Result<Vec<i32>, Error> {
     let operand = &operands.sides[side];
     let first = operands.first_vertex(side);
-    let mut classes = WindingClasses::new(outcodes);
+    let places = &overlap.places[side];
+    if places.is_empty() {
+        return Ok(vec![0; operand.positions.len()]);
+    }
+    let mut classes = WindingClasses::new(places, &overlap.regions[side]);
     let mut next_cut = faces.faces.iter();
     for &triangle in operands.near(side) {
         let corners = operand.triangles[triangle as usize];
@@ -65,62 +71,80 @@ pub(super) fn of_vertices(
     Ok(classes.values())
 }
 
-/// Union-find over the vertices of one operand, with the difference of winding numbers to the parent.
+/// Union-find over the vertices of one operand and the regions of the coarse grid, with the difference of winding numbers to
+/// the parent. Vertices in a region, or outside the other operand's box, are not told apart.
 struct WindingClasses<'a> {
-    outcodes: &'a [u8],
-    /// One entry per vertex, and a last one that stands for all vertices outside.
+    places: &'a [Place],
+    regions: &'a Regions,
+    /// Vertices, then regions, then one entry for all that is outside. 0 for a root, else one more than the parent: memory
+    /// that starts as zeros costs nothing until it is used.
     parent: Vec<u32>,
     offset: Vec<i32>,
 }
 
 impl<'a> WindingClasses<'a> {
-    fn new(outcodes: &'a [u8]) -> Self {
-        let count = outcodes.len() as u32 + 1;
-        Self { outcodes, parent: (0..count).collect(), offset: vec![0; count as usize] }
+    fn new(places: &'a [Place], regions: &'a Regions) -> Self {
+        let count = places.len() + usize::from(regions.count()) + 1;
+        Self { places, regions, parent: vec![0; count], offset: vec![0; count] }
     }
 
     fn outside(&self) -> u32 {
-        self.outcodes.len() as u32
+        self.parent.len() as u32 - 1
     }
 
-    /// The representative of a vertex, and the vertex's value relative to it.
+    /// The entry that stands for a vertex.
+    #[inline]
+    fn entry(&self, v: u32) -> u32 {
+        let place = self.places[v as usize];
+        if place.is_outside() {
+            return self.outside();
+        }
+        match self.regions.of_cell(place.cell()) {
+            Regions::PASSED => v,
+            region => self.places.len() as u32 + u32::from(region),
+        }
+    }
+
+    /// The representative of an entry, and the entry's value relative to it.
     #[inline]
     fn find(&mut self, mut v: u32) -> (u32, i32) {
         let mut sum = 0;
         loop {
             let parent = self.parent[v as usize];
-            if parent == v {
+            if parent == 0 {
                 return (v, sum);
             }
-            let grandparent = self.parent[parent as usize];
+            let grandparent = self.parent[parent as usize - 1];
             // Path halving.
-            if grandparent != parent {
-                self.offset[v as usize] += self.offset[parent as usize];
+            if grandparent != 0 {
+                self.offset[v as usize] += self.offset[parent as usize - 1];
                 self.parent[v as usize] = grandparent;
             }
             sum += self.offset[v as usize];
-            v = self.parent[v as usize];
+            v = self.parent[v as usize] - 1;
         }
     }
 
-    /// Records that the value of `v` is that of `u` plus `change`.
+    /// Records that the value of vertex `v` is that of `u` plus `change`.
     #[inline]
     fn join(&mut self, u: u32, v: u32, change: i32) {
-        let outside = self.outside();
-        let place = |v: u32| if self.outcodes[v as usize] == 0 { v } else { outside };
-        let (u, v) = (place(u), place(v));
+        let (u, v) = (self.entry(u), self.entry(v));
         let ((root_u, value_u), (root_v, value_v)) = (self.find(u), self.find(v));
         if root_u == root_v {
             debug_assert_eq!(value_v - value_u, change, "signed crossings round a closed path cancel");
             return;
         }
-        // value(root_v) = value(root_u) + value_u + change - value_v; the higher number hangs below the lower.
+        // value(root_v) = value(root_u) + value_u + change - value_v. Of two vertices the lower stays above; regions and
+        // the outside stay above both.
         let difference = value_u + change - value_v;
-        if root_u < root_v {
-            self.parent[root_v as usize] = root_u;
+        let is_vertex = |entry: u32| (entry as usize) < self.places.len();
+        if (is_vertex(root_v) && !is_vertex(root_u))
+            || (is_vertex(root_u) == is_vertex(root_v) && root_u < root_v)
+        {
+            self.parent[root_v as usize] = root_u + 1;
             self.offset[root_v as usize] = difference;
         } else {
-            self.parent[root_u as usize] = root_v;
+            self.parent[root_u as usize] = root_v + 1;
             self.offset[root_u as usize] = -difference;
         }
     }
@@ -128,12 +152,21 @@ impl<'a> WindingClasses<'a> {
     /// One vertex of every component that no outside vertex belongs to, ascending.
     fn unsettled(&mut self) -> Vec<u32> {
         let (outside, _) = self.find(self.outside());
-        let mut seen = rustc_hash::FxHashSet::default();
+        let mut seen = rustc_hash::FxHashSet::from_iter([outside]);
+        let mut seen_regions = vec![false; usize::from(self.regions.count())];
         let mut seeds = Vec::new();
-        for v in 0..self.outside() {
-            if self.outcodes[v as usize] == 0 {
-                let (root, _) = self.find(v);
-                if root != outside && seen.insert(root) {
+        for v in 0..self.places.len() as u32 {
+            let entry = self.entry(v);
+            let is_new = match (entry as usize).checked_sub(self.places.len()) {
+                // Nearly all vertices: one look at a small table.
+                Some(region) => {
+                    seen_regions.get_mut(region).is_some_and(|seen| !std::mem::replace(seen, true))
+                }
+                None => true,
+            };
+            if is_new {
+                let (root, _) = self.find(entry);
+                if seen.insert(root) {
                     seeds.push(v);
                 }
             }
@@ -144,21 +177,28 @@ impl<'a> WindingClasses<'a> {
     /// Fixes the value of a vertex, and so of its component.
     fn settle(&mut self, v: u32, value: i32) {
         let (outside, outside_value) = self.find(self.outside());
-        let (root, relative) = self.find(v);
-        self.parent[root as usize] = outside;
+        let (root, relative) = self.find(self.entry(v));
+        self.parent[root as usize] = outside + 1;
         // value(v) - value(outside) = relative + offset - outside_value, and outside has 0.
         self.offset[root as usize] = value - relative + outside_value;
     }
 
     fn values(mut self) -> Vec<i32> {
         let (_, outside_value) = self.find(self.outside());
-        (0..self.outside())
+        let first_region = self.places.len() as u32;
+        let of_region: Vec<i32> = (0..u32::from(self.regions.count()))
+            .map(|region| self.find(first_region + region).1 - outside_value)
+            .collect();
+        (0..self.places.len() as u32)
             .map(|v| {
-                if self.outcodes[v as usize] != 0 {
+                let place = self.places[v as usize];
+                if place.is_outside() {
                     return 0;
                 }
-                let (_, value) = self.find(v);
-                value - outside_value
+                match self.regions.of_cell(place.cell()) {
+                    Regions::PASSED => self.find(v).1 - outside_value,
+                    region => of_region[usize::from(region)],
+                }
             })
             .collect()
     }
@@ -182,17 +222,13 @@ fn cast_rays(
         };
         (start, end)
     };
-    if seeds.len() * other.triangles.len() < TREE_FROM {
-        let values = runner.pieces(seeds.len(), 1, |range| {
+    if seeds.len() * other.triangles.len() < TREE_FROM || seeds.len() < TREE_FROM_RAYS {
+        return runner.pieces(seeds.len(), 1, |range| {
             let (start, end) = ray(range.start);
-            (0..other.triangles.len() as u32)
-                .filter(|&t| {
-                    may_meet(other.triangles[t as usize].map(|v| &other.positions[v as usize]), &start)
-                })
-                .map(|t| ray_crossing(operands, 1 - side, t, &start, &end))
-                .sum()
-        })?;
-        return Ok(values);
+            let beside = Beside::new(other, &start);
+            let meeting = (0..other.triangles.len() as u32).filter(|&t| beside.may_meet(other, t, &start));
+            meeting.map(|t| ray_crossing(operands, 1 - side, t, &start, &end)).sum()
+        });
     }
     let frame = Frame::of(bounds.low, bounds.high);
     let all: Vec<u32> = (0..other.triangles.len() as u32).collect();
@@ -213,16 +249,39 @@ pub(super) fn beyond(low: f64, high: f64) -> f64 {
     if end.is_finite() && end > high { end } else { high.next_up().min(f64::MAX) }
 }
 
-/// Whether a ray in +x may meet a triangle, by boxes.
-fn may_meet(corners: [&[f64; 3]; 3], start: &Corner) -> bool {
-    let extent = |k: usize| {
-        let [a, b, c] = corners.map(|corner| corner[k]);
-        (a.min(b).min(c), a.max(b).max(c))
-    };
-    (1..3).all(|k| {
-        let (low, high) = extent(k);
-        low <= start.position[k] && start.position[k] <= high
-    }) && extent(0).1 >= start.position[0]
+/// On which sides of a ray in +x the vertices of an operand lie.
+struct Beside(Vec<u8>);
+
+impl Beside {
+    /// From so many triangles on, every vertex is looked at once instead of once for each of its triangles.
+    const FROM: usize = 256;
+
+    fn new(operand: &Operand<'_>, start: &Corner) -> Self {
+        if operand.triangles.len() < Self::FROM {
+            return Self(Vec::new());
+        }
+        Self(operand.positions.iter().map(|position| Self::of(position, &start.position)).collect())
+    }
+
+    #[inline]
+    fn of(position: &[f64; 3], start: &[f64; 3]) -> u8 {
+        let bit = |is_beside: bool, place: u32| u8::from(is_beside) << place;
+        bit(position[0] < start[0], 0)
+            | bit(position[1] < start[1], 1)
+            | bit(position[1] > start[1], 2)
+            | bit(position[2] < start[2], 3)
+            | bit(position[2] > start[2], 4)
+    }
+
+    /// Whether the ray may meet a triangle: not if all its corners lie on one side.
+    #[inline]
+    fn may_meet(&self, operand: &Operand<'_>, triangle: u32, start: &Corner) -> bool {
+        let of_corners = operand.triangles[triangle as usize].map(|v| match self.0.get(v as usize) {
+            Some(&sides) => sides,
+            None => Self::of(&operand.positions[v as usize], &start.position),
+        });
+        of_corners[0] & of_corners[1] & of_corners[2] == 0
+    }
 }
 
 /// +1 where the way from `start` to `end` leaves the triangle's solid, -1 where it enters it, 0 where they do not meet.

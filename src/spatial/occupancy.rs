@@ -1,9 +1,12 @@
 //! Which cells of a coarse grid a set of triangles passes.
 
 use glam::Vec3A;
+use obvhs::aabb::Aabb;
 
 /// Largest number of cells along an axis: the grid then fits a second-level cache.
 const MAX_RESOLUTION: u32 = 256;
+/// A region thinner than this is one cell wide (in the units of a [`Frame`](super::Frame)).
+const THINNEST: f32 = 1e-6;
 /// Bits of one component of a cell number; the last resolution has eight.
 const BITS: u32 = 10;
 const MASK: u32 = (1 << BITS) - 1;
@@ -11,16 +14,22 @@ const MASK: u32 = (1 << BITS) - 1;
 const DIVIDE_FROM: u32 = 12;
 /// So often a triangle is divided at most.
 const MAX_DIVISIONS: u32 = 1 << 14;
-/// Divided parts reach a bit further, in cells, so that rounding of midpoints loses nothing.
+/// Divided parts reach a bit further, in cells, so that rounding loses nothing: so much, and so much for each cell that the
+/// triangle reaches from the origin. (Three half units in the last place for a corner; one for every midpoint, of coordinates
+/// that shrink by half in two divisions.)
 const MARGIN: f32 = 1.0 / 64.0;
+const MARGIN_PER_CELL: f32 = 8.0 * f32::EPSILON;
 
-/// A grid of bits over the cube from -2 to 2 of a [`Frame`](super::Frame).
+/// A grid of bits over a region of a [`Frame`](super::Frame).
 #[derive(Debug)]
 pub(crate) struct Occupancy {
     bits: Vec<u64>,
     /// Cells along each axis, a power of two, and its logarithm.
     resolution: u32,
     shift: u32,
+    /// Where the grid starts, and cells per unit.
+    low: Vec3A,
+    scale: Vec3A,
 }
 
 /// The cell of a point: three components of [`BITS`] bits.
@@ -45,8 +54,20 @@ impl Occupancy {
     pub(crate) fn new(resolution: u32) -> Self {
         // The region lies in -1..1 up to a factor of two; what is outside falls into the outermost cells.
         let resolution = (1 << (2 * resolution).max(1).ilog2()).clamp(8, MAX_RESOLUTION);
-        let bits = vec![0; (resolution as usize).pow(3) / 64];
-        Self { bits, resolution, shift: resolution.trailing_zeros() }
+        Self::over(&Aabb { min: Vec3A::splat(-2.0), max: Vec3A::splat(2.0) }, resolution)
+    }
+
+    /// An empty grid with `resolution` cells (a power of two) along each axis of a region, whatever its proportions.
+    pub(crate) fn over(region: &Aabb, resolution: u32) -> Self {
+        let extent = region.max - region.min;
+        let scale = extent.to_array().map(|x| if x > THINNEST { resolution as f32 / x } else { 0.0 });
+        Self {
+            bits: vec![0; (resolution as usize).pow(3).div_ceil(64)],
+            resolution,
+            shift: resolution.trailing_zeros(),
+            low: region.min,
+            scale: Vec3A::from_array(scale),
+        }
     }
 
     /// A grid of the same cells, none of them marked.
@@ -58,6 +79,42 @@ impl Occupancy {
     pub(crate) fn united(mut self, other: Self) -> Self {
         self.bits.iter_mut().zip(other.bits).for_each(|(word, other)| *word |= other);
         self
+    }
+
+    /// The shortest side of a cell, in units of the frame.
+    pub(crate) fn cell_length(&self) -> f32 {
+        1.0 / self.scale.max_element()
+    }
+
+    /// Cells along each axis.
+    pub(crate) fn resolution(&self) -> u32 {
+        self.resolution
+    }
+
+    /// The number of a cell: x runs fastest, then y.
+    #[inline]
+    pub(crate) fn number(&self, cell: Cell) -> u32 {
+        number(cell.components(), self.shift)
+    }
+
+    /// The cell with a number.
+    #[inline]
+    pub(crate) fn numbered(&self, number: u32) -> Cell {
+        let mask = self.resolution - 1;
+        let [x, y, z] = [0, self.shift, 2 * self.shift].map(|shift| number >> shift & mask);
+        Cell(x | y << BITS | z << (2 * BITS))
+    }
+
+    /// Marks the cell with a number.
+    #[inline]
+    pub(crate) fn mark_number(&mut self, number: u32) {
+        self.bits[number as usize / 64] |= 1 << (number % 64);
+    }
+
+    /// Whether the cell with a number is marked.
+    #[inline]
+    pub(crate) fn is_number_marked(&self, number: u32) -> bool {
+        self.bits[number as usize / 64] >> (number % 64) & 1 == 1
     }
 
     /// The cell of a point. Points outside the grid are in its outermost cells.
@@ -114,7 +171,7 @@ impl Occupancy {
     /// A point in units of cells.
     #[inline]
     fn scaled(&self, point: Vec3A) -> Vec3A {
-        (point + 2.0) * (self.resolution as f32 / 4.0)
+        (point - self.low) * self.scale
     }
 }
 
@@ -128,11 +185,16 @@ fn around(of_corners: [Cell; 3]) -> Cells {
     }
 }
 
+#[inline]
+fn number([x, y, z]: [u32; 3], shift: u32) -> u32 {
+    (z << shift | y) << shift | x
+}
+
 /// Word and bit of a cell.
 #[inline]
-fn place([x, y, z]: [u32; 3], shift: u32) -> (usize, u64) {
-    let cell = (z << shift | y) << shift | x;
-    (cell as usize / 64, 1 << (cell % 64))
+fn place(components: [u32; 3], shift: u32) -> (usize, u64) {
+    let number = number(components, shift);
+    (number as usize / 64, 1 << (number % 64))
 }
 
 fn cell_range(low: Vec3A, high: Vec3A, resolution: u32) -> Cells {
@@ -141,16 +203,23 @@ fn cell_range(low: Vec3A, high: Vec3A, resolution: u32) -> Cells {
     Cells { low: cell(low), high: cell(high) }
 }
 
-/// Calls `visit` for each cell of a range until it returns true; returns whether it did.
+/// Calls `visit` with words and bits that hold the cells of a range, until it returns true; returns whether it did.
 #[inline]
 fn for_cells(cells: Cells, shift: u32, mut visit: impl FnMut(usize, u64) -> bool) -> bool {
-    for z in cells.low[2]..=cells.high[2] {
-        for y in cells.low[1]..=cells.high[1] {
-            for x in cells.low[0]..=cells.high[0] {
-                let (word, bit) = place([x, y, z], shift);
-                if visit(word, bit) {
+    let Cells { low, high } = cells;
+    for z in low[2]..high[2] + 1 {
+        for y in low[1]..high[1] + 1 {
+            let row = (z << shift | y) << shift;
+            let (mut first, last) = (row | low[0], row | high[0]);
+            // Cells along x are bits side by side.
+            while first / 64 < last / 64 {
+                if visit(first as usize / 64, !0 << (first % 64)) {
                     return true;
                 }
+                first = (first / 64 + 1) * 64;
+            }
+            if visit(first as usize / 64, !0 << (first % 64) & !0 >> (63 - last % 64)) {
+                return true;
             }
         }
     }
@@ -167,8 +236,9 @@ fn divide(corners: [Vec3A; 3], resolution: u32, visit: &mut impl FnMut(Cells) ->
     let mut stack = vec![corners];
     let mut divisions = 0;
     let end = Vec3A::splat(resolution as f32);
+    let reach = corners.iter().fold(0.0f32, |reach, corner| reach.max(corner.abs().max_element()));
+    let margin = Vec3A::splat(MARGIN + MARGIN_PER_CELL * reach);
     while let Some([a, b, c]) = stack.pop() {
-        let margin = Vec3A::splat(MARGIN);
         let (low, high) = (a.min(b).min(c) - margin, a.max(b).max(c) + margin);
         // Nothing meets outside the region.
         if high.cmplt(Vec3A::ZERO).any() || low.cmpgt(end).any() {
@@ -176,7 +246,10 @@ fn divide(corners: [Vec3A; 3], resolution: u32, visit: &mut impl FnMut(Cells) ->
         }
         let cells = cell_range(low, high, resolution);
         // Below the size of a cell there is nothing to gain by dividing.
-        if count(cells) <= DIVIDE_FROM || (high - low).max_element() <= 2.0 || divisions >= MAX_DIVISIONS {
+        if count(cells) <= DIVIDE_FROM
+            || (high - low).max_element() <= 2.0 + 2.0 * margin.x
+            || divisions >= MAX_DIVISIONS
+        {
             if visit(cells) {
                 return true;
             }
@@ -207,12 +280,16 @@ mod tests {
     #[test]
     fn triangles_with_a_common_point_meet_in_a_cell() {
         let mut rng = ChaCha8Rng::seed_from_u64(14);
-        for round in 0..3_000 {
-            let mut grid = Occupancy::new([4, 30, 128][round % 3]);
+        for round in 0..4_000 {
+            let small = Aabb { min: Vec3A::splat(-0.9), max: Vec3A::new(0.9, 1.5, 0.95) };
+            let mut grid = match round % 4 {
+                3 => Occupancy::over(&small, 32),
+                i => Occupancy::new([4, 30, 128][i]),
+            };
             let mut point =
                 |size: f32| Vec3A::new(rng.random(), rng.random(), rng.random()) * 2.0 * size - size;
             // Two triangles through one point: its barycentric coordinates in both are a third.
-            let size = [1.2, 0.05, 1e-4][round / 3 % 3];
+            let size = [1.2, 0.05, 1e-4, 3e4][round / 4 % 4];
             let (a, b, centre) = (point(size), point(size), point(0.9));
             let first = [centre + a, centre + b, centre - a - b];
             let (a, b) = (point(1.5), point(1e-3));

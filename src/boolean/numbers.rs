@@ -1,0 +1,144 @@
+//! The numbers that points have in a result.
+
+use rustc_hash::FxHashMap;
+
+/// Which points a result uses, and their numbers in it.
+///
+/// Vertices are in use where the winding number says so, but for doubtful ones, which must be found in some triangle. Points
+/// are added in their order: the vertices of A, those of B, all others.
+#[derive(Debug)]
+pub(super) struct Numbers {
+    /// By point; first one of the states below, then its number.
+    numbers: Vec<u32>,
+    /// Numbers of vertices that are not kept where they were, and stand for another point.
+    of_others: FxHashMap<u32, u32>,
+    /// Points that were once in doubt.
+    doubtful: Vec<u32>,
+    /// By side, whether every kept vertex has the winding number 0 or 1.
+    once: Vec<bool>,
+    positions: Vec<[f64; 3]>,
+    points: usize,
+}
+
+/// States of points before they are numbered. A vertex that is not kept but in use stands for another point.
+const KEPT: u32 = u32::MAX - 1;
+const DOUBTFUL: u32 = u32::MAX - 2;
+const STANDS: u32 = u32::MAX - 3;
+
+impl Numbers {
+    /// The number of what is not in the result.
+    pub(super) const NONE: u32 = u32::MAX;
+
+    /// For so many points.
+    pub(super) fn new(points: usize) -> Self {
+        Self {
+            numbers: Vec::with_capacity(points),
+            of_others: FxHashMap::default(),
+            doubtful: Vec::new(),
+            once: Vec::new(),
+            positions: Vec::new(),
+            points,
+        }
+    }
+
+    /// Adds the vertices of the next side by their winding numbers.
+    pub(super) fn add_vertices(&mut self, windings: &[i32], is_kept: impl Fn(i32) -> bool) {
+        let [zero, one] = [0, 1].map(|winding| if is_kept(winding) { KEPT } else { Self::NONE });
+        let mut once = true;
+        self.numbers.extend(windings.iter().map(|&winding| match winding {
+            0 => zero,
+            1 => one,
+            winding => {
+                once = false;
+                if is_kept(winding) { KEPT } else { Self::NONE }
+            }
+        }));
+        self.once.push(once);
+    }
+
+    /// Adds all other points, in use only if they are marked.
+    pub(super) fn add_others(&mut self) {
+        self.numbers.resize(self.points, DOUBTFUL);
+    }
+
+    /// Whether all winding numbers round the vertices of a side are 0 or 1.
+    pub(super) fn are_once(&self, side: usize) -> bool {
+        self.once[side]
+    }
+
+    /// Doubts that a point is in use.
+    #[inline]
+    pub(super) fn doubt(&mut self, point: u32) {
+        let state = &mut self.numbers[point as usize];
+        if *state == KEPT {
+            *state = DOUBTFUL;
+            self.doubtful.push(point);
+        }
+    }
+
+    /// Marks a point as in use.
+    #[inline]
+    pub(super) fn mark(&mut self, point: u32) {
+        let state = &mut self.numbers[point as usize];
+        *state = match *state {
+            Self::NONE | STANDS => STANDS,
+            _ => KEPT,
+        };
+    }
+
+    /// Whether it is not known whether a point is in use.
+    #[inline]
+    pub(super) fn is_doubtful(&self, point: u32) -> bool {
+        self.numbers[point as usize] == DOUBTFUL
+    }
+
+    /// Whether that is not known of some point.
+    pub(super) fn are_doubtful(&self) -> bool {
+        self.doubtful.iter().any(|&point| self.is_doubtful(point))
+    }
+
+    /// Numbers the points in use, in their order. Kept vertices for which another point stands get its number.
+    pub(super) fn count(&mut self, position: impl Fn(u32) -> [f64; 3], representative: impl Fn(u32) -> u32) {
+        self.positions.reserve(self.points);
+        for (point, state) in self.numbers.iter_mut().enumerate() {
+            let number = self.positions.len() as u32;
+            *state = match *state {
+                KEPT => number,
+                STANDS => {
+                    self.of_others.insert(point as u32, number);
+                    Self::NONE
+                }
+                _ => {
+                    *state = Self::NONE;
+                    continue;
+                }
+            };
+            self.positions.push(position(point as u32));
+        }
+        for &point in &self.doubtful {
+            let other = representative(point);
+            if other != point {
+                self.numbers[point as usize] = self.of(other);
+            }
+        }
+    }
+
+    /// The number of a point in use.
+    #[inline]
+    pub(super) fn of(&self, point: u32) -> u32 {
+        match self.numbers[point as usize] {
+            Self::NONE => self.of_others.get(&point).copied().unwrap_or(Self::NONE),
+            number => number,
+        }
+    }
+
+    /// The numbers of kept vertices from the first of a side on; [`NONE`](Self::NONE) for the others.
+    pub(super) fn of_side(&self, first: u32) -> &[u32] {
+        &self.numbers[first as usize..]
+    }
+
+    /// The positions of the points in use, by number.
+    pub(super) fn into_positions(self) -> Vec<[f64; 3]> {
+        self.positions
+    }
+}
