@@ -196,7 +196,7 @@ mod tests {
             let (tree_a, tree_b) = (tree(&a), tree(&b));
             let control = Control::new();
             let mut pairs = visit_pairs(&tree_a, &tree_b, Runner::new(&control, true), |pairs, found| {
-                found.extend_from_slice(pairs)
+                found.extend_from_slice(pairs);
             })
             .expect("no limits");
             pairs.sort_unstable();
