@@ -70,6 +70,32 @@ impl<'a> Runner<'a> {
         (0..pieces).map(run).collect()
     }
 
+    /// What `fill` appends for each piece of `0..count`, in order; about `room` items. The limits are checked before every
+    /// piece.
+    pub(crate) fn gather<T: Send>(
+        self,
+        count: usize,
+        grain: usize,
+        room: usize,
+        fill: impl Fn(Range<usize>, &mut Vec<T>) + Sync,
+    ) -> Result<Vec<T>, Error> {
+        let mut all = Vec::with_capacity(room);
+        if self.is_parallel() {
+            let pieces = self.pieces(count, grain, |range| {
+                let mut piece = Vec::new();
+                fill(range, &mut piece);
+                piece
+            })?;
+            pieces.into_iter().for_each(|mut piece| all.append(&mut piece));
+        } else {
+            for start in (0..count).step_by(grain.max(1)) {
+                self.control.check()?;
+                fill(start..(start + grain.max(1)).min(count), &mut all);
+            }
+        }
+        Ok(all)
+    }
+
     /// Sorts items that differ from each other, so that the order does not depend on the number of threads.
     pub(crate) fn sort<T: Ord + Send>(self, items: &mut [T]) {
         #[cfg(feature = "parallel")]

@@ -33,16 +33,15 @@ const MOST_GRIDS: usize = 8;
 /// So many triangles are looked up in the grid at once.
 const TRIANGLES_PER_PIECE: usize = 1 << 14;
 
-/// The triangles of both operands that may meet the other, in hierarchies.
+/// The triangles of both operands that may meet the other, in hierarchies whose items are triangles.
 pub(super) struct Candidates {
     hierarchies: Hierarchies,
     _memory: Reservation,
 }
 
 enum Hierarchies {
-    /// Of boxes, over places in lists of triangles.
-    Boxes([BoxTree; 2], [Vec<u32>; 2]),
-    /// Of capsules, over triangles, where there are many needles.
+    Boxes([BoxTree; 2]),
+    /// Where there are many needles.
     Capsules([CapsuleTree; 2]),
 }
 
@@ -55,7 +54,7 @@ impl Candidates {
         runner.control.check()?;
         let Some(common) = overlap.common else {
             let trees = [BoxTree::empty(), BoxTree::empty()];
-            let hierarchies = Hierarchies::Boxes(trees, Default::default());
+            let hierarchies = Hierarchies::Boxes(trees);
             return Ok(Self { hierarchies, _memory: runner.control.reserve(0)? });
         };
         let frame = Frame::of(common.low, common.high);
@@ -80,8 +79,9 @@ impl Candidates {
         let [a, b] = refined_boxes::refine([a, b], &common, corners);
         let bytes = (a.boxes.len() + b.boxes.len()) * (BoxTree::BYTES_PER_ITEM + size_of::<u32>());
         let memory = runner.control.reserve(bytes as u64)?;
-        let (tree_a, tree_b) = runner.both(|| BoxTree::of_boxes(&a.boxes), || BoxTree::of_boxes(&b.boxes));
-        let hierarchies = Hierarchies::Boxes([tree_a, tree_b], [a.triangles, b.triangles]);
+        let tree = |of: &Boxes| BoxTree::of_boxes(&of.boxes).renumbered(&of.triangles);
+        let (tree_a, tree_b) = runner.both(|| tree(&a), || tree(&b));
+        let hierarchies = Hierarchies::Boxes([tree_a, tree_b]);
         Ok(Self { hierarchies, _memory: memory })
     }
 
@@ -92,10 +92,17 @@ impl Candidates {
         runner: Runner<'_>,
         visit: impl Fn(u32, u32, &mut Vec<T>) + Sync,
     ) -> Result<Vec<T>, Error> {
+        self.visit_batches(runner, |pairs, found| pairs.iter().for_each(|&[s, t]| visit(s, t, found)))
+    }
+
+    /// The same, some hundred pairs at once.
+    pub(super) fn visit_batches<T: Send>(
+        &self,
+        runner: Runner<'_>,
+        visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
+    ) -> Result<Vec<T>, Error> {
         match &self.hierarchies {
-            Hierarchies::Boxes([a, b], [of_a, of_b]) => {
-                visit_pairs(a, b, runner, |i, j, found| visit(of_a[i as usize], of_b[j as usize], found))
-            }
+            Hierarchies::Boxes([a, b]) => visit_pairs(a, b, runner, visit),
             Hierarchies::Capsules([a, b]) => capsule_tree::visit_pairs(a, b, runner, visit),
         }
     }

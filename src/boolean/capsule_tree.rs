@@ -12,6 +12,8 @@ use crate::parallel::Runner;
 
 /// Items per leaf.
 const LEAF: usize = 4;
+/// Pairs handed on at once.
+const BATCH: usize = 256;
 
 /// A balanced binary tree over the capsules of items.
 #[derive(Debug)]
@@ -109,13 +111,13 @@ fn order_key(capsule: &Capsule) -> u64 {
     1 << 63 | face << 60 | part(u) << 56 | part(v) << 52 | morton(foot) << 20 | cell(along)
 }
 
-/// Calls `visit` for all pairs of an item of `a` and an item of `b` whose capsules are not apart, and returns what it appends,
-/// in an order that depends on the trees alone.
+/// Calls `visit` for all pairs of an item of `a` and an item of `b` whose capsules are not apart, some hundred at once, and
+/// returns what it appends, in an order that depends on the trees alone.
 pub(super) fn visit_pairs<T: Send>(
     a: &CapsuleTree,
     b: &CapsuleTree,
     runner: Runner<'_>,
-    visit: impl Fn(u32, u32, &mut Vec<T>) + Sync,
+    visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
 ) -> Result<Vec<T>, Error> {
     // Open the pair of roots until there are enough pairs of subtrees to share out.
     const TASKS: usize = 256;
@@ -132,10 +134,17 @@ pub(super) fn visit_pairs<T: Send>(
     }
     let grain = if runner.is_parallel() { 1 } else { tasks.len().max(1) };
     let pieces = runner.pieces(tasks.len(), grain, |range| {
-        let mut found = Vec::new();
+        let (mut found, mut batch) = (Vec::new(), Vec::with_capacity(BATCH));
         for &(x, y) in &tasks[range] {
-            walk(a, b, x, y, runner.control, |i, j| visit(i, j, &mut found))?;
+            walk(a, b, x, y, runner.control, |i, j| {
+                batch.push([i, j]);
+                if batch.len() == BATCH {
+                    visit(&batch, &mut found);
+                    batch.clear();
+                }
+            })?;
         }
+        visit(&batch, &mut found);
         Ok::<_, Error>(found)
     })?;
     let mut all = Vec::new();
@@ -235,8 +244,9 @@ mod tests {
             let control = Control::new();
             for parallel in [false, true] {
                 let runner = Runner::new(&control, parallel);
-                let mut pairs = visit_pairs(&tree(&a), &tree(&b), runner, |i, j, found| found.push([i, j]))
-                    .expect("no limits");
+                let mut pairs =
+                    visit_pairs(&tree(&a), &tree(&b), runner, |pairs, found| found.extend_from_slice(pairs))
+                        .expect("no limits");
                 pairs.sort_unstable();
                 let mut place = 0;
                 for i in 0..a.len() {

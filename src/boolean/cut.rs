@@ -29,6 +29,9 @@ pub(super) struct Piece {
     pub(super) triangle: u32,
 }
 
+/// Faces that are cut between looks at the limits.
+const FACES_AT_ONCE: usize = 512;
+
 /// What was cut out of the faces of a part.
 #[derive(Debug, Default)]
 pub(super) struct Cut {
@@ -61,6 +64,7 @@ pub(super) struct Cutter<'a> {
 struct Scratch {
     triangulator: Triangulator,
     boundary: Vec<[u32; 2]>,
+    positions: Vec<[f64; 3]>,
     points: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
 }
@@ -73,21 +77,37 @@ impl Cutter<'_> {
         done: &FxHashSet<(usize, u32)>,
         runner: Runner<'_>,
     ) -> Result<Cut, Error> {
-        let all = &self.faces[part.side].faces;
-        let pieces = runner.pieces(all.len(), 512, |range| {
-            let mut scratch = Scratch::default();
-            let mut cut = Cut::default();
-            for place in range {
-                let is_done = !done.is_empty() && done.contains(&(part.side, all[place].triangle));
-                if !is_done && !self.plane_faces.belongs_to_earlier(part.side, place as u32) {
-                    self.cut_face(part, place as u32, &mut scratch, &mut cut);
+        let faces = &self.faces[part.side];
+        let all = &faces.faces;
+        let mut parts = runner
+            .pieces(all.len(), if runner.is_parallel() { FACES_AT_ONCE } else { all.len() }, |range| {
+                let mut scratch = Scratch::default();
+                let mut cut = Cut::default();
+                for start in range.clone().step_by(FACES_AT_ONCE) {
+                    runner.control.check()?;
+                    let some = start..(start + FACES_AT_ONCE).min(range.end);
+                    let Self { operands, crossings, edges, .. } = *self;
+                    let winding = |v: u32| self.windings[part.side][v as usize] as u32;
+                    let visit = |place: u32| {
+                        let is_done =
+                            !done.is_empty() && done.contains(&(part.side, all[place as usize].triangle));
+                        if !is_done && !self.plane_faces.belongs_to_earlier(part.side, place) {
+                            self.cut_face(part, place, &mut scratch, &mut cut);
+                        }
+                    };
+                    faces.for_each_place(some, part.side, operands, crossings, edges, winding, visit);
                 }
-            }
-            cut
-        })?;
-        let has_inverted = pieces.iter().any(|cut| cut.has_inverted);
-        let has_slivers = pieces.iter().any(|cut| cut.has_slivers);
-        Ok(Cut { pieces: pieces.into_iter().flat_map(|cut| cut.pieces).collect(), has_inverted, has_slivers })
+                Ok::<Cut, Error>(cut)
+            })?
+            .into_iter();
+        let mut all = parts.next().unwrap_or(Ok(Cut::default()))?;
+        for part in parts {
+            let mut part = part?;
+            all.pieces.append(&mut part.pieces);
+            all.has_inverted |= part.has_inverted;
+            all.has_slivers |= part.has_slivers;
+        }
+        Ok(all)
     }
 
     /// Where a point is.
@@ -120,16 +140,15 @@ impl Cutter<'_> {
         for edge in &mut scratch.boundary {
             *edge = edge.map(local);
         }
+        scratch.positions.clear();
+        scratch.positions.extend(points.iter().map(|&point| *self.position(point)));
         let (x, y) = self.projection(part, face);
         scratch.points.clear();
-        scratch.points.extend(points.iter().map(|&point| {
-            let position = self.position(point);
-            [position[x], position[y]]
-        }));
+        scratch.points.extend(scratch.positions.iter().map(|position| [position[x], position[y]]));
         scratch.triangles.clear();
         let shape =
             scratch.triangulator.triangulate(&scratch.points, &scratch.boundary, &mut scratch.triangles);
-        cut.has_slivers |= shape >= Shape::Flat || self.has_short_edge(&points, &scratch.boundary);
+        cut.has_slivers |= shape >= Shape::Flat || self.has_short_edge(&scratch.positions, &scratch.boundary);
         cut.has_inverted |= shape == Shape::Folded;
         cut.pieces.extend(scratch.triangles.iter().map(|corners| Piece {
             corners: corners.map(|point| points[point as usize]),
@@ -190,9 +209,9 @@ impl Cutter<'_> {
     }
 
     /// Whether two consecutive points of a boundary are no further apart than rounding.
-    fn has_short_edge(&self, points: &[u32], boundary: &[[u32; 2]]) -> bool {
+    fn has_short_edge(&self, positions: &[[f64; 3]], boundary: &[[u32; 2]]) -> bool {
         boundary.iter().any(|edge| {
-            let [p, q] = edge.map(|i| self.position(points[i as usize]));
+            let [p, q] = edge.map(|i| positions[i as usize]);
             (0..3).all(|k| (p[k] - q[k]).abs() <= self.rounding)
         })
     }

@@ -56,20 +56,15 @@ impl CutEdges {
             }
             edge_of_node.push(edges.len() as u32 - 1);
         }
-        let nodes = runner
-            .pieces(edges.len(), 1024, |range| {
-                let mut nodes = Vec::new();
-                for edge in &edges[range] {
-                    let start = nodes.len();
-                    nodes.extend(edge.first..edge.end);
-                    if edge.end - edge.first > 1 {
-                        nodes[start..]
-                            .sort_by(|&x, &y| compare(operands, &all[x as usize], &all[y as usize]));
-                    }
+        let nodes = runner.gather(edges.len(), 1024, all.len(), |range, nodes: &mut Vec<u32>| {
+            for edge in &edges[range] {
+                let start = nodes.len();
+                nodes.extend(edge.first..edge.end);
+                if edge.end - edge.first > 1 {
+                    nodes[start..].sort_by(|&x, &y| compare(operands, &all[x as usize], &all[y as usize]));
                 }
-                nodes
-            })?
-            .concat();
+            }
+        })?;
         Ok(Self { edges, nodes, edge_of_node, positions: Vec::new() })
     }
 
@@ -82,16 +77,18 @@ impl CutEdges {
         runner: Runner<'_>,
     ) -> Result<(), Error> {
         let all = &crossings.nodes;
-        self.positions = runner
-            .pieces(all.len(), 1024, |range| {
-                let nowhere = [f64::NAN; 3];
-                let place = |i: usize| match plane_faces.is_dropped(i as u32) {
-                    true => nowhere,
-                    false => locate(operands, &all[i]),
-                };
-                range.map(place).collect::<Vec<_>>()
-            })?
-            .concat();
+        let nowhere = [f64::NAN; 3];
+        self.positions = runner.gather(all.len(), 1024, all.len(), |range, positions| {
+            let mut points = Vec::with_capacity(AT_ONCE);
+            for start in range.clone().step_by(AT_ONCE) {
+                let part = start..(start + AT_ONCE).min(range.end);
+                points.clear();
+                points.extend(all[part.clone()].iter().map(|node| Plain::new(operands, node)));
+                positions.extend(part.zip(&points).map(|(i, points)| {
+                    if plane_faces.is_dropped(i as u32) { nowhere } else { points.locate(operands, &all[i]) }
+                }));
+            }
+        })?;
         Ok(())
     }
 
@@ -106,6 +103,11 @@ impl CutEdges {
         let mut more = self.clone();
         more.positions.extend(crossings.iter().map(|crossing| crossing.position));
         more
+    }
+
+    /// The lowest number of a node of an edge.
+    pub(super) fn first_node(&self, edge: u32) -> u32 {
+        self.edges[edge as usize].first
     }
 
     /// The nodes of an edge, from its low end to its high end.
@@ -184,15 +186,37 @@ fn duplicates(x: &Crossing, y: &Crossing) -> Ordering {
     if lower.leaves == lower_is_x { Ordering::Greater } else { Ordering::Less }
 }
 
-/// Where a crossing is, correctly rounded.
-fn locate(operands: &Operands<'_>, node: &Crossing) -> [f64; 3] {
-    let (p, q) = (operands.corner(node.low), operands.corner(node.high));
-    let other = 1 - operands.side_of(node.low);
-    let triangle = operands.corners(other, node.triangle);
-    position::crossing_filter(&p.position, &q.position, triangle.each_ref().map(|corner| &corner.position))
-        .unwrap_or_else(|| {
-            let point = |corner: &Corner| operands.perturbed(corner);
-            let triangle = triangle.each_ref().map(point);
-            position::crossing(&point(&p), &point(&q), triangle.each_ref())
+/// Crossings whose points are read before the first is located, so that cache misses overlap.
+const AT_ONCE: usize = 64;
+
+/// The ends of the edge and the corners of the triangle of a crossing.
+struct Plain {
+    edge: [[f64; 3]; 2],
+    triangle: [[f64; 3]; 3],
+}
+
+impl Plain {
+    #[inline]
+    fn new(operands: &Operands<'_>, node: &Crossing) -> Self {
+        let side = operands.side_of(node.low);
+        let (ends, other) = (&operands.sides[side], &operands.sides[1 - side]);
+        let first = operands.first_vertex(side);
+        let [low, high] = [node.low, node.high].map(|v| (v - first) as usize);
+        let [u, v, w] = other.triangles[node.triangle as usize].map(|v| v as usize);
+        Self {
+            edge: [ends.positions[low], ends.positions[high]],
+            triangle: [other.positions[u], other.positions[v], other.positions[w]],
+        }
+    }
+
+    /// Where the crossing is, correctly rounded.
+    fn locate(&self, operands: &Operands<'_>, node: &Crossing) -> [f64; 3] {
+        let Self { edge: [p, q], triangle } = self;
+        position::crossing_filter(p, q, triangle.each_ref()).unwrap_or_else(|| {
+            let other = 1 - operands.side_of(node.low);
+            let [p, q] = [node.low, node.high].map(|v| operands.perturbed(&operands.corner(v)));
+            let triangle = operands.corners(other, node.triangle).map(|corner| operands.perturbed(&corner));
+            position::crossing(&p, &q, triangle.each_ref())
         })
+    }
 }

@@ -1,8 +1,11 @@
 //! The triangles that the intersection curve passes, with the segments on each.
 
-use super::crossings::Crossings;
+use std::ops::Range;
+
+use super::crossings::{Crossing, Crossings};
 use super::cut_edges::CutEdges;
 use super::operands::Operands;
+use crate::spatial::{radix_sort, read_ahead};
 
 /// A set of small integers.
 #[derive(Debug, Default)]
@@ -50,6 +53,9 @@ pub(super) struct CutFace {
     pub(super) edges: [u32; 3],
 }
 
+/// Faces or segments whose data are read at once.
+const READ_AHEAD: usize = 64;
+
 /// Marks a side without crossings.
 pub(super) const UNCUT: u32 = u32::MAX;
 
@@ -64,40 +70,58 @@ pub(super) struct CutFaces {
 
 impl CutFaces {
     pub(super) fn new(operands: &Operands<'_>, side: usize, crossings: &Crossings, edges: &CutEdges) -> Self {
-        let triangle_of = |segment: u32| crossings.segments[segment as usize].triangles[side];
-        let mut segments: Vec<u32> = (0..crossings.segments.len() as u32).collect();
-        if side == 1 {
+        let all = &crossings.segments;
+        let segments: Vec<u32> = if side == 0 {
             // They are sorted by triangle of A already.
-            segments.sort_by_key(|&segment| triangle_of(segment));
-        }
+            (0..all.len() as u32).collect()
+        } else {
+            let mut order: Vec<[u32; 2]> =
+                all.iter().zip(0..).map(|(segment, i)| [segment.triangles[1], i]).collect();
+            let bits = u32::BITS - (operands.sides[1].triangles.len() as u32).leading_zeros();
+            radix_sort(&mut order, &mut Vec::new(), |key| key[0], bits);
+            order.iter().map(|key| key[1]).collect()
+        };
+        let first_vertex = operands.first_vertex(side);
+        let mut corners = [0; 3];
         let mut is_cut = BitSet::new(operands.sides[side].triangles.len());
         let mut faces: Vec<CutFace> = Vec::new();
-        for (i, &segment) in segments.iter().enumerate() {
-            let triangle = triangle_of(segment);
+        for (i, &number) in segments.iter().enumerate() {
+            if i % READ_AHEAD == 0 {
+                let next = &segments[i..(i + READ_AHEAD).min(segments.len())];
+                read_ahead(next.iter().map(|&segment| {
+                    let segment = &all[segment as usize];
+                    let [tail, head] = [segment.tail, segment.head].map(|node| node as usize);
+                    crossings.nodes[tail].low
+                        ^ crossings.nodes[head].low
+                        ^ edges.edge_of_node[tail]
+                        ^ edges.edge_of_node[head]
+                }));
+            }
+            let segment = &all[number as usize];
+            let triangle = segment.triangles[side];
             match faces.last_mut() {
                 Some(face) if face.triangle == triangle => face.end += 1,
                 _ => {
                     is_cut.insert(triangle);
                     faces.push(CutFace { triangle, first: i as u32, end: i as u32 + 1, edges: [UNCUT; 3] });
+                    corners = operands.sides[side].triangles[triangle as usize].map(|v| first_vertex + v);
                 }
             }
             // A segment that ends on the triangle's boundary ends on one of its own edges.
             let face = faces.last_mut().expect("pushed above");
-            let first = operands.first_vertex(side);
-            let corners = operands.sides[side].triangles[triangle as usize].map(|v| first + v);
-            for node in [crossings.segments[segment as usize].tail, crossings.segments[segment as usize].head]
-            {
-                let edge = edges.edge_of_node[node as usize];
-                let (low, high) = (edges.edges[edge as usize].low, edges.edges[edge as usize].high);
-                if operands.side_of(low) == side {
-                    let k = (0..3)
-                        .find(|&k| {
-                            let (u, v) = (corners[k], corners[(k + 1) % 3]);
-                            (u.min(v), u.max(v)) == (low, high)
-                        })
-                        .expect("the edge is one of the triangle's");
-                    face.edges[k] = edge;
+            for node in [segment.tail, segment.head] {
+                if crossings.side_of_node(node) != side {
+                    continue;
                 }
+                let edge = edges.edge_of_node[node as usize];
+                let Crossing { low, high, .. } = crossings.nodes[node as usize];
+                let k = (0..3)
+                    .find(|&k| {
+                        let (u, v) = (corners[k], corners[(k + 1) % 3]);
+                        (u.min(v), u.max(v)) == (low, high)
+                    })
+                    .expect("the edge is one of the triangle's");
+                face.edges[k] = edge;
             }
         }
         Self { faces, segments, is_cut }
@@ -124,6 +148,56 @@ impl CutFaces {
             }
         }
         self.faces.sort_by_key(|face| face.triangle);
+    }
+
+    /// Calls `visit` for a range of places of faces. What will be looked up for some dozens of them is read ahead, and
+    /// `of_vertex` of the corners.
+    pub(super) fn for_each_place(
+        &self,
+        range: Range<usize>,
+        side: usize,
+        operands: &Operands<'_>,
+        crossings: &Crossings,
+        edges: &CutEdges,
+        of_vertex: impl Fn(u32) -> u32,
+        mut visit: impl FnMut(u32),
+    ) {
+        for start in range.clone().step_by(READ_AHEAD) {
+            let part = start..(start + READ_AHEAD).min(range.end);
+            self.read(part.clone(), side, operands, crossings, edges, &of_vertex);
+            part.for_each(|place| visit(place as u32));
+        }
+    }
+
+    /// Reads where the corners and nodes of some faces are.
+    fn read(
+        &self,
+        range: Range<usize>,
+        side: usize,
+        operands: &Operands<'_>,
+        crossings: &Crossings,
+        edges: &CutEdges,
+        of_vertex: impl Fn(u32) -> u32,
+    ) {
+        let operand = &operands.sides[side];
+        let low_bits = |position: &[f64; 3]| (position[0].to_bits() ^ position[2].to_bits()) as u32;
+        let faces = &self.faces[range];
+        read_ahead(faces.iter().map(|face| {
+            let [u, v, w] = operand.triangles[face.triangle as usize];
+            let of_corner = |v: u32| low_bits(&operand.positions[v as usize]) ^ of_vertex(v);
+            of_corner(u) ^ of_corner(v) ^ of_corner(w)
+        }));
+        let cut_edges = faces.iter().flat_map(|face| face.edges).filter(|&edge| edge != UNCUT);
+        read_ahead(cut_edges.map(|edge| {
+            let node = edges.first_node(edge) as usize;
+            crossings.nodes[node].low ^ low_bits(&edges.positions[node])
+        }));
+        let [Some(first), Some(last)] = [faces.first(), faces.last()] else { return };
+        let segments = self.segments.get(first.first as usize..last.end as usize).unwrap_or_default();
+        read_ahead(segments.iter().map(|&segment| {
+            let segment = &crossings.segments[segment as usize];
+            low_bits(&edges.positions[segment.tail as usize])
+        }));
     }
 
     /// The segments on a cut face.

@@ -41,22 +41,28 @@ impl Identification {
         };
         for side in 0..2 {
             let all = &faces[side].faces;
-            let pairs = runner.pieces(all.len(), 1024, |range| {
-                let mut pairs = Vec::new();
+            let pairs = runner.gather(all.len(), 1024, 0, |range, pairs| {
                 let mut points = Vec::new();
-                for place in range {
-                    if plane_faces.belongs_to_earlier(side, place as u32) {
-                        continue;
-                    }
-                    points.clear();
-                    for member in plane_faces.members(side, place as u32) {
-                        collect(side, &all[member as usize], &mut points);
-                    }
-                    coincidences(&mut points, &mut pairs);
-                }
-                pairs
+                faces[side].for_each_place(
+                    range,
+                    side,
+                    operands,
+                    crossings,
+                    edges,
+                    |_| 0,
+                    |place| {
+                        if plane_faces.belongs_to_earlier(side, place) {
+                            return;
+                        }
+                        points.clear();
+                        for member in plane_faces.members(side, place) {
+                            collect(side, &all[member as usize], &mut points);
+                        }
+                        coincidences(&mut points, pairs);
+                    },
+                );
             })?;
-            for [u, v] in pairs.concat() {
+            for [u, v] in pairs {
                 result.join(u, v);
             }
         }
@@ -155,11 +161,9 @@ fn collect_points(
     }
     for &segment in faces.segments(face) {
         let segment = &crossings.segments[segment as usize];
-        for node in [segment.tail, segment.head] {
-            // Inner nodes are crossings of edges of the other operand; each ends two segments.
-            if operands.side_of(crossings.nodes[node as usize].low) != side {
-                add(node);
-            }
+        // Inner nodes are crossings of edges of the other operand; each is the tail of one segment and the head of another.
+        if crossings.side_of_node(segment.tail) != side {
+            add(segment.tail);
         }
     }
 }

@@ -15,7 +15,7 @@ use rustc_hash::FxHashSet;
 
 use super::directions::Directions;
 use crate::exact::perturbed::{self, PerturbedPoint, jitter};
-use crate::exact::{Sign, orient3d_filter};
+use crate::exact::{PlaneFilter, Sign, orient3d_filter};
 
 /// One operand: borrowed arrays.
 #[derive(Clone, Copy, Debug)]
@@ -29,6 +29,20 @@ pub(super) struct Operand<'a> {
 pub(super) struct Corner {
     pub(super) id: u32,
     pub(super) position: [f64; 3],
+}
+
+/// The plane through three corners, for many points against it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane<'a> {
+    corners: [&'a Corner; 3],
+    filter: PlaneFilter,
+}
+
+impl<'a> Plane<'a> {
+    #[inline(always)]
+    pub(super) fn new(a: &'a Corner, b: &'a Corner, c: &'a Corner) -> Self {
+        Self { corners: [a, b, c], filter: PlaneFilter::new(&a.position, &b.position, &c.position) }
+    }
 }
 
 /// Both operands, and what decides ties between them.
@@ -118,8 +132,9 @@ impl<'a> Operands<'a> {
     pub(super) fn corners(&self, side: usize, triangle: u32) -> [Corner; 3] {
         let operand = &self.sides[side];
         let first = self.first_vertex(side);
-        operand.triangles[triangle as usize]
-            .map(|v| Corner { id: first + v, position: operand.positions[v as usize] })
+        let corner = |v: u32| Corner { id: first + v, position: operand.positions[v as usize] };
+        let [u, v, w] = operand.triangles[triangle as usize];
+        [corner(u), corner(v), corner(w)]
     }
 
     /// How many decisions plain positions left open.
@@ -138,6 +153,18 @@ impl<'a> Operands<'a> {
         }
     }
 
+    /// [`positive`](Self::positive) for the corners of a plane and another.
+    #[inline(always)]
+    pub(super) fn positive_of_plane(&self, plane: &Plane<'_>, d: &Corner) -> bool {
+        let (determinant, bound) = plane.filter.determinant(&d.position);
+        if determinant.abs() > bound + self.filter_floor {
+            determinant > 0.0
+        } else {
+            let [a, b, c] = plane.corners;
+            self.positive_exactly(a, b, c, d)
+        }
+    }
+
     /// Which of the other operand's vertices lie inside the plane of a triangle of `side`.
     #[inline]
     pub(super) fn inside(
@@ -149,7 +176,9 @@ impl<'a> Operands<'a> {
     ) -> [bool; 3] {
         let [a, b, c] = corners;
         let Some(known) = &self.known_sides else {
-            return [0, 1, 2].map(|i| self.positive(a, b, c, &vertices[i]));
+            let plane = Plane::new(a, b, c);
+            let [u, v, w] = vertices;
+            return [u, v, w].map(|vertex| self.positive_of_plane(&plane, vertex));
         };
         let (count, first) = (self.sides[1 - side].positions.len(), self.first_vertex(1 - side));
         [0, 1, 2].map(|i| {

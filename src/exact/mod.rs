@@ -20,5 +20,5 @@ pub mod perturbed;
 pub mod position;
 
 pub use integer::Integer;
-pub(crate) use orient::orient3d_filter;
+pub(crate) use orient::{PlaneFilter, orient3d_filter};
 pub use orient::{Sign, collinear, orient2d, orient3d};

@@ -64,6 +64,43 @@ pub(crate) fn orient3d_filter(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64
     (determinant, ORIENT3D_BOUND * permanent + UNDERFLOW_FLOOR)
 }
 
+/// [`orient3d_filter`] of many points against one plane: what depends on the plane alone is computed once.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlaneFilter {
+    origin: [f64; 3],
+    normal: [f64; 3],
+    /// The sums of the absolute values of the products in the normal.
+    permanent: [f64; 3],
+}
+
+impl PlaneFilter {
+    /// The plane through three points.
+    #[inline(always)]
+    pub(crate) fn new(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3]) -> Self {
+        let (ux, uy, uz) = (b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+        let (vx, vy, vz) = (c[0] - a[0], c[1] - a[1], c[2] - a[2]);
+        let (uyvz, uzvy) = (uy * vz, uz * vy);
+        let (uzvx, uxvz) = (uz * vx, ux * vz);
+        let (uxvy, uyvx) = (ux * vy, uy * vx);
+        Self {
+            origin: *a,
+            normal: [uzvy - uyvz, uxvz - uzvx, uyvx - uxvy],
+            permanent: [uyvz.abs() + uzvy.abs(), uzvx.abs() + uxvz.abs(), uxvy.abs() + uyvx.abs()],
+        }
+    }
+
+    /// `orient3d` of the plane's points and `d` in `f64`, and a bound as that of [`orient3d_filter`]: the same determinant,
+    /// relative to another of the points and transposed.
+    #[inline(always)]
+    pub(crate) fn determinant(&self, d: &[f64; 3]) -> (f64, f64) {
+        let (x, y, z) = (d[0] - self.origin[0], d[1] - self.origin[1], d[2] - self.origin[2]);
+        let determinant = x * self.normal[0] + y * self.normal[1] + z * self.normal[2];
+        let permanent =
+            x.abs() * self.permanent[0] + y.abs() * self.permanent[1] + z.abs() * self.permanent[2];
+        (determinant, ORIENT3D_BOUND * permanent + UNDERFLOW_FLOOR)
+    }
+}
+
 /// As [`orient3d_filter`], for `orient2d`.
 #[inline(always)]
 pub(crate) fn orient2d_filter(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> (f64, f64) {
@@ -218,7 +255,7 @@ mod tests {
     #[test]
     fn orient3d_agrees_with_rationals_everywhere() {
         let mut rng = ChaCha8Rng::seed_from_u64(3);
-        let mut zeros = 0;
+        let (mut zeros, mut decided) = (0, 0);
         for round in 0..20_000 {
             let kind = round % 9;
             let point = |rng: &mut ChaCha8Rng| -> [f64; 3] {
@@ -232,8 +269,16 @@ mod tests {
             zeros += u32::from(expected == Sign::Zero);
             assert_eq!(orient3d(&a, &b, &c, &d), expected, "{a:?} {b:?} {c:?} {d:?}");
             assert_eq!(orient3d_exact(&a, &b, &c, &d), expected, "exact stage: {a:?} {b:?} {c:?} {d:?}");
+            for [a, b, c] in [[a, b, c], [b, c, a], [c, a, b]] {
+                let (determinant, bound) = PlaneFilter::new(&a, &b, &c).determinant(&d);
+                if determinant.abs() > bound && largest([&a, &b, &c, &d]) <= FILTER_LIMIT {
+                    decided += 1;
+                    assert_eq!(Sign::of_f64(determinant), expected, "filter: {a:?} {b:?} {c:?} {d:?}");
+                }
+            }
         }
         assert!(zeros > 300, "the sample must hold ties: {zeros}");
+        assert!(decided > 10_000, "the filter must decide most: {decided}");
     }
 
     #[test]

@@ -10,6 +10,7 @@
     reason = "a NaN fails every comparison, and is meant to be refused"
 )]
 
+mod box_pairs;
 mod box_tree;
 mod build;
 mod closest;
@@ -20,6 +21,8 @@ mod frame;
 mod local_frame;
 mod morton;
 mod occupancy;
+mod radix;
+mod read_ahead;
 mod regions;
 mod triangle;
 mod triangle_tree;
@@ -31,11 +34,14 @@ pub use fast_winding::FastWinding;
 pub use triangle::{Feature, closest_on_segment, closest_on_triangle};
 pub use triangle_tree::TriangleTree;
 
-pub(crate) use box_tree::{BoxTree, self_overlapping_pairs, visit_pairs};
+pub(crate) use box_pairs::{self_overlapping_pairs, visit_pairs};
+pub(crate) use box_tree::BoxTree;
 pub(crate) use build::binary_tree;
 pub(crate) use frame::Frame;
 pub(crate) use local_frame::{LocalFrame, SmallBox};
 pub(crate) use morton::coherent_order;
 pub(crate) use occupancy::{Cell, Occupancy};
+pub(crate) use radix::sort as radix_sort;
+pub(crate) use read_ahead::read_ahead;
 pub(crate) use regions::Regions;
 pub(crate) use wide::{LANES, WideTree};

@@ -1,0 +1,260 @@
+//! All pairs of boxes that meet, of two trees or within one: both are walked at once, pack against pack.
+
+use crate::parallel::Runner;
+use crate::{Control, Error};
+
+use super::box_tree::{BoxTree, LANES, for_each_bit};
+
+/// The pairs of subtrees at the top are opened until there are so many, which are shared out in about as many runs.
+const TASKS: usize = 256;
+/// Pairs are handed on in batches of about this size, so that what is looked up for them is looked up side by side.
+const BATCH: usize = 256;
+/// So many pairs of packs are tested between looks at the limits.
+const STEPS_BETWEEN_CHECKS: usize = 1 << 15;
+
+/// Two packs of one level, by place.
+type Packs = [u32; 2];
+
+/// Calls `visit` for all pairs of an item of `a` and an item of `b` whose boxes meet, some hundred at once, and returns what
+/// it appends, in an order that depends on the trees alone.
+pub(crate) fn visit_pairs<T: Send>(
+    a: &BoxTree,
+    b: &BoxTree,
+    runner: Runner<'_>,
+    visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
+) -> Result<Vec<T>, Error> {
+    Walk { a, b, within: false, control: runner.control }.run(runner, visit)
+}
+
+/// All pairs of different items whose boxes meet and that `wanted` accepts, each once with the smaller item first, in an
+/// order that depends on the tree alone.
+pub(crate) fn self_overlapping_pairs(
+    tree: &BoxTree,
+    runner: Runner<'_>,
+    wanted: impl Fn([u32; 2]) -> bool + Sync,
+) -> Result<Vec<[u32; 2]>, Error> {
+    let walk = Walk { a: tree, b: tree, within: true, control: runner.control };
+    walk.run(runner, |pairs, found| {
+        found.extend(pairs.iter().map(|&[i, j]| [i.min(j), i.max(j)]).filter(|&pair| wanted(pair)));
+    })
+}
+
+/// A walk of two trees, or of one against itself.
+struct Walk<'a> {
+    a: &'a BoxTree,
+    b: &'a BoxTree,
+    /// The trees are one: of two different packs one order is enough.
+    within: bool,
+    control: &'a Control,
+}
+
+impl Walk<'_> {
+    fn run<T: Send>(
+        &self,
+        runner: Runner<'_>,
+        visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
+    ) -> Result<Vec<T>, Error> {
+        let Some((level, tasks)) = self.tasks()? else { return Ok(Vec::new()) };
+        let grain = if runner.is_parallel() { tasks.len().div_ceil(TASKS) } else { tasks.len() };
+        let pieces = runner.pieces(tasks.len(), grain.max(1), |range| {
+            let mut found = Vec::new();
+            self.below(level, &tasks[range], |pairs| visit(pairs, &mut found))?;
+            Ok(found)
+        })?;
+        concatenated(pieces)
+    }
+
+    /// Pairs of packs of one level, and the level, below which all pairs of items are found.
+    fn tasks(&self) -> Result<Option<(usize, Vec<Packs>)>, Error> {
+        let (a, b) = (self.a, self.b);
+        if a.is_empty() || b.is_empty() {
+            return Ok(None);
+        }
+        let mut level = a.top().min(b.top());
+        // The packs of the higher tree that meet the box of the lower one.
+        let (higher, lower, side) = if a.top() >= b.top() { (a, b, 0) } else { (b, a, 1) };
+        let (low, high) = (lower.bounds().min.to_array(), lower.bounds().max.to_array());
+        let mut tasks = vec![[0, 0]];
+        for above in (level + 1..=higher.top()).rev() {
+            self.control.check()?;
+            let mut opened = Vec::new();
+            for pair in tasks {
+                let place = pair[side];
+                let meeting = higher.level(above)[place as usize].meeting(low, high);
+                for_each_bit(meeting, |lane| {
+                    let mut pair = [0; 2];
+                    pair[side] = LANES as u32 * place + lane;
+                    opened.push(pair);
+                });
+            }
+            tasks = opened;
+        }
+        while tasks.len() < TASKS && level > 0 {
+            let mut opened = Vec::new();
+            for &pair in &tasks {
+                self.open(level, pair, |pair| opened.push(pair));
+            }
+            tasks = opened;
+            level -= 1;
+        }
+        Ok(Some((level, tasks)))
+    }
+
+    /// Calls `found` for the pairs of lanes of two packs whose boxes meet: pairs of packs of the level below, or of items.
+    #[inline(always)]
+    fn open(&self, level: usize, pair: Packs, mut found: impl FnMut(Packs)) {
+        let [x, y] = pair;
+        let mut meeting = self.a.level(level)[x as usize].meeting_pack(&self.b.level(level)[y as usize]);
+        if self.within && x == y {
+            // A box above the lowest level is opened against itself.
+            meeting &= if level == 0 { 0x08ce } else { 0x8cef };
+        }
+        for_each_bit(meeting, |lanes| {
+            found([LANES as u32 * x + lanes / LANES as u32, LANES as u32 * y + lanes % LANES as u32]);
+        });
+    }
+
+    /// Hands on all pairs of items below some pairs of packs.
+    fn below(&self, level: usize, tasks: &[Packs], mut found: impl FnMut(&[[u32; 2]])) -> Result<(), Error> {
+        let (of_a, of_b) = (self.a.items(), self.b.items());
+        let mut batch = Vec::with_capacity(BATCH + LANES * LANES);
+        let mut stack: Vec<(u32, Packs)> = Vec::new();
+        let mut steps = 0;
+        for &task in tasks {
+            stack.push((level as u32, task));
+            while let Some((level, pair)) = stack.pop() {
+                steps += 1;
+                if steps % STEPS_BETWEEN_CHECKS == 0 {
+                    self.control.check()?;
+                }
+                if level > 0 {
+                    self.open(level as usize, pair, |pair| stack.push((level - 1, pair)));
+                    continue;
+                }
+                self.open(0, pair, |[i, j]| batch.push([of_a[i as usize], of_b[j as usize]]));
+                if batch.len() >= BATCH {
+                    found(&batch);
+                    batch.clear();
+                }
+            }
+        }
+        found(&batch);
+        Ok(())
+    }
+}
+
+fn concatenated<T>(pieces: Vec<Result<Vec<T>, Error>>) -> Result<Vec<T>, Error> {
+    let mut pieces = pieces.into_iter();
+    let mut all = pieces.next().unwrap_or(Ok(Vec::new()))?;
+    for piece in pieces {
+        all.append(&mut piece?);
+    }
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::CancelToken;
+    use glam::Vec3A;
+    use obvhs::aabb::Aabb;
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+
+    fn random_boxes(rng: &mut ChaCha8Rng, count: usize, size: f32) -> Vec<Aabb> {
+        (0..count)
+            .map(|_| {
+                let min = Vec3A::new(rng.random(), rng.random(), rng.random());
+                let extent = Vec3A::new(rng.random(), rng.random(), rng.random()) * size;
+                Aabb { min, max: min + extent }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn pairs_and_queries_agree_with_all_against_all() {
+        let mut rng = ChaCha8Rng::seed_from_u64(10);
+        for (n, m, size) in [
+            (0, 5, 0.1),
+            (5, 0, 0.1),
+            (0, 0, 0.1),
+            (1, 1, 1.0),
+            (1, 2_000, 0.1),
+            (2_000, 1, 0.1),
+            (3, 4, 1.0),
+            (5, 16, 1.0),
+            (7, 300, 0.2),
+            (300, 17, 0.2),
+            (500, 400, 0.05),
+            (64, 64, 0.0),
+        ] {
+            let (a, b) = (random_boxes(&mut rng, n, size), random_boxes(&mut rng, m, size));
+            let tree = |boxes: &[Aabb]| {
+                let items: Vec<u32> = (0..boxes.len() as u32).collect();
+                BoxTree::new(&items, |i| boxes[i as usize])
+            };
+            let (tree_a, tree_b) = (tree(&a), tree(&b));
+            let control = Control::new();
+            let mut pairs = visit_pairs(&tree_a, &tree_b, Runner::new(&control, true), |pairs, found| {
+                found.extend_from_slice(pairs);
+            })
+            .expect("no limits");
+            pairs.sort_unstable();
+            let mut expected = Vec::new();
+            for (i, x) in a.iter().enumerate() {
+                let mut of_query = Vec::new();
+                tree_b.meeting(x, |j| of_query.push(j));
+                of_query.sort_unstable();
+                let meeting: Vec<u32> =
+                    (0..b.len() as u32).filter(|&j| x.intersect_aabb(&b[j as usize])).collect();
+                assert_eq!(of_query, meeting);
+                expected.extend(meeting.into_iter().map(|j| [i as u32, j]));
+            }
+            assert_eq!(pairs, expected);
+        }
+    }
+
+    #[test]
+    fn order_and_limits_do_not_depend_on_threads() {
+        let mut rng = ChaCha8Rng::seed_from_u64(21);
+        let tree = |boxes: Vec<Aabb>| BoxTree::of_boxes(&boxes);
+        let (a, b) = (tree(random_boxes(&mut rng, 6_000, 0.1)), tree(random_boxes(&mut rng, 900, 0.1)));
+        let control = Control::new();
+        let pairs = |parallel: bool| {
+            let runner = Runner::new(&control, parallel);
+            let of_two = visit_pairs(&a, &b, runner, |pairs, found| found.extend_from_slice(pairs));
+            (of_two.expect("no limits"), self_overlapping_pairs(&a, runner, |_| true).expect("no limits"))
+        };
+        assert_eq!(pairs(true), pairs(false));
+        let token = CancelToken::new();
+        token.cancel();
+        let cancelled = Control::new().cancel(&token);
+        assert!(visit_pairs(&a, &b, Runner::new(&cancelled, false), |_, _: &mut Vec<u32>| {}).is_err());
+    }
+
+    #[test]
+    fn pairs_within_one_tree_agree_with_all_against_all() {
+        let mut rng = ChaCha8Rng::seed_from_u64(13);
+        for (n, size) in
+            [(0, 0.1), (1, 1.0), (2, 1.0), (4, 1.0), (5, 1.0), (17, 1.0), (300, 0.2), (2_000, 0.05)]
+        {
+            let boxes = random_boxes(&mut rng, n, size);
+            let items: Vec<u32> = (0..n as u32).collect();
+            let tree = BoxTree::new(&items, |i| boxes[i as usize]);
+            let control = Control::new();
+            let mut pairs =
+                self_overlapping_pairs(&tree, Runner::new(&control, true), |pair| pair[0] % 7 != 3)
+                    .expect("no limits");
+            pairs.sort_unstable();
+            let mut expected = Vec::new();
+            for i in 0..n {
+                for j in i + 1..n {
+                    if i % 7 != 3 && boxes[i].intersect_aabb(&boxes[j]) {
+                        expected.push([i as u32, j as u32]);
+                    }
+                }
+            }
+            assert_eq!(pairs, expected);
+        }
+    }
+}
