@@ -31,9 +31,14 @@ struct Link {
     next: u32,
     /// Shape of the ear here; negative infinity if the corner is not convex.
     quality: f64,
-    /// Known not to be an ear as long as nothing is clipped.
-    blocked: bool,
+    /// The corner that lies in the triangle here, which is no ear before that one is clipped; or one of the marks below.
+    blocked_by: u32,
 }
+
+/// Not known to be blocked.
+const NOTHING: u32 = u32::MAX;
+/// Blocked as long as nothing is clipped.
+const SOMETHING: u32 = u32::MAX - 1;
 
 /// Clips ears, the best-shaped first; keeps its scratch memory.
 #[derive(Debug, Default)]
@@ -91,11 +96,12 @@ impl EarClipper {
             if left > 3 {
                 for link in [previous, next] {
                     self.links[link as usize].quality = self.quality(points, link);
+                    self.links[link as usize].blocked_by = NOTHING;
                 }
-                let mut link = some;
-                for _ in 1..left {
-                    self.links[link as usize].blocked = false;
-                    link = self.links[link as usize].next;
+                for link in &mut self.links {
+                    if [ear, SOMETHING].contains(&link.blocked_by) {
+                        link.blocked_by = NOTHING;
+                    }
                 }
             }
         }
@@ -110,7 +116,7 @@ impl EarClipper {
             previous: (i as u32 + n - 1) % n,
             next: (i as u32 + 1) % n,
             quality: 0.0,
-            blocked: false,
+            blocked_by: NOTHING,
         }));
         for link in 0..n {
             self.links[link as usize].quality = self.quality(points, link);
@@ -169,7 +175,7 @@ impl EarClipper {
             let mut link = some;
             for _ in 0..left {
                 let candidate = &self.links[link as usize];
-                if !candidate.blocked
+                if candidate.blocked_by == NOTHING
                     && candidate.quality >= 0.0
                     && best.is_none_or(|best| candidate.quality > self.links[best as usize].quality)
                 {
@@ -178,34 +184,45 @@ impl EarClipper {
                 link = candidate.next;
             }
             let candidate = best?;
-            if self.is_empty_ear(points, candidate) {
-                return best;
+            match self.blocker(points, candidate) {
+                NOTHING => return best,
+                blocker => self.links[candidate as usize].blocked_by = blocker,
             }
-            self.links[candidate as usize].blocked = true;
         }
     }
 
-    /// Whether no corner lies in the closed triangle at a convex corner, and its third side starts inside the polygon.
-    fn is_empty_ear(&self, points: &[[f64; 2]], ear: u32) -> bool {
+    /// What keeps a convex corner from being an ear: another one in the closed triangle there, or that its third side does not
+    /// start inside the polygon.
+    fn blocker(&self, points: &[[f64; 2]], ear: u32) -> u32 {
         let Link { previous, next, .. } = self.links[ear as usize];
         let corners = self.corners(ear);
         let [a, b, c] = corners.map(|v| points[v as usize]);
+        let low = [a[0].min(b[0]).min(c[0]), a[1].min(b[1]).min(c[1])];
+        let high = [a[0].max(b[0]).max(c[0]), a[1].max(b[1]).max(c[1])];
         let mut link = self.links[next as usize].next;
         while link != previous {
+            let here = link;
             let Link { vertex, next, .. } = self.links[link as usize];
-            if !corners.contains(&vertex) {
-                let p = points[vertex as usize];
-                if orient2d(a, b, p) != Sign::Negative
-                    && orient2d(b, c, p) != Sign::Negative
-                    && orient2d(c, a, p) != Sign::Negative
-                {
-                    return false;
-                }
-            }
             link = next;
+            let p = points[vertex as usize];
+            // Nearly all are outside the box already.
+            if p[0] < low[0] || p[0] > high[0] || p[1] < low[1] || p[1] > high[1] {
+                continue;
+            }
+            if !corners.contains(&vertex)
+                && orient2d(a, b, p) != Sign::Negative
+                && orient2d(b, c, p) != Sign::Negative
+                && orient2d(c, a, p) != Sign::Negative
+            {
+                return here;
+            }
         }
         // With repeated vertices the test above is blind in the corners: look at the cones there.
-        !self.repeated || (self.cone_holds(points, previous, c) && self.cone_holds(points, next, a))
+        if !self.repeated || (self.cone_holds(points, previous, c) && self.cone_holds(points, next, a)) {
+            NOTHING
+        } else {
+            SOMETHING
+        }
     }
 
     /// Whether the way from a corner to `target` starts inside the polygon, given that it leaves the ear's own edge to the
