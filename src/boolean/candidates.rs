@@ -4,7 +4,7 @@
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
-use super::capsule::{self, Capsule};
+use super::capsule;
 use super::capsule_tree::{self, CapsuleTree};
 use super::operands::Operands;
 use super::overlap::{Overlap, joined};
@@ -69,7 +69,7 @@ impl Candidates {
         if many && (0..2).any(|side| has_needles(items[side], |t| corners(side, t))) {
             let bytes = (items[0].len() + items[1].len()) * CapsuleTree::BYTES_PER_ITEM;
             let memory = runner.control.reserve(bytes as u64)?;
-            let tree = |side: usize| CapsuleTree::new(items[side], |t| Capsule::of(&corners(side, t)));
+            let tree = |side: usize| CapsuleTree::new(items[side], |t| corners(side, t));
             let (a, b) = runner.both(|| tree(0), || tree(1));
             return Ok(Self { hierarchies: Hierarchies::Capsules([a, b]), _memory: memory });
         }

@@ -120,10 +120,14 @@ impl Capsule {
     }
 }
 
-/// Whether a triangle is long and narrow.
+/// Whether a triangle is long and narrow and lies askew, so that its box is much wider than itself.
 pub(super) fn is_needle(corners: &[Vec3A; 3]) -> bool {
     let (length, p, q, r) = longest_side(corners);
-    (q - p).cross(r - p).length() * SLENDER < length * length
+    let area = (q - p).cross(r - p).length();
+    let [x, y, z] = (p.max(q).max(r) - p.min(q).min(r)).to_array();
+    // The second longest side of the box.
+    let width = x.min(y).max(x.max(y).min(z));
+    area * SLENDER < length * length && area * SLENDER < 2.0 * width * length
 }
 
 /// The length of the longest side, its ends, and the corner opposite.
@@ -178,8 +182,10 @@ mod tests {
     }
 
     #[test]
-    fn needles_are_long() {
-        let triangle = |height: f32| [Vec3A::ZERO, Vec3A::X, Vec3A::new(0.5, height, 0.0)];
+    fn needles_are_long_and_askew() {
+        let triangle = |height: f32| [Vec3A::ZERO, Vec3A::ONE, Vec3A::new(0.5, 0.5 + height, 0.5)];
         assert!(is_needle(&triangle(0.1)) && !is_needle(&triangle(0.5)));
+        // The box of one along an axis is as narrow as itself.
+        assert!(!is_needle(&[Vec3A::ZERO, Vec3A::X, Vec3A::new(0.5, 0.1, 0.0)]));
     }
 }

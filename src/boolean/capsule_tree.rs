@@ -2,10 +2,13 @@
 //!
 //! Needles lie side by side in bundles (the sides of a long cylinder). The box of a needle that lies askew is mostly empty, so
 //! all boxes of two bundles that cross meet, while hardly any needles do; capsules round parts of a bundle tell them apart.
+//! (Needles in a plane across an axis have flat boxes. So items keep their box, too.)
 
 use glam::Vec3A;
+use obvhs::aabb::Aabb;
 
 use super::capsule::Capsule;
+use super::refined_boxes::{Corners, box_of};
 use crate::Error;
 use crate::control::Control;
 use crate::parallel::Runner;
@@ -18,9 +21,10 @@ const BATCH: usize = 256;
 /// A balanced binary tree over the capsules of items.
 #[derive(Debug)]
 pub(super) struct CapsuleTree {
-    /// Items, neighbours side by side, and their capsules.
+    /// Items, neighbours side by side, and what is round them.
     items: Vec<u32>,
     capsules: Vec<Capsule>,
+    boxes: Vec<Aabb>,
     /// Capsules of the nodes, leaves first, level by level up to the root.
     nodes: Vec<Capsule>,
     /// Where each level starts in `nodes`; a last entry marks the end.
@@ -38,13 +42,14 @@ impl CapsuleTree {
     /// Memory for one item, while the tree is built.
     pub(super) const BYTES_PER_ITEM: usize = 3 * size_of::<Capsule>() + 2 * size_of::<(u64, u32)>();
 
-    /// The tree of items and their capsules.
-    pub(super) fn new(items: &[u32], capsule_of: impl Fn(u32) -> Capsule) -> Self {
+    /// The tree of triangles with the given corners.
+    pub(super) fn new(items: &[u32], corners: impl Fn(u32) -> Corners) -> Self {
         let mut order: Vec<(u64, u32)> =
-            items.iter().map(|&item| (order_key(&capsule_of(item)), item)).collect();
+            items.iter().map(|&item| (order_key(&Capsule::of(&corners(item))), item)).collect();
         order.sort_unstable();
         let items: Vec<u32> = order.into_iter().map(|(_, item)| item).collect();
-        let capsules: Vec<Capsule> = items.iter().map(|&item| capsule_of(item)).collect();
+        let capsules: Vec<Capsule> = items.iter().map(|&item| Capsule::of(&corners(item))).collect();
+        let boxes = items.iter().map(|&item| box_of(&corners(item))).collect();
         let mut nodes: Vec<Capsule> = capsules.chunks(LEAF).map(round).collect();
         let mut levels = vec![0];
         while nodes.len() - levels[levels.len() - 1] > 1 {
@@ -55,7 +60,7 @@ impl CapsuleTree {
             }
         }
         levels.push(nodes.len());
-        Self { items, capsules, nodes, levels }
+        Self { items, capsules, boxes, nodes, levels }
     }
 
     fn root(&self) -> Option<Node> {
@@ -111,8 +116,8 @@ fn order_key(capsule: &Capsule) -> u64 {
     1 << 63 | face << 60 | part(u) << 56 | part(v) << 52 | morton(foot) << 20 | cell(along)
 }
 
-/// Calls `visit` for all pairs of an item of `a` and an item of `b` whose capsules are not apart, some hundred at once, and
-/// returns what it appends, in an order that depends on the trees alone.
+/// Calls `visit` for all pairs of an item of `a` and an item of `b` whose boxes meet and whose capsules are not apart, some
+/// hundred at once, and returns what it appends, in an order that depends on the trees alone.
 pub(super) fn visit_pairs<T: Send>(
     a: &CapsuleTree,
     b: &CapsuleTree,
@@ -196,7 +201,7 @@ fn walk(
                 continue;
             }
             for j in b.leaf(y) {
-                if !a.capsules[i].is_apart(&b.capsules[j]) {
+                if a.boxes[i].intersect_aabb(&b.boxes[j]) && !a.capsules[i].is_apart(&b.capsules[j]) {
                     found(a.items[i], b.items[j]);
                 }
             }
@@ -212,35 +217,37 @@ mod tests {
     use rand::{RngExt, SeedableRng};
 
     /// Bundles of needles, and small triangles.
-    fn random_capsules(rng: &mut ChaCha8Rng, bundles: usize, small: usize) -> Vec<Capsule> {
+    fn random_triangles(rng: &mut ChaCha8Rng, bundles: usize, small: usize) -> Vec<Corners> {
         let point = |rng: &mut ChaCha8Rng, size: f32| {
             Vec3A::from_array([(); 3].map(|()| size * rng.random_range(-1.0f32..1.0)))
         };
-        let mut capsules = Vec::new();
+        let mut triangles = Vec::new();
         for _ in 0..bundles {
             let (p, along) = (point(rng, 1.0), point(rng, 2.0));
             for _ in 0..40 {
                 let start = p + point(rng, 0.05);
-                capsules.push(Capsule::of(&[start, start + along, start + along + point(rng, 0.01)]));
+                triangles.push([start, start + along, start + along + point(rng, 0.01)]);
             }
         }
         for _ in 0..small {
             let p = point(rng, 1.0);
-            capsules.push(Capsule::of(&[p, p + point(rng, 0.05), p + point(rng, 0.05)]));
+            triangles.push([p, p + point(rng, 0.05), p + point(rng, 0.05)]);
         }
-        capsules
+        triangles
     }
 
     #[test]
     fn pairs_agree_with_all_against_all() {
         let mut rng = ChaCha8Rng::seed_from_u64(30);
         for counts in [[0, 0, 0, 3], [0, 1, 0, 1], [1, 0, 3, 7], [4, 100, 0, 500], [6, 0, 5, 20]] {
-            let a = random_capsules(&mut rng, counts[0], counts[1]);
-            let b = random_capsules(&mut rng, counts[2], counts[3]);
-            let tree = |capsules: &[Capsule]| {
-                let items: Vec<u32> = (0..capsules.len() as u32).collect();
-                CapsuleTree::new(&items, |i| capsules[i as usize])
+            let a = random_triangles(&mut rng, counts[0], counts[1]);
+            let b = random_triangles(&mut rng, counts[2], counts[3]);
+            let tree = |triangles: &[Corners]| {
+                let items: Vec<u32> = (0..triangles.len() as u32).collect();
+                CapsuleTree::new(&items, |i| triangles[i as usize])
             };
+            let capsules = |triangles: &[Corners]| triangles.iter().map(Capsule::of).collect::<Vec<_>>();
+            let (of_a, of_b) = (capsules(&a), capsules(&b));
             let control = Control::new();
             for parallel in [false, true] {
                 let runner = Runner::new(&control, parallel);
@@ -253,9 +260,11 @@ mod tests {
                     for j in 0..b.len() {
                         let is_found = pairs.get(place) == Some(&[i as u32, j as u32]);
                         place += usize::from(is_found);
-                        // Found where the capsules are not told apart, and left out only where they are apart.
-                        assert!(!is_found || !a[i].is_apart(&b[j]));
-                        assert!(is_found || distance(&a[i], &b[j]) > a[i].radius() + b[j].radius());
+                        let boxes_meet = box_of(&a[i]).intersect_aabb(&box_of(&b[j]));
+                        let (x, y) = (&of_a[i], &of_b[j]);
+                        // Found where they are not told apart, and left out only where they are apart.
+                        assert!(!is_found || (boxes_meet && !x.is_apart(y)));
+                        assert!(is_found || !boxes_meet || distance(x, y) > x.radius() + y.radius());
                     }
                 }
                 assert_eq!(place, pairs.len(), "each once");

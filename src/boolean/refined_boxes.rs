@@ -109,7 +109,8 @@ fn width(aabb: &Aabb) -> f32 {
     x.min(y).max(x.max(y).min(z))
 }
 
-fn box_of([a, b, c]: &Corners) -> Aabb {
+/// The box of a triangle.
+pub(super) fn box_of([a, b, c]: &Corners) -> Aabb {
     Aabb { min: a.min(*b).min(*c), max: a.max(*b).max(*c) }
 }
 
