@@ -128,3 +128,41 @@ pub(super) fn between(points: &[[f64; 2]], edges: &[CountedEdge]) -> Option<Vec<
             .collect(),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+
+    /// Corners of grid cells lie on common circles and lines, and any choice of diagonals is as good as another.
+    #[test]
+    fn the_same_input_gives_the_same_triangles() {
+        let mut rng = ChaCha8Rng::seed_from_u64(62);
+        for _ in 0..1_000 {
+            let size = rng.random_range(3..12u32);
+            let full = rng.random_range(0.1..0.9);
+            // Turned a bit: hardly any point lies exactly on the circle through others.
+            let turn = if rng.random() { 0.0 } else { 0.3 };
+            let points: Vec<[f64; 2]> = (0..(size + 1) * (size + 1))
+                .map(|i| {
+                    let (x, y) = (f64::from(i % (size + 1)), f64::from(i / (size + 1)));
+                    [x - turn * y, y + turn * x]
+                })
+                .collect();
+            let mut edges: Vec<CountedEdge> = Vec::new();
+            for cell in 0..size * size {
+                if rng.random_bool(full) {
+                    let a = cell / size * (size + 1) + cell % size;
+                    let (b, c, d) = (a + 1, a + size + 2, a + size + 1);
+                    edges.extend([[a, b], [b, c], [c, d], [d, a]].map(|edge| (edge, 1)));
+                }
+            }
+            let first = between(&points, &edges);
+            assert!(edges.is_empty() || first.is_some(), "no edges cross");
+            for _ in 0..3 {
+                assert_eq!(between(&points, &edges), first);
+            }
+        }
+    }
+}
