@@ -3,6 +3,8 @@
 mod common;
 
 use common::{assert_sound, run, solid};
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
 use trisect::Operation::{Difference, Intersection, Union};
 use trisect::{Contact, Mesh, Operation, Options, Solid, primitives};
 
@@ -283,4 +285,34 @@ fn results_that_count_twice_are_operands_like_others() -> Result<(), trisect::Er
     let expected = 2.0 * once.solid().volume();
     assert!((found.solid().volume() - expected).abs() < 1e-12, "{} {expected}", found.solid().volume());
     Ok(())
+}
+
+/// Triangles whose third corner lies on the line of a crowded edge have no angle round it, and are put in order all the same.
+#[test]
+fn an_edge_with_many_triangles_some_of_them_flat_is_parted() {
+    let mut rng = ChaCha8Rng::seed_from_u64(467);
+    for _ in 0..40 {
+        let mut positions = vec![[0.0; 3], [0.0, 0.0, 1.0]];
+        let mut triangles = Vec::new();
+        for i in 0..24 {
+            // A tetrahedron on the edge; of every other one a corner lies on the edge's line.
+            let angle: f64 = rng.random_range(0.0..6.2);
+            let height = rng.random_range(-1.0..2.0);
+            let w = positions.len() as u32;
+            positions.push(if i % 2 == 0 { [0.0, 0.0, height] } else { [angle.cos(), angle.sin(), height] });
+            let (sine, cosine) = (angle + 0.1).sin_cos();
+            positions.push([cosine, sine, height + rng.random_range(-0.5..0.5)]);
+            let mut corners = [0, 1, w, w + 1];
+            let [a, b, c, d] = corners.map(|v| positions[v as usize]);
+            if trisect::exact::orient3d(&a, &b, &c, &d) == trisect::exact::Sign::Negative {
+                corners.swap(0, 1);
+            }
+            let [a, b, c, d] = corners;
+            triangles.extend([[a, b, c], [a, d, b], [b, d, c], [c, d, a]]);
+        }
+        let solid = Solid::try_from(Mesh::new(positions, triangles)).unwrap();
+        let (parted, _) = solid.separated();
+        assert!(parted.is_edge_manifold());
+        assert!((parted.volume() - solid.volume()).abs() < 1e-12);
+    }
 }
