@@ -60,7 +60,7 @@ pub(super) struct Ingredients<'a> {
     pub(super) operands: &'a Operands<'a>,
     pub(super) parts: &'a [Part],
     pub(super) faces: &'a [CutFaces; 2],
-    /// Winding numbers of the vertices, by side; empty where all are 0.
+    /// Winding numbers of the vertices, by side.
     pub(super) windings: &'a [Vec<i32>; 2],
     pub(super) identification: &'a Identification,
     pub(super) edges: &'a CutEdges,
@@ -106,7 +106,10 @@ impl Ingredients<'_> {
             triangles.push(triangle.corners.map(|point| numbers.of(point)));
             origins.push(triangle.origin);
         }
-        Ok(Assembled { positions: numbers.into_positions(), triangles, origins, ..Assembled::default() })
+        let mut positions = numbers.into_positions();
+        shrink(&mut positions);
+        shrink(&mut triangles);
+        Ok(Assembled { positions, triangles, origins, ..Assembled::default() })
     }
 
     /// Numbers the points in use: A's, B's, nodes, copies.
@@ -234,6 +237,13 @@ impl Ingredients<'_> {
         let node = (point - first_node) as usize;
         let first_copy = self.edges.positions.len();
         self.edges.positions.get(node).unwrap_or_else(|| &self.copies[node - first_copy])
+    }
+}
+
+/// Gives room back that a small part of large operands does not need. (Room for a few more costs less than another copy.)
+fn shrink<T>(items: &mut Vec<T>) {
+    if items.capacity() > 2 * items.len() {
+        items.shrink_to_fit();
     }
 }
 

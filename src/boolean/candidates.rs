@@ -1,5 +1,5 @@
-//! Pairs of triangles that may meet (Vyatkin 2019, step 1: hierarchies of axis-aligned boxes), after most triangles have
-//! been ruled out by a coarse grid.
+//! Pairs of triangles that may meet (Vyatkin 2019, step 1: hierarchies of axis-aligned boxes; of capsules for needles), after
+//! most triangles have been ruled out by grids.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
@@ -7,7 +7,7 @@ use obvhs::aabb::Aabb;
 use super::capsule;
 use super::capsule_tree::{self, CapsuleTree};
 use super::operands::Operands;
-use super::overlap::{Overlap, joined};
+use super::overlap::Overlap;
 use super::refined_boxes::{self, Boxes, Corners};
 use crate::Error;
 use crate::control::Reservation;
@@ -25,7 +25,8 @@ const FINER: f32 = 2.0;
 const MOST_CELLS_PER_TRIANGLE: f32 = 12.0;
 /// Grid cells along half the region, times the usual length of a triangle.
 const CELLS_PER_LENGTH: f32 = 1.4;
-/// So many triangles tell how long they usually are, and whether ruling some out pays: it does not if more than this part of them stays.
+/// So many triangles tell how long they usually are, and whether ruling some out pays: it does not if more than this part
+/// of them stays.
 const SAMPLE: usize = 1_000;
 const USELESS: f64 = 0.8;
 /// So many grids are marked at once.
@@ -198,11 +199,9 @@ fn cull(
     };
     let passing = |grid: &Occupancy, side: usize| -> Result<Vec<u32>, Error> {
         let is_marked = |t: &u32| grid.is_marked(cells(grid, side, *t), || corners(side, *t));
-        let grain = if runner.is_parallel() { TRIANGLES_PER_PIECE } else { near[side].len().max(1) };
-        let pieces = runner.pieces(near[side].len(), grain, |range| {
-            near[side][range].iter().copied().filter(is_marked).collect::<Vec<u32>>()
-        })?;
-        Ok(joined(pieces))
+        runner.gather(near[side].len(), TRIANGLES_PER_PIECE, 0, |range, passing| {
+            passing.extend(near[side][range].iter().copied().filter(is_marked));
+        })
     };
     let by_a = marked_by(0, near[0])?;
     // Where surfaces run side by side, hardly anything can be ruled out.

@@ -192,9 +192,8 @@ impl CutFaces {
             let node = edges.first_node(edge) as usize;
             crossings.nodes[node].low ^ low_bits(&edges.positions[node])
         }));
-        let [Some(first), Some(last)] = [faces.first(), faces.last()] else { return };
-        let segments = self.segments.get(first.first as usize..last.end as usize).unwrap_or_default();
-        read_ahead(segments.iter().map(|&segment| {
+        // (Faces without crossings have no place among the segments.)
+        read_ahead(faces.iter().flat_map(|face| self.segments(face)).map(|&segment| {
             let segment = &crossings.segments[segment as usize];
             low_bits(&edges.positions[segment.tail as usize])
         }));

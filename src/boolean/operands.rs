@@ -55,7 +55,7 @@ pub(super) struct Operands<'a> {
     sense: i32,
     /// Added to every filter's error bound: 0, or infinity where coordinates are so large that filters are unsound.
     filter_floor: f64,
-    /// Triangles that may meet the other operand, by side: what the directions are computed from.
+    /// Triangles that may meet the other operand, by side (see `overlap`): what the directions are computed from.
     near: [Vec<u32>; 2],
     directions: OnceLock<Directions>,
     ties: AtomicU64,
@@ -70,7 +70,7 @@ const INSIDE: u8 = 1;
 const OUTSIDE: u8 = 2;
 
 impl<'a> Operands<'a> {
-    /// `near` lists the triangles of A and of B in the overlap of their boxes.
+    /// `near` lists the triangles of A and of B that may meet the other operand, with all those round such places.
     pub(super) fn new(sides: [Operand<'a>; 2], sense: i32, largest: f64, near: [Vec<u32>; 2]) -> Self {
         const FILTER_LIMIT: f64 = f64::from_bits((1023 + 350) << 52);
         let entries =
@@ -96,7 +96,7 @@ impl<'a> Operands<'a> {
         Self::new([operand, nothing], -1, largest, [all, Vec::new()])
     }
 
-    /// Triangles of a side in the overlap of the operands' boxes, ascending.
+    /// Triangles of a side that may meet the other operand, ascending.
     pub(super) fn near(&self, side: usize) -> &[u32] {
         &self.near[side]
     }

@@ -21,6 +21,8 @@ const SAMPLE: usize = 256;
 const MOST_PASSED: f32 = 8.0;
 /// So many vertices or triangles are looked at by one thread at once.
 const PIECE: usize = 1 << 14;
+/// The same where pieces have a grid each and no thread waits for one.
+const SERIAL_PIECE: usize = 1 << 18;
 
 /// Where a vertex is: the number of its cell in the coarse grid, or that it is outside, and beyond which sides of the common
 /// box (two bits for each axis).
@@ -169,17 +171,15 @@ impl View<'_> {
                 Place(0)
             }
         };
-        let grain = if runner.is_parallel() { PIECE } else { positions.len().max(1) };
-        let pieces = runner.pieces(positions.len(), grain, |range| {
-            positions[range].iter().map(place).collect::<Vec<Place>>()
-        })?;
-        Ok(joined(pieces))
+        runner.gather(positions.len(), PIECE, positions.len(), |range, places| {
+            places.extend(positions[range].iter().map(place));
+        })
     }
 
     /// Triangles whose box meets the common box, and the cells they pass.
     fn near(&self, places: &[Place], runner: Runner<'_>) -> Result<(Vec<u32>, Occupancy), Error> {
         let triangles = self.operand.triangles;
-        let grain = if runner.is_parallel() { PIECE } else { triangles.len().max(1) };
+        let grain = if runner.is_parallel() { PIECE } else { SERIAL_PIECE };
         let pieces = runner.pieces(triangles.len(), grain, |range| {
             let mut passed = self.grid.empty();
             let mut near = Vec::new();
@@ -225,11 +225,9 @@ impl View<'_> {
             passed.is_marked(cells, || self.corners(corners))
         };
         let near = &seen.near;
-        let grain = if runner.is_parallel() { PIECE } else { near.len().max(1) };
-        let pieces = runner.pieces(near.len(), grain, |range| {
-            near[range].iter().copied().filter(may_meet).collect::<Vec<u32>>()
-        })?;
-        Ok(joined(pieces))
+        runner.gather(near.len(), PIECE, 0, |range, meeting| {
+            meeting.extend(near[range].iter().copied().filter(may_meet));
+        })
     }
 
     fn corners(&self, triangle: [u32; 3]) -> [glam::Vec3A; 3] {

@@ -13,7 +13,7 @@ use super::identify::Identification;
 use super::multiplicity::{self, Part};
 use super::operands::{Operand, Operands};
 use super::outcome::Origin;
-use super::overlap::Overlap;
+use super::overlap::{Overlap, Place};
 use super::plane_faces::PlaneFaces;
 use super::planes::Planes;
 use super::tidy;
@@ -211,11 +211,11 @@ fn largest_coordinate(bounds: &[Bounds; 2]) -> f64 {
     bounds.iter().flat_map(|b| b.low.iter().chain(&b.high)).fold(0.0, |most, x| most.max(x.abs()))
 }
 
-/// Bytes of the tables whose size the operands give: classes and winding numbers of vertices, the near triangles, and the
-/// result if nothing were left out.
+/// Bytes of the tables whose size the operands give: places, classes and winding numbers of vertices, the near triangles
+/// (twice), and the result if nothing were left out (triangles twice: as written by several threads, and together).
 fn fixed_tables(sides: &[Operand<'_>; 2]) -> u64 {
-    const PER_VERTEX: usize = 1 + 4 * size_of::<u32>() + size_of::<[f64; 3]>();
-    const PER_TRIANGLE: usize = size_of::<u32>() + size_of::<[u32; 3]>() + size_of::<Origin>();
+    const PER_VERTEX: usize = size_of::<Place>() + 4 * size_of::<u32>() + size_of::<[f64; 3]>();
+    const PER_TRIANGLE: usize = 2 * size_of::<u32>() + 2 * size_of::<[u32; 3]>();
     sides
         .iter()
         .map(|side| (side.positions.len() * PER_VERTEX + side.triangles.len() * PER_TRIANGLE) as u64)

@@ -6,6 +6,8 @@
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
+use crate::spatial::Frame;
+
 /// Fewer pairs of triangles than this are not worth it.
 const FROM_PAIRS: usize = 1 << 14;
 /// Triangles are halved while their box is so many times as wide as the other operand's boxes usually are long.
@@ -65,6 +67,10 @@ impl Boxes {
                 continue;
             }
             let whole = corners(triangle);
+            if Frame::is_bent(&whole) {
+                refined.push(triangle, *aabb);
+                continue;
+            }
             // Middles are rounded, each time by less than a unit in the last place of a coordinate.
             let largest = whole.iter().fold(0.0f32, |most, corner| most.max(corner.abs().max_element()));
             let margin = Vec3A::splat(2.0 * MOST_HALVINGS as f32 * f32::EPSILON * largest.max(TINY));

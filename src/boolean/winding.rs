@@ -3,7 +3,7 @@
 //!
 //! Along an edge of A the winding number of B changes by one at every crossing, so one value per connected component of A
 //! gives all: 0 for a component with a vertex outside B's box, else the signed count of crossings of a ray, by the same exact
-//! predicate.
+//! predicate. Vertices in a region of the coarse grid that B does not pass (`overlap`) are one to begin with.
 
 use super::crossings::Crossings;
 use super::cut_edges::CutEdges;

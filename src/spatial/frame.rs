@@ -13,6 +13,16 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    /// Coordinates in the frame are no larger. A triangle with such a corner may have been bent: its box is right, what is
+    /// inside the box is not known.
+    pub(crate) const LIMIT: f32 = 1e30;
+
+    /// Whether a triangle in the frame may be another one than before.
+    #[inline]
+    pub(crate) fn is_bent(corners: &[Vec3A; 3]) -> bool {
+        corners.iter().any(|corner| corner.abs().max_element() >= Self::LIMIT)
+    }
+
     /// The frame of the region between two corners.
     pub(crate) fn of(low: [f64; 3], high: [f64; 3]) -> Self {
         let centre = std::array::from_fn(|k| 0.5 * low[k] + 0.5 * high[k]);
@@ -25,7 +35,7 @@ impl Frame {
     /// A point in the frame. Coordinates far outside the region saturate instead of becoming infinite.
     #[inline]
     pub(crate) fn point(&self, position: &[f64; 3]) -> Vec3A {
-        const LIMIT: f64 = 1e30;
+        const LIMIT: f64 = Frame::LIMIT as f64;
         let map = |k: usize| ((position[k] - self.centre[k]) * self.scale).clamp(-LIMIT, LIMIT) as f32;
         Vec3A::new(map(0), map(1), map(2))
     }

@@ -3,6 +3,8 @@
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
+use super::Frame;
+
 /// Largest number of cells along an axis: the grid then fits a second-level cache.
 const MAX_RESOLUTION: u32 = 256;
 /// A region thinner than this is one cell wide (in the units of a [`Frame`](super::Frame)).
@@ -53,7 +55,7 @@ impl Occupancy {
     /// An empty grid with at most `resolution` cells along each axis of the region the frame was made for.
     pub(crate) fn new(resolution: u32) -> Self {
         // The region lies in -1..1 up to a factor of two; what is outside falls into the outermost cells.
-        let resolution = (1 << (2 * resolution).max(1).ilog2()).clamp(8, MAX_RESOLUTION);
+        let resolution = (1 << (2 * resolution.min(MAX_RESOLUTION)).max(1).ilog2()).clamp(8, MAX_RESOLUTION);
         Self::over(&Aabb { min: Vec3A::splat(-2.0), max: Vec3A::splat(2.0) }, resolution)
     }
 
@@ -143,13 +145,19 @@ impl Occupancy {
             });
             return;
         }
-        let corners = corners().map(|corner| self.scaled(corner));
-        divide(corners, self.resolution, &mut |cells| {
+        let corners = corners();
+        let mut mark = |cells: Cells| {
             for_cells(cells, shift, |word, bit| {
                 self.bits[word] |= bit;
                 false
             })
-        });
+        };
+        if Frame::is_bent(&corners) {
+            mark(cells);
+            return;
+        }
+        let scaled = corners.map(|corner| (corner - self.low) * self.scale);
+        divide(scaled, self.resolution, &mut mark);
     }
 
     /// Whether a triangle passes a marked cell (or nearly); arguments as in [`mark`](Self::mark).
@@ -164,8 +172,12 @@ impl Occupancy {
         if count(cells) <= DIVIDE_FROM {
             return for_cells(cells, self.shift, is_set);
         }
-        let corners = corners().map(|corner| self.scaled(corner));
-        divide(corners, self.resolution, &mut |cells| for_cells(cells, self.shift, is_set))
+        let corners = corners();
+        if Frame::is_bent(&corners) {
+            return for_cells(cells, self.shift, is_set);
+        }
+        let scaled = corners.map(|corner| self.scaled(corner));
+        divide(scaled, self.resolution, &mut |cells| for_cells(cells, self.shift, is_set))
     }
 
     /// A point in units of cells.

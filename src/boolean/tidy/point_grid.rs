@@ -2,6 +2,9 @@
 
 use super::buckets::Buckets;
 
+/// So many points for each cell looked at are few enough to look at them all.
+const MOST_POINTS_PER_CELL: usize = 8;
+
 /// So many points there are for a cell.
 const POINTS_PER_CELL: usize = 2;
 /// At most so many cells along an axis.
@@ -61,7 +64,8 @@ impl PointGrid {
     }
 
     /// Calls `found` for all points in the box with corners `p` and `q`, once each, and for some others, unless there are
-    /// more than `most` cells to look at; then nothing is found and the answer is false.
+    /// more than `most` cells to look at, or [`MOST_POINTS_PER_CELL`] times as many points in them (points may be crowded into few
+    /// cells); then nothing is found and the answer is false.
     pub(super) fn in_box(&self, p: &[f64; 3], q: &[f64; 3], most: usize, mut found: impl FnMut(u32)) -> bool {
         let (from, to) = (self.cell(p), self.cell(q));
         let ranges: [_; 3] = std::array::from_fn(|k| from[k].min(to[k])..from[k].max(to[k]) + 1);
@@ -69,13 +73,17 @@ impl PointGrid {
             return false;
         }
         let [xs, ys, zs] = ranges;
-        for x in xs {
-            for y in ys.clone() {
-                for z in zs.clone() {
-                    self.cells.get(self.number([x, y, z])).iter().for_each(|&point| found(point));
-                }
-            }
+        let cells = xs.flat_map(|x| {
+            let zs = zs.clone();
+            ys.clone().flat_map(move |y| zs.clone().map(move |z| [x, y, z]))
+        });
+        let points = |cell: [usize; 3]| self.cells.get(self.number(cell));
+        if cells.clone().map(|cell| points(cell).len()).sum::<usize>()
+            > most.saturating_mul(MOST_POINTS_PER_CELL)
+        {
+            return false;
         }
+        cells.for_each(|cell| points(cell).iter().for_each(|&point| found(point)));
         true
     }
 }
@@ -107,5 +115,16 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn crowded_cells_are_left_to_others() {
+        // All points but one in one cell.
+        let positions: Vec<[f64; 3]> =
+            (0..5_000).map(|i| if i == 0 { [1e6; 3] } else { [f64::from(i) * 1e-6; 3] }).collect();
+        let points: Vec<u32> = (0..5_000).collect();
+        let grid = PointGrid::new(&points, |point| &positions[point as usize]);
+        assert!(!grid.in_box(&[0.0; 3], &[1e-6; 3], 64, |_| panic!("too many")));
+        assert!(grid.in_box(&[9e5; 3], &[9e5; 3], 64, |_| {}));
     }
 }
