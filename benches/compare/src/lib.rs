@@ -7,9 +7,6 @@ use std::ffi::{CString, c_char};
 
 use trisect::{Error, Mesh, Operation, Options, Solid};
 
-#[global_allocator]
-static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
-
 thread_local! {
     static MESSAGE: RefCell<CString> = RefCell::default();
 }
