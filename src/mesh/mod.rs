@@ -26,6 +26,7 @@ mod union_find;
 mod weld;
 
 pub use bounds::Bounds;
+pub(crate) use buckets::Buckets;
 pub use diagnose::diagnose;
 pub use diagnosis::{Diagnosis, Fault, Place};
 pub use groups::{FaceGroup, FaceGroups, Material};

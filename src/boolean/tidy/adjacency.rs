@@ -2,8 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
-use super::buckets::Buckets;
 use super::patch::Face;
+use crate::mesh::Buckets;
 
 /// No triangle.
 const NONE: u32 = u32::MAX;
@@ -52,7 +52,7 @@ impl Adjacency {
     /// The triangle to the left of a directed edge.
     #[inline]
     pub(super) fn left_of(&self, from: u32, to: u32) -> Option<u32> {
-        let edges = self.edges.as_ref()?.get(from);
+        let edges = self.edges.as_ref()?.get(from as usize);
         match place(edges, to) {
             Some(place) => Some(edges[place].1).filter(|&face| face != NONE),
             None if self.more.is_empty() => None,
@@ -95,7 +95,7 @@ impl Adjacency {
 
     fn set(&mut self, from: u32, to: u32, face: u32) {
         if let Some(buckets) = &mut self.edges {
-            let edges = buckets.get_mut(from);
+            let edges = buckets.get_mut(from as usize);
             if let Some(place) = place(edges, to) {
                 edges[place].1 = face;
                 return;

@@ -3,8 +3,8 @@
 
 use rustc_hash::FxHashMap;
 
-use super::buckets::Buckets;
 use crate::exact::{Sign, collinear, orient2d, orient3d};
+use crate::mesh::Buckets;
 
 /// A side of a triangle: three times the triangle's index plus the corner it starts at.
 type HalfEdge = u32;

@@ -6,7 +6,6 @@
 //! round their points. All else keeps its bits and its order.
 
 mod adjacency;
-mod buckets;
 mod kept;
 mod lines;
 pub(crate) mod manifold;

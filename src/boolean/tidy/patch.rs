@@ -10,10 +10,10 @@ use super::super::outcome::Origin;
 use super::super::planes::source_and_axes;
 use super::Tidied;
 use super::adjacency::Adjacency;
-use super::buckets::Buckets;
 use super::kept::{Numbers, edges_beyond, kept_triangles};
 use super::manifold::Surface;
 use crate::exact::{Sign, orient2d};
+use crate::mesh::Buckets;
 
 /// A triangle of the patch.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! Points in the cells of a grid.
 
-use super::buckets::Buckets;
+use crate::mesh::Buckets;
 
 /// So many points for each cell looked at are few enough to look at them all.
 const MOST_POINTS_PER_CELL: usize = 8;
@@ -77,7 +77,7 @@ impl PointGrid {
             let zs = zs.clone();
             ys.clone().flat_map(move |y| zs.clone().map(move |z| [x, y, z]))
         });
-        let points = |cell: [usize; 3]| self.cells.get(self.number(cell));
+        let points = |cell: [usize; 3]| self.cells.get(self.number(cell) as usize);
         if cells.clone().map(|cell| points(cell).len()).sum::<usize>()
             > most.saturating_mul(MOST_POINTS_PER_CELL)
         {

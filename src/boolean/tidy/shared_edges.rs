@@ -12,12 +12,12 @@ use rustc_hash::FxHashMap;
 
 use super::super::cut::Cutter;
 use super::super::cut_faces::BitSet;
-use super::buckets::Buckets;
 use super::manifold::{HalfEdges, Surface};
 use super::patch::{Face, Patch};
 use super::point_grid::PointGrid;
 use super::zero_area::is_low;
 use crate::exact::collinear;
+use crate::mesh::Buckets;
 use crate::spatial::{BoxTree, Frame};
 use crate::{Control, Error};
 
@@ -246,7 +246,7 @@ fn splits_along_edges(
         // From vertex to vertex along the edge.
         let mut on: Vec<u32> = Vec::new();
         let mut next = 0;
-        let mut here = from_points.get(u);
+        let mut here = from_points.get(u as usize);
         loop {
             for x in (1..=BOTH).filter(|&of_x| of | of_x == BOTH).flat_map(|of_x| neighbours(here, of_x)) {
                 if x != u && x != v && !on.contains(&x) && lies_between(patch, cutter, u, x, v) {
@@ -254,7 +254,7 @@ fn splits_along_edges(
                 }
             }
             let Some(&x) = on.get(next) else { break };
-            here = from_points.get(x);
+            here = from_points.get(x as usize);
             next += 1;
         }
         if !on.is_empty() {
