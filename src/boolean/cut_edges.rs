@@ -98,6 +98,27 @@ impl CutEdges {
         Some(place as u32)
     }
 
+    /// Whether a node of an edge is at the place of a point of it; before [`locate`](Self::locate).
+    pub(super) fn has_node_at(
+        &self,
+        operands: &Operands<'_>,
+        crossings: &Crossings,
+        edge: u32,
+        point: &[f64; 3],
+    ) -> bool {
+        let CutEdge { low, high, .. } = self.edges[edge as usize];
+        let [from, to] = [low, high].map(|vertex| operands.position(vertex));
+        let extent = |k: usize| (to[k] - from[k]).abs();
+        let axis = (1..3).fold(0, |best, k| if extent(k) > extent(best) { k } else { best });
+        // Correct rounding keeps the order along every axis.
+        let is_before =
+            |at: &[f64; 3]| (at[axis] != point[axis]) && (at[axis] < point[axis]) == (from[axis] < to[axis]);
+        let at = |node: &u32| locate(operands, &crossings.nodes[*node as usize]);
+        let nodes = self.nodes(edge);
+        let first = nodes.partition_point(|node| is_before(&at(node)));
+        nodes[first..].iter().map(at).take_while(|at| at[axis] == point[axis]).any(|at| at == *point)
+    }
+
     /// The same with points after the nodes.
     pub(super) fn with_more(&self, crossings: &[ExtraCrossing]) -> Self {
         let mut more = self.clone();
@@ -184,6 +205,11 @@ fn duplicates(x: &Crossing, y: &Crossing) -> Ordering {
     let (lower, lower_is_x) = if x.triangle < y.triangle { (x, true) } else { (y, false) };
     // Displaced away from a low end inside it, it is met later.
     if lower.leaves == lower_is_x { Ordering::Greater } else { Ordering::Less }
+}
+
+/// Where a crossing is, correctly rounded.
+pub(super) fn locate(operands: &Operands<'_>, crossing: &Crossing) -> [f64; 3] {
+    Plain::new(operands, crossing).locate(operands, crossing)
 }
 
 /// Crossings whose points are read before the first is located, so that cache misses overlap.

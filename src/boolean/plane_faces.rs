@@ -5,8 +5,8 @@
 //! crossing is dropped: its two segments are one, and the triangles beside the border are cut together. What is left is
 //! cut, rounded and triangulated once, instead of being put together again afterwards.
 
-use super::crossings::{Crossing, Crossings};
-use super::cut_edges::CutEdges;
+use super::crossings::Crossings;
+use super::cut_edges::{CutEdges, locate};
 use super::cut_faces::{BitSet, CutFaces, UNCUT};
 use super::operands::Operands;
 use super::planes::Planes;
@@ -68,7 +68,7 @@ impl PlaneFaces {
                 ![f, g].iter().any(|&face| kept_apart(side, faces[side].faces[face as usize].triangle));
             let mut joins = false;
             for &node in edges.nodes(index as u32) {
-                if may_join && borders.passes_plainly(operands, edges, &crossings.nodes[node as usize]) {
+                if may_join && borders.passes_plainly(operands, crossings, edges, node) {
                     dropped.insert(node);
                     joins = true;
                 } else {
@@ -166,12 +166,18 @@ impl Borders {
         Ok(Self { beside })
     }
 
-    /// Whether an edge passes through the plane face of a triangle, off its outline: no other edge or face of either operand
-    /// is there.
-    fn passes_plainly(&self, operands: &Operands<'_>, edges: &CutEdges, node: &Crossing) -> bool {
-        let other = 1 - operands.side_of(node.low);
-        let [p, q] = [node.low, node.high].map(|vertex| operands.position(vertex));
-        let corners = operands.corners(other, node.triangle);
+    /// Whether an edge passes through a triangle where no vertex is, nor another crossing.
+    fn passes_plainly(
+        &self,
+        operands: &Operands<'_>,
+        crossings: &Crossings,
+        edges: &CutEdges,
+        node: u32,
+    ) -> bool {
+        let crossing = &crossings.nodes[node as usize];
+        let other = 1 - operands.side_of(crossing.low);
+        let [p, q] = [crossing.low, crossing.high].map(|vertex| operands.position(vertex));
+        let corners = operands.corners(other, crossing.triangle);
         let [a, b, c] = corners.map(|corner| corner.position);
         if [p, q].iter().any(|end| orient3d(&a, &b, &c, end) == Sign::Zero) {
             return false;
@@ -184,7 +190,10 @@ impl Borders {
             (None, _) => true,
             (Some(k), None) => {
                 let (u, v) = (corners[k].id, corners[(k + 1) % 3].id);
-                edges.find(u.min(v), u.max(v)).is_some_and(|edge| self.beside[edge as usize][0] != NONE)
+                edges.find(u.min(v), u.max(v)).is_none_or(|edge| {
+                    self.beside[edge as usize][0] != NONE
+                        || !edges.has_node_at(operands, crossings, edge, &locate(operands, crossing))
+                })
             }
             _ => false,
         }

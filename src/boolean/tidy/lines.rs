@@ -7,9 +7,11 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::super::cut_faces::BitSet;
+use super::super::planes::Planes;
 use super::manifold::Surface;
 use super::patch::Patch;
-use super::shared_edges::{Edge, Splits, split_face};
+use super::shared_edges::Edge;
+use super::split_faces::{Splits, split_faces};
 use super::zero_area::{identify, is_exactly_flat};
 use crate::exact::collinear;
 use crate::mesh::UnionFind;
@@ -18,7 +20,7 @@ use crate::mesh::UnionFind;
 const ROUNDS: usize = 8;
 
 /// Removes the triangles without area all of whose corners are complete.
-pub(super) fn straighten(patch: &mut Patch<'_>) {
+pub(super) fn straighten(patch: &mut Patch<'_>, planes: Option<&Planes<'_>>) {
     for _ in 0..ROUNDS {
         // No triangle has a corner twice then.
         patch.cancel();
@@ -40,9 +42,7 @@ pub(super) fn straighten(patch: &mut Patch<'_>) {
             patch.faces[index as usize].alive = false;
         }
         let splits = lines.splits(patch);
-        for index in 0..patch.faces.len() {
-            split_face(patch, index, &splits);
-        }
+        split_faces(patch, &splits, planes);
     }
 }
 

@@ -14,6 +14,7 @@ mod point_grid;
 mod remove;
 mod shared_edges;
 mod short_edges;
+mod split_faces;
 mod zero_area;
 
 use super::assemble::NewTriangle;
@@ -98,9 +99,10 @@ fn tidied(
     if cutter.operands.ties() > 0 {
         zero_area::mark_flat(&mut patch, cutter);
     }
+    let mergeable = settings.remove_vertices.then_some(planes);
     for round in 0..ROUNDS {
         let glue = settings.glue && round == 0;
-        let copied_from = separate(&mut patch, cutter, glue, runner.control)?;
+        let copied_from = separate(&mut patch, cutter, glue, mergeable, runner.control)?;
         let pinched = patch.pinched(&copied_from);
         if !pinched.is_empty() {
             return Ok(Err(pinched.into_iter().map(|point| patch.number(point)).collect()));
@@ -126,9 +128,10 @@ fn separate(
     patch: &mut Patch<'_>,
     cutter: &Cutter<'_>,
     glue: bool,
+    planes: Option<&Planes<'_>>,
     control: &Control,
 ) -> Result<Vec<(u32, u32)>, Error> {
-    lines::straighten(patch);
+    lines::straighten(patch, planes);
     zero_area::split_chain(patch);
     patch.cancel();
     if glue && cutter.operands.ties() > 0 {
@@ -137,7 +140,7 @@ fn separate(
     #[cfg(debug_assertions)]
     let boundary = patch.boundary();
     let half_edges = if cutter.operands.ties() > 0 {
-        shared_edges::split(patch, cutter, control)?
+        shared_edges::split(patch, cutter, planes, control)?
     } else {
         HalfEdges::of(patch)
     };

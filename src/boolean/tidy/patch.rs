@@ -155,9 +155,19 @@ impl<'a> Patch<'a> {
         &self.positions[point as usize]
     }
 
+    /// The size of rounding.
+    pub(super) fn rounding(&self) -> f64 {
+        self.cutter.rounding
+    }
+
+    /// The two axes onto which a face is best projected, in the order in which it is seen counter-clockwise.
+    pub(super) fn axes(&self, origin: Origin) -> (usize, usize) {
+        source_and_axes(self.cutter.operands, origin).1
+    }
+
     /// Whether a triangle looks the way of the face it was cut from.
     pub(super) fn is_sound(&self, corners: &[u32; 3], origin: Origin) -> bool {
-        let (_, (x, y)) = source_and_axes(self.cutter.operands, origin);
+        let (x, y) = self.axes(origin);
         let [a, b, c] = corners.map(|point| {
             let position = self.position(point);
             [position[x], position[y]]

@@ -8,13 +8,13 @@ use std::cell::LazyCell;
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
-use rustc_hash::FxHashMap;
 
 use super::super::cut::Cutter;
-use super::super::cut_faces::BitSet;
+use super::super::planes::Planes;
 use super::manifold::{HalfEdges, Surface};
-use super::patch::{Face, Patch};
+use super::patch::Patch;
 use super::point_grid::PointGrid;
+use super::split_faces::{Splits, split_faces};
 use super::zero_area::is_low;
 use crate::exact::collinear;
 use crate::mesh::Buckets;
@@ -36,36 +36,14 @@ const MOST_GROWTH: usize = 4;
 pub(super) fn split(
     patch: &mut Patch<'_>,
     cutter: &Cutter<'_>,
+    planes: Option<&Planes<'_>>,
     control: &Control,
 ) -> Result<HalfEdges, Error> {
     let half_edges = HalfEdges::of(patch);
-    let half_edges =
-        split_by(patch, half_edges, |patch, edges| splits_between_faces(patch, edges, cutter, control))?;
-    split_by(patch, half_edges, |patch, edges| splits_along_edges(patch, edges, cutter, control))
-}
-
-/// Edges to split, with the vertices on them.
-pub(super) struct Splits {
-    /// The vertices from the lower end to the higher one.
-    on: FxHashMap<Edge, Vec<u32>>,
-    /// The lower ends: most edges are told from those to split by this alone.
-    lower_ends: BitSet,
-}
-
-impl Splits {
-    pub(super) fn new(patch: &Patch<'_>) -> Self {
-        Self { on: FxHashMap::default(), lower_ends: BitSet::new(patch.point_count()) }
-    }
-
-    pub(super) fn insert(&mut self, edge: Edge, on: Vec<u32>) {
-        self.lower_ends.insert(edge.0);
-        self.on.insert(edge, on);
-    }
-
-    /// The vertices on an edge that is to be split.
-    fn get(&self, edge: Edge) -> Option<&Vec<u32>> {
-        if self.lower_ends.contains(edge.0) { self.on.get(&edge) } else { None }
-    }
+    let half_edges = split_by(patch, half_edges, planes, |patch, edges| {
+        splits_between_faces(patch, edges, cutter, control)
+    })?;
+    split_by(patch, half_edges, planes, |patch, edges| splits_along_edges(patch, edges, cutter, control))
 }
 
 /// So many edges are looked at between looks at the limits.
@@ -77,60 +55,20 @@ const MOST_CELLS: usize = 64;
 fn split_by(
     patch: &mut Patch<'_>,
     mut half_edges: HalfEdges,
+    planes: Option<&Planes<'_>>,
     splits: impl Fn(&Patch<'_>, &HalfEdges) -> Result<Splits, Error>,
 ) -> Result<HalfEdges, Error> {
     let most = MOST_GROWTH * patch.faces.len();
     for _ in 0..ROUNDS {
         let splits = splits(patch, &half_edges)?;
-        if splits.on.is_empty() || patch.faces.len() > most {
+        if splits.is_empty() || patch.faces.len() > most {
             break;
         }
-        for index in 0..patch.faces.len() {
-            split_face(patch, index, &splits);
-        }
+        split_faces(patch, &splits, planes);
         patch.cancel();
         half_edges = HalfEdges::of(patch);
     }
     Ok(half_edges)
-}
-
-/// Splits the sides of a face that are to be split. Diagonals are left alone, whatever else runs along them: they bound two
-/// triangles of this face and so do not matter to others.
-pub(super) fn split_face(patch: &mut Patch<'_>, index: usize, splits: &Splits) {
-    let face = patch.faces[index];
-    let on_side = |from: u32, to: u32| splits.get((from.min(to), from.max(to)));
-    let is_split = |k: usize| on_side(face.corners[k], face.corners[(k + 1) % 3]).is_some();
-    if !face.alive || !(0..3).any(is_split) {
-        return;
-    }
-    patch.faces[index].alive = false;
-    // Triangles with, for each side from corner k, whether it is (part of) a side of the face.
-    let mut stack = vec![(face.corners, [true; 3])];
-    while let Some((corners, is_side)) = stack.pop() {
-        let side = (0..3).filter(|&k| is_side[k]).find_map(|k| {
-            let (from, to) = (corners[k], corners[(k + 1) % 3]);
-            Some((k, on_side(from, to)?))
-        });
-        let Some((k, on)) = side else {
-            patch.faces.push(Face { corners, untouched: false, ..face });
-            continue;
-        };
-        // A fan round the opposite corner. The vertices are in order from the lower end of the edge.
-        let [from, to, opposite] = [0, 1, 2].map(|i| corners[(k + i) % 3]);
-        let mut chain = Vec::with_capacity(on.len() + 2);
-        chain.push(from);
-        if from < to {
-            chain.extend(on);
-        } else {
-            chain.extend(on.iter().rev());
-        }
-        chain.push(to);
-        for (i, pair) in chain.windows(2).enumerate() {
-            let (first, last) = (i == 0, i + 2 == chain.len());
-            let sides = [true, last && is_side[(k + 1) % 3], first && is_side[(k + 2) % 3]];
-            stack.push(([pair[0], pair[1], opposite], sides));
-        }
-    }
 }
 
 /// Makes one point of those at the same place.
