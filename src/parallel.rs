@@ -72,27 +72,81 @@ impl<'a> Runner<'a> {
 
     /// What `fill` appends for each piece of `0..count`, in order; about `room` items. The limits are checked before every
     /// piece.
-    pub(crate) fn gather<T: Send>(
+    pub(crate) fn gather<T: Copy + Default + Send + Sync>(
         self,
         count: usize,
         grain: usize,
         room: usize,
         fill: impl Fn(Range<usize>, &mut Vec<T>) + Sync,
     ) -> Result<Vec<T>, Error> {
-        let mut all = Vec::with_capacity(room);
         if self.is_parallel() {
             let pieces = self.pieces(count, grain, |range| {
                 let mut piece = Vec::new();
                 fill(range, &mut piece);
                 piece
             })?;
-            pieces.into_iter().for_each(|mut piece| all.append(&mut piece));
-        } else {
-            for start in (0..count).step_by(grain.max(1)) {
-                self.control.check()?;
-                fill(start..(start + grain.max(1)).min(count), &mut all);
-            }
+            return self.concat(pieces, 0);
         }
+        let mut all = Vec::with_capacity(room);
+        for start in (0..count).step_by(grain.max(1)) {
+            self.control.check()?;
+            fill(start..(start + grain.max(1)).min(count), &mut all);
+        }
+        Ok(all)
+    }
+
+    /// What `work` makes of every item, in order. The limits are checked before every one.
+    pub(crate) fn each<T: Send, R: Send>(
+        self,
+        items: Vec<T>,
+        work: impl Fn(T) -> R + Sync + Send,
+    ) -> Result<Vec<R>, Error> {
+        let run = |item: T| -> Result<R, Error> {
+            self.control.check()?;
+            Ok(work(item))
+        };
+        #[cfg(feature = "parallel")]
+        if self.parallel && items.len() > 1 {
+            use rayon::prelude::*;
+            return items.into_par_iter().map(run).collect();
+        }
+        items.into_iter().map(run).collect()
+    }
+
+    /// Lets `fill` write all of `items`, given the index of the first and a piece of `grain`. The limits are checked before
+    /// every piece.
+    pub(crate) fn fill<T: Send>(
+        self,
+        items: &mut [T],
+        grain: usize,
+        fill: impl Fn(usize, &mut [T]) + Sync + Send,
+    ) -> Result<(), Error> {
+        let grain = grain.max(1);
+        let pieces = items.chunks_mut(grain).enumerate().map(|(i, piece)| (i * grain, piece)).collect();
+        self.each(pieces, |(first, piece)| fill(first, piece)).map(drop)
+    }
+
+    /// Lists one after the other, with room for some items more.
+    pub(crate) fn concat<T: Copy + Default + Send + Sync>(
+        self,
+        mut lists: Vec<Vec<T>>,
+        more: usize,
+    ) -> Result<Vec<T>, Error> {
+        if lists.len() < 2 {
+            return Ok(lists.pop().unwrap_or_default());
+        }
+        let count = lists.iter().map(Vec::len).sum();
+        // Zeros cost nothing until they are written over, side by side.
+        let mut all = vec![T::default(); count + more];
+        let mut rest = all.as_mut_slice();
+        let mut places = Vec::with_capacity(lists.len());
+        for list in lists {
+            let (place, after) = rest.split_at_mut(list.len());
+            places.push((place, list));
+            rest = after;
+        }
+        self.each(places, |(place, list)| place.copy_from_slice(&list))?;
+        all.truncate(count);
         Ok(all)
     }
 

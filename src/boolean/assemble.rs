@@ -8,9 +8,8 @@ use super::identify::Identification;
 use super::multiplicity::Part;
 use super::numbers::Numbers;
 use super::operands::Operands;
-use super::origins::Origins;
+use super::origins::{Kept, Origins};
 use super::outcome::Origin;
-use super::overlap::joined;
 use crate::Error;
 use crate::parallel::{Runner, ranges};
 
@@ -49,7 +48,7 @@ impl Assembled {
         let offset = self.positions.len() as u32;
         self.positions.extend(other.positions);
         self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|v| v + offset)));
-        self.origins.append(&other.origins);
+        self.origins.append(other.origins);
         self.has_inverted |= other.has_inverted;
         Ok(self)
     }
@@ -75,39 +74,16 @@ impl Ingredients<'_> {
     /// Builds the arrays.
     pub(super) fn assemble(&self, runner: Runner<'_>) -> Result<Assembled, Error> {
         let numbers = self.numbers(runner)?;
-        let pieces = self.pieces(runner);
-        let grain = if runner.is_parallel() { 1 } else { pieces.len() };
-        // Room for all: memory that is not written to costs nothing.
-        let room =
-            |pieces: &[(Part, Range<usize>)]| -> usize { pieces.iter().map(|(_, range)| range.len()).sum() };
-        let runs = runner.pieces(pieces.len(), grain, |range| {
-            let is_first = range.start == 0;
-            let room = room(if is_first { &pieces } else { &pieces[range.clone()] });
-            let mut run = Run {
-                triangles: Vec::with_capacity(if is_first { room + self.new.len() } else { room }),
-                origins: Origins::default(),
-            };
-            for (part, range) in &pieces[range] {
-                if self.is_simple(*part, &numbers) {
-                    self.append_simple(*part, range.clone(), &numbers, &mut run);
-                } else {
-                    self.append(*part, range.clone(), &numbers, &mut run);
-                }
-            }
-            run
-        })?;
-        let mut runs = runs.into_iter();
-        let Run { mut triangles, mut origins } = runs.next().unwrap_or_default();
-        for run in runs {
-            triangles.extend(run.triangles);
-            origins.append(&run.origins);
-        }
+        let (mut triangles, mut origins) = if runner.is_parallel() {
+            self.whole_side_by_side(&numbers, runner)?
+        } else {
+            self.whole(&numbers, runner)?
+        };
         for triangle in self.new {
             triangles.push(triangle.corners.map(|point| numbers.of(point)));
             origins.push(triangle.origin);
         }
-        let mut positions = numbers.into_positions();
-        shrink(&mut positions);
+        let positions = numbers.into_positions();
         shrink(&mut triangles);
         Ok(Assembled { positions, triangles, origins, ..Assembled::default() })
     }
@@ -124,7 +100,7 @@ impl Ingredients<'_> {
                 let counts = |part: Option<&Part>| part.is_some_and(|part| part.multiplicity(winding) != 0);
                 counts(first) || counts(second)
             };
-            numbers.add_vertices(&self.windings[side], is_kept);
+            numbers.add_vertices(&self.windings[side], is_kept, runner)?;
         }
         numbers.add_others();
         // Only at cut and replaced faces may there be kept vertices that no triangle of the result has.
@@ -150,9 +126,10 @@ impl Ingredients<'_> {
                 }
                 used
             })?;
-            joined(used).into_iter().for_each(|v| numbers.mark(self.identification.representative(v)));
+            used.into_iter().flatten().for_each(|v| numbers.mark(self.identification.representative(v)));
         }
-        numbers.count(|point| *self.position(point), |point| self.identification.representative(point));
+        let representative = |point: u32| self.identification.representative(point);
+        numbers.count(|point| *self.position(point), representative, runner)?;
         Ok(numbers)
     }
 
@@ -185,48 +162,119 @@ impl Ingredients<'_> {
         }
     }
 
+    /// The whole triangles of the result, with room for the others.
+    fn whole(&self, numbers: &Numbers, runner: Runner<'_>) -> Result<(Vec<[u32; 3]>, Origins), Error> {
+        let pieces = self.pieces(runner);
+        // Room for all: memory that is not written to costs nothing.
+        let room: usize = pieces.iter().map(|(_, range)| range.len()).sum();
+        let mut triangles = Vec::with_capacity(room + self.new.len());
+        let mut origins = Origins::default();
+        for (part, range) in pieces {
+            runner.control.check()?;
+            origins.append(self.append(part, range, numbers, |triangle| triangles.push(triangle)));
+        }
+        Ok((triangles, origins))
+    }
+
+    /// The same, piece by piece into places that are counted before.
+    fn whole_side_by_side(
+        &self,
+        numbers: &Numbers,
+        runner: Runner<'_>,
+    ) -> Result<(Vec<[u32; 3]>, Origins), Error> {
+        let pieces = self.pieces(runner);
+        let counts = runner.pieces(pieces.len(), 1, |range| {
+            let (part, range) = &pieces[range.start];
+            let mut sum = 0;
+            self.for_kept(*part, range.clone(), |_, _, count| sum += count.unsigned_abs() as usize);
+            sum
+        })?;
+        let count: usize = counts.iter().sum();
+        // Zeros cost nothing until they are written over.
+        let mut triangles = vec![[0; 3]; count + self.new.len()];
+        let mut rest = triangles.as_mut_slice();
+        let mut places = Vec::with_capacity(pieces.len());
+        for ((part, range), count) in pieces.into_iter().zip(counts) {
+            let (place, after) = rest.split_at_mut(count);
+            places.push((part, range, place));
+            rest = after;
+        }
+        let lists = runner.each(places, |(part, range, place)| {
+            let mut places = place.iter_mut();
+            let origins = self.append(part, range, numbers, |triangle| {
+                *places.next().expect("as many as were counted") = triangle;
+            });
+            debug_assert!(places.next().is_none(), "fewer than were counted");
+            origins
+        })?;
+        triangles.truncate(count);
+        let mut origins = Origins::default();
+        lists.into_iter().for_each(|list| origins.append(list));
+        Ok((triangles, origins))
+    }
+
+    /// Adds the whole triangles of a part that are in a range, and returns their origins.
+    fn append(
+        &self,
+        part: Part,
+        range: Range<usize>,
+        numbers: &Numbers,
+        add: impl FnMut([u32; 3]),
+    ) -> Origins {
+        if self.is_simple(part, numbers) {
+            self.append_simple(part, range, numbers, add)
+        } else {
+            self.append_any(part, range, numbers, add)
+        }
+    }
+
     /// Whether a part keeps exactly the whole triangles whose vertices have numbers, once each.
     fn is_simple(&self, part: Part, numbers: &Numbers) -> bool {
         numbers.are_once(part.side) && self.parts.iter().filter(|other| other.side == part.side).count() == 1
     }
 
-    /// Appends whole triangles of a simple part.
-    fn append_simple(&self, part: Part, range: Range<usize>, numbers: &Numbers, run: &mut Run) {
+    fn append_simple(
+        &self,
+        part: Part,
+        range: Range<usize>,
+        numbers: &Numbers,
+        mut add: impl FnMut([u32; 3]),
+    ) -> Origins {
         let numbers = numbers.of_side(self.operands.first_vertex(part.side));
         let triangles = &self.operands.sides[part.side].triangles[range.clone()];
-        // Triangles before this one belong to the last run.
-        let (mut first, mut next) = (0, 0);
-        let origin = |first: usize| Origin {
-            operand: part.side as u32,
-            triangle: first as u32,
-            reversed: part.reversed,
-        };
-        for (t, corners) in range.zip(triangles) {
+        let first =
+            Origin { operand: part.side as u32, triangle: range.start as u32, reversed: part.reversed };
+        let mut kept = Kept::none_of(first, triangles.len());
+        for (place, corners) in triangles.iter().enumerate() {
             let [a, b, c] = corners.map(|v| numbers[v as usize]);
-            if a == Numbers::NONE || !self.is_whole(part.side, t as u32) {
-                continue;
+            if a != Numbers::NONE && self.is_whole(part.side, (range.start + place) as u32) {
+                add(if part.reversed { [a, c, b] } else { [a, b, c] });
+                kept.insert(place);
             }
-            run.triangles.push(if part.reversed { [a, c, b] } else { [a, b, c] });
-            if t != next {
-                run.origins.push_run(origin(first), (next - first) as u32);
-                first = t;
-            }
-            next = t + 1;
         }
-        run.origins.push_run(origin(first), (next - first) as u32);
+        let mut origins = Origins::default();
+        origins.push_kept(kept);
+        origins
     }
 
-    /// Appends whole triangles of any part.
-    fn append(&self, part: Part, range: Range<usize>, numbers: &Numbers, run: &mut Run) {
+    fn append_any(
+        &self,
+        part: Part,
+        range: Range<usize>,
+        numbers: &Numbers,
+        mut add: impl FnMut([u32; 3]),
+    ) -> Origins {
         let first = self.operands.first_vertex(part.side);
+        let mut origins = Origins::default();
         self.for_kept(part, range, |triangle, corners, count| {
             let reversed = part.reversed != (count < 0);
             let [a, b, c] = corners.map(|v| numbers.of(first + v));
             for _ in 0..count.unsigned_abs() {
-                run.triangles.push(if reversed { [a, c, b] } else { [a, b, c] });
-                run.origins.push(Origin { operand: part.side as u32, triangle, reversed });
+                add(if reversed { [a, c, b] } else { [a, b, c] });
+                origins.push(Origin { operand: part.side as u32, triangle, reversed });
             }
         });
+        origins
     }
 
     fn position(&self, point: u32) -> &[f64; 3] {
@@ -245,13 +293,6 @@ fn shrink<T>(items: &mut Vec<T>) {
     if items.capacity() > 2 * items.len() {
         items.shrink_to_fit();
     }
-}
-
-/// Triangles of the result that one thread has written.
-#[derive(Default)]
-struct Run {
-    triangles: Vec<[u32; 3]>,
-    origins: Origins,
 }
 
 /// How many triangles one thread looks at.

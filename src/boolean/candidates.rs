@@ -12,7 +12,7 @@ use super::refined_boxes::{self, Boxes, Corners};
 use crate::Error;
 use crate::control::Reservation;
 use crate::parallel::Runner;
-use crate::spatial::{BoxTree, Cell, Frame, Occupancy, visit_pairs};
+use crate::spatial::{BoxTree, Cell, Frame, Occupancy, read_ahead, visit_pairs};
 
 /// Below this many triangles near the other operand, ruling some out costs more than it saves.
 const CULL_FROM: usize = 2_000;
@@ -33,6 +33,8 @@ const USELESS: f64 = 0.8;
 const MOST_GRIDS: usize = 8;
 /// So many triangles are looked up in the grid at once.
 const TRIANGLES_PER_PIECE: usize = 1 << 14;
+/// The cells of so many triangles are found before the first is looked up.
+const TRIANGLES_AT_ONCE: usize = 64;
 
 /// The triangles of both operands that may meet the other, in hierarchies whose items are triangles.
 pub(super) struct Candidates {
@@ -185,22 +187,40 @@ fn cull(
         }
         operands.sides[side].triangles[t as usize].map(|v| of_vertices[side][v as usize])
     };
+    // Calls `visit` with the cells of some triangles, a batch at a time, so that cache misses overlap.
+    let with_cells =
+        |grid: &Occupancy, side: usize, triangles: &[u32], visit: &mut dyn FnMut(u32, [Cell; 3])| {
+            let mut batch = Vec::with_capacity(TRIANGLES_AT_ONCE);
+            for triangles in triangles.chunks(TRIANGLES_AT_ONCE) {
+                if of_vertices[side].is_empty() {
+                    let operand = &operands.sides[side];
+                    let corners = triangles.iter().flat_map(|&t| operand.triangles[t as usize]);
+                    read_ahead(corners.map(|v| operand.positions[v as usize][0].to_bits() as u32));
+                }
+                batch.clear();
+                batch.extend(triangles.iter().map(|&t| cells(grid, side, t)));
+                triangles.iter().zip(&batch).for_each(|(&t, cells)| visit(t, *cells));
+            }
+        };
     // Grids marked side by side are added up; which triangle is marked by whom does not matter.
     let marked_by = |side: usize, triangles: &[u32]| -> Result<Occupancy, Error> {
         let grain = triangles.len().div_ceil(runner.threads().min(MOST_GRIDS)).max(1);
         let parts = runner.pieces(triangles.len(), grain, |range| {
-            let mut grid = grid.empty();
-            for &t in &triangles[range] {
-                grid.mark(cells(&grid, side, t), || corners(side, t));
-            }
-            grid
+            let mut marked = grid.empty();
+            with_cells(&grid, side, &triangles[range], &mut |t, cells| {
+                marked.mark(cells, || corners(side, t));
+            });
+            marked
         })?;
         Ok(parts.into_iter().reduce(Occupancy::united).unwrap_or_else(|| grid.empty()))
     };
     let passing = |grid: &Occupancy, side: usize| -> Result<Vec<u32>, Error> {
-        let is_marked = |t: &u32| grid.is_marked(cells(grid, side, *t), || corners(side, *t));
         runner.gather(near[side].len(), TRIANGLES_PER_PIECE, 0, |range, passing| {
-            passing.extend(near[side][range].iter().copied().filter(is_marked));
+            with_cells(grid, side, &near[side][range], &mut |t, cells| {
+                if grid.is_marked(cells, || corners(side, t)) {
+                    passing.push(t);
+                }
+            });
         })
     };
     let by_a = marked_by(0, near[0])?;

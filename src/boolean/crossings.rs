@@ -52,7 +52,7 @@ impl Crossings {
 
 /// Memory for one intersecting pair while its crossings are numbered.
 const BYTES_PER_PAIR: u64 = (size_of::<PairCrossing>()
-    + 4 * size_of::<u128>()
+    + 6 * size_of::<u128>()
     + 2 * size_of::<u32>()
     + 2 * size_of::<Crossing>()
     + size_of::<Segment>()) as u64;
@@ -175,36 +175,42 @@ fn number_nodes(
             | u128::from(crossing.leaves) << 32
             | u128::from(place)
     };
-    let mut order: Vec<u128> = Vec::with_capacity(2 * found.len());
-    for (pair, place) in found.iter().zip((0u32..).step_by(2)) {
-        order.extend([key(&pair.tail, place), key(&pair.head, place + 1)]);
-    }
-    let mut other = Vec::new();
-    sort(&mut order, &mut other, 97, operands.vertex_count(), runner);
-    runner.control.check()?;
-    let mut nodes: Vec<Crossing> = Vec::with_capacity(order.len() / 2);
-    let mut node_of = vec![0u32; order.len()];
-    let mut last = None;
-    for &key in &order {
-        if last != Some(key >> 32) {
-            last = Some(key >> 32);
-            nodes.push(Crossing {
-                low: (key >> 97) as u32,
-                high: (key >> 65) as u32,
-                triangle: (key >> 33) as u32,
-                leaves: key >> 32 & 1 == 1,
-            });
+    let number = || {
+        let mut order: Vec<u128> = Vec::with_capacity(2 * found.len());
+        for (pair, place) in found.iter().zip((0u32..).step_by(2)) {
+            order.extend([key(&pair.tail, place), key(&pair.head, place + 1)]);
         }
-        node_of[key as u32 as usize] = nodes.len() as u32 - 1;
-    }
+        sort(&mut order, 97, operands.vertex_count(), runner);
+        let mut nodes: Vec<Crossing> = Vec::with_capacity(order.len() / 2);
+        let mut node_of = vec![0u32; order.len()];
+        let mut last = None;
+        for &key in &order {
+            if last != Some(key >> 32) {
+                last = Some(key >> 32);
+                nodes.push(Crossing {
+                    low: (key >> 97) as u32,
+                    high: (key >> 65) as u32,
+                    triangle: (key >> 33) as u32,
+                    leaves: key >> 32 & 1 == 1,
+                });
+            }
+            node_of[key as u32 as usize] = nodes.len() as u32 - 1;
+        }
+        (nodes, node_of)
+    };
     // Triangle of A, triangle of B, and place.
-    order.clear();
-    order.extend(found.iter().zip(0u64..).map(|(pair, i)| {
-        u128::from(pair.triangles[0]) << 96 | u128::from(pair.triangles[1]) << 64 | u128::from(i)
-    }));
-    sort(&mut order, &mut other, 96, operands.sides[0].triangles.len() as u32, runner);
-    // A pair may have been found more than once.
-    order.dedup_by_key(|key| *key >> 64);
+    let order_pairs = || {
+        let keys = found.iter().zip(0u64..).map(|(pair, i)| {
+            u128::from(pair.triangles[0]) << 96 | u128::from(pair.triangles[1]) << 64 | u128::from(i)
+        });
+        let mut order: Vec<u128> = keys.collect();
+        sort(&mut order, 96, operands.sides[0].triangles.len() as u32, runner);
+        // A pair may have been found more than once.
+        order.dedup_by_key(|key| *key >> 64);
+        order
+    };
+    let ((nodes, node_of), order) = runner.both(number, order_pairs);
+    runner.control.check()?;
     let segments = order
         .iter()
         .map(|&key| {
@@ -218,12 +224,12 @@ fn number_nodes(
 }
 
 /// Sorts keys that differ. The bits from `shift` on are a number below `limit`, which few keys have in common.
-fn sort(keys: &mut Vec<u128>, other: &mut Vec<u128>, shift: u32, limit: u32, runner: Runner<'_>) {
+fn sort(keys: &mut Vec<u128>, shift: u32, limit: u32, runner: Runner<'_>) {
     if runner.threads() > RADIX_THREADS {
         runner.sort(keys);
         return;
     }
-    radix_sort(keys, other, |&key| (key >> shift) as u32, u32::BITS - limit.leading_zeros());
+    radix_sort(keys, &mut Vec::new(), |&key| (key >> shift) as u32, u32::BITS - limit.leading_zeros());
     for group in keys.chunk_by_mut(|x, y| x >> shift == y >> shift) {
         group.sort_unstable();
     }

@@ -1,8 +1,9 @@
 //! The direction each vertex of A is perturbed along: outwards with respect to every face around it, where that exists.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
 use super::operands::Operand;
+use crate::mesh::Buckets;
 
 /// Largest component of a quantised direction: 10 bits and a sign.
 const SCALE: f64 = 511.0;
@@ -14,7 +15,9 @@ const ROUNDS: usize = 32;
 /// common direction would have to look away from both, and there is none.
 #[derive(Debug)]
 pub(super) struct Directions {
-    of_vertex: FxHashMap<u32, u32>,
+    /// For each vertex one more than the place of its direction; 0 for one that has none. (Zeros that nobody asks for cost
+    /// nothing.)
+    of_vertex: Vec<u32>,
     directions: Vec<[i32; 3]>,
     /// Vertices some of whose faces their direction does not look away from.
     stuck: FxHashSet<u32>,
@@ -24,18 +27,22 @@ impl Directions {
     /// Directions of the vertices of the triangles `near`: angle-weighted normals, improved by perceptron steps while the
     /// worst dot product with a face normal is not positive, quantised.
     pub(super) fn new(operand: &Operand<'_>, near: &[u32]) -> Self {
-        let mut of_vertex: FxHashMap<u32, u32> = FxHashMap::default();
+        let mut of_vertex = vec![0u32; operand.positions.len()];
         let mut faces: Vec<(u32, [f64; 3])> = Vec::with_capacity(3 * near.len());
         let mut sums: Vec<[f64; 3]> = Vec::new();
+        let mut vertices: Vec<u32> = Vec::new();
         for &triangle in near {
             let corners = operand.triangles[triangle as usize];
             let positions = corners.map(|v| operand.positions[v as usize]);
             let (normal, angles) = normal_and_angles(&positions);
             for k in 0..3 {
-                let index = *of_vertex.entry(corners[k]).or_insert_with(|| {
+                let place = &mut of_vertex[corners[k] as usize];
+                if *place == 0 {
                     sums.push([0.0; 3]);
-                    sums.len() as u32 - 1
-                });
+                    vertices.push(corners[k]);
+                    *place = sums.len() as u32;
+                }
+                let index = *place - 1;
                 if let Some(normal) = normal {
                     let sum = &mut sums[index as usize];
                     for axis in 0..3 {
@@ -45,21 +52,24 @@ impl Directions {
                 }
             }
         }
-        faces.sort_by_key(|&(index, _)| index);
         let mut directions = vec![[0; 3]; sums.len()];
         let mut is_stuck = vec![false; sums.len()];
-        for group in faces.chunk_by(|x, y| x.0 == y.0) {
-            let index = group[0].0 as usize;
-            (directions[index], is_stuck[index]) = outward(sums[index], group);
+        for (index, normals) in Buckets::new(sums.len(), faces.iter().copied()).each().enumerate() {
+            if !normals.is_empty() {
+                (directions[index], is_stuck[index]) = outward(sums[index], normals);
+            }
         }
         let stuck =
-            of_vertex.iter().filter(|&(_, &index)| is_stuck[index as usize]).map(|(&v, _)| v).collect();
+            vertices.iter().zip(is_stuck).filter(|&(_, is_stuck)| is_stuck).map(|(&v, _)| v).collect();
         Self { of_vertex, directions, stuck }
     }
 
     /// The direction of a vertex; zero for one that no triangle near the other operand uses.
     pub(super) fn of(&self, vertex: u32) -> [i32; 3] {
-        self.of_vertex.get(&vertex).map_or([0; 3], |&index| self.directions[index as usize])
+        match self.of_vertex.get(vertex as usize) {
+            None | Some(0) => [0; 3],
+            Some(&place) => self.directions[place as usize - 1],
+        }
     }
 
     /// Vertices for which there seems to be no direction away from all their faces: saddles.
@@ -103,17 +113,17 @@ fn normal_and_angles(positions: &[[f64; 3]; 3]) -> (Option<[f64; 3]>, [f64; 3]) 
     (Some(cross.map(|x| x / length)), [angle(0), angle(1), angle(2)])
 }
 
-/// A quantised direction with positive dot product with all `faces`, if the search finds one; else the best seen, and true.
-fn outward(sum: [f64; 3], faces: &[(u32, [f64; 3])]) -> ([i32; 3], bool) {
+/// A quantised direction with positive dot product with all `normals`, if the search finds one; else the best seen, and true.
+fn outward(sum: [f64; 3], normals: &[[f64; 3]]) -> ([i32; 3], bool) {
     let quantise = |v: &[f64; 3]| -> [i32; 3] {
         let size = v.iter().fold(0.0f64, |size, x| size.max(x.abs()));
         if size == 0.0 { [0; 3] } else { v.map(|x| (x / size * SCALE).round() as i32) }
     };
     let worst = |direction: &[i32; 3]| {
         let direction = direction.map(f64::from);
-        faces
+        normals
             .iter()
-            .map(|(_, normal)| (dot(&direction, normal), normal))
+            .map(|normal| (dot(&direction, normal), normal))
             .min_by(|x, y| x.0.total_cmp(&y.0))
             .map(|(value, normal)| (value / dot(&direction, &direction).sqrt().max(1.0), *normal))
     };
@@ -155,18 +165,17 @@ mod tests {
     #[test]
     fn a_needle_corner_is_improved_until_it_looks_away_from_all() {
         // A deep notch: the angle-weighted normal points into one of the steep faces.
-        let faces: Vec<(u32, [f64; 3])> =
-            vec![(0, [0.0, 0.1, 0.995]), (0, [0.0, 0.995, -0.0998]), (0, [0.999, 0.0, 0.04])];
-        let (direction, stuck) = outward([-0.9, 0.3, 0.1], &faces);
+        let normals = [[0.0, 0.1, 0.995], [0.0, 0.995, -0.0998], [0.999, 0.0, 0.04]];
+        let (direction, stuck) = outward([-0.9, 0.3, 0.1], &normals);
         assert!(!stuck);
-        for (_, normal) in &faces {
+        for normal in &normals {
             assert!(dot(&direction.map(f64::from), normal) > 0.0, "{direction:?} {normal:?}");
         }
     }
 
     #[test]
     fn a_saddle_has_no_direction() {
-        let away = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(|normal| (0, normal));
+        let away = [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
         assert!(outward([0.0, 1.0, 0.0], &away).1);
     }
 }

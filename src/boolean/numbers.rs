@@ -1,6 +1,11 @@
 //! The numbers that points have in a result.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use rustc_hash::FxHashMap;
+
+use crate::Error;
+use crate::parallel::Runner;
 
 /// Which points a result uses, and their numbers in it.
 ///
@@ -17,8 +22,12 @@ pub(super) struct Numbers {
     /// By side, whether every kept vertex has the winding number 0 or 1.
     once: Vec<bool>,
     positions: Vec<[f64; 3]>,
-    points: usize,
+    /// How many of the points have been added.
+    added: usize,
 }
+
+/// So many points are looked at by one thread at once.
+const PIECE: usize = 1 << 16;
 
 /// States of points before they are numbered. A vertex that is not kept but in use stands for another point.
 const KEPT: u32 = u32::MAX - 1;
@@ -32,33 +41,48 @@ impl Numbers {
     /// For so many points.
     pub(super) fn new(points: usize) -> Self {
         Self {
-            numbers: Vec::with_capacity(points),
+            numbers: vec![0; points],
             of_others: FxHashMap::default(),
             doubtful: Vec::new(),
             once: Vec::new(),
             positions: Vec::new(),
-            points,
+            added: 0,
         }
     }
 
     /// Adds the vertices of the next side by their winding numbers.
-    pub(super) fn add_vertices(&mut self, windings: &[i32], is_kept: impl Fn(i32) -> bool) {
+    ///
+    /// # Errors
+    /// Only limits.
+    pub(super) fn add_vertices(
+        &mut self,
+        windings: &[i32],
+        is_kept: impl Fn(i32) -> bool + Sync,
+        runner: Runner<'_>,
+    ) -> Result<(), Error> {
         let [zero, one] = [0, 1].map(|winding| if is_kept(winding) { KEPT } else { Self::NONE });
-        let mut once = true;
-        self.numbers.extend(windings.iter().map(|&winding| match winding {
-            0 => zero,
-            1 => one,
-            winding => {
-                once = false;
-                if is_kept(winding) { KEPT } else { Self::NONE }
+        let once = AtomicBool::new(true);
+        let states = &mut self.numbers[self.added..][..windings.len()];
+        self.added += windings.len();
+        runner.fill(states, PIECE, |first, states| {
+            for (state, &winding) in states.iter_mut().zip(&windings[first..]) {
+                *state = match winding {
+                    0 => zero,
+                    1 => one,
+                    winding => {
+                        once.store(false, Ordering::Relaxed);
+                        if is_kept(winding) { KEPT } else { Self::NONE }
+                    }
+                };
             }
-        }));
-        self.once.push(once);
+        })?;
+        self.once.push(once.into_inner());
+        Ok(())
     }
 
     /// Adds all other points, in use only if they are marked.
     pub(super) fn add_others(&mut self) {
-        self.numbers.resize(self.points, DOUBTFUL);
+        self.numbers[self.added..].fill(DOUBTFUL);
     }
 
     /// Whether all winding numbers round the vertices of a side are 0 or 1.
@@ -98,29 +122,57 @@ impl Numbers {
     }
 
     /// Numbers the points in use, in their order. Kept vertices for which another point stands get its number.
-    pub(super) fn count(&mut self, position: impl Fn(u32) -> [f64; 3], representative: impl Fn(u32) -> u32) {
-        self.positions.reserve(self.points);
-        for (point, state) in self.numbers.iter_mut().enumerate() {
-            let number = self.positions.len() as u32;
-            *state = match *state {
-                KEPT => number,
-                STANDS => {
-                    self.of_others.insert(point as u32, number);
-                    Self::NONE
-                }
-                _ => {
-                    *state = Self::NONE;
-                    continue;
-                }
-            };
-            self.positions.push(position(point as u32));
+    ///
+    /// # Errors
+    /// Only limits.
+    pub(super) fn count(
+        &mut self,
+        position: impl Fn(u32) -> [f64; 3] + Sync,
+        representative: impl Fn(u32) -> u32,
+        runner: Runner<'_>,
+    ) -> Result<(), Error> {
+        let grain = if runner.is_parallel() { PIECE } else { self.numbers.len().max(1) };
+        let states = &self.numbers;
+        let is_used = |state: &&u32| [KEPT, STANDS].contains(state);
+        let counts =
+            runner.pieces(states.len(), grain, |range| states[range].iter().filter(is_used).count())?;
+        self.positions = vec![[0.0; 3]; counts.iter().sum()];
+        let mut pieces = Vec::with_capacity(counts.len());
+        let (mut rest, mut first) = (self.positions.as_mut_slice(), 0);
+        for ((place, states), count) in self.numbers.chunks_mut(grain).enumerate().zip(counts) {
+            let (positions, after) = rest.split_at_mut(count);
+            pieces.push((place * grain, states, first, positions));
+            (rest, first) = (after, first + count as u32);
         }
+        let of_others = runner.each(pieces, |(start, states, first, positions)| {
+            let mut of_others = Vec::new();
+            let mut next = 0;
+            for (point, state) in (start as u32..).zip(states) {
+                let number = first + next as u32;
+                *state = match *state {
+                    KEPT => number,
+                    STANDS => {
+                        of_others.push((point, number));
+                        Self::NONE
+                    }
+                    _ => {
+                        *state = Self::NONE;
+                        continue;
+                    }
+                };
+                positions[next] = position(point);
+                next += 1;
+            }
+            of_others
+        })?;
+        self.of_others.extend(of_others.into_iter().flatten());
         for &point in &self.doubtful {
             let other = representative(point);
             if other != point {
                 self.numbers[point as usize] = self.of(other);
             }
         }
+        Ok(())
     }
 
     /// The number of a point in use.

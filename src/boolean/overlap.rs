@@ -171,9 +171,12 @@ impl View<'_> {
                 Place(0)
             }
         };
-        runner.gather(positions.len(), PIECE, positions.len(), |range, places| {
-            places.extend(positions[range].iter().map(place));
-        })
+        let mut places = vec![Place(0); positions.len()];
+        runner.fill(&mut places, PIECE, |first, places| {
+            let positions = &positions[first..];
+            places.iter_mut().zip(positions).for_each(|(of, position)| *of = place(position));
+        })?;
+        Ok(places)
     }
 
     /// Triangles whose box meets the common box, and the cells they pass.
@@ -204,7 +207,7 @@ impl View<'_> {
         })?;
         let (near, grids): (Vec<Vec<u32>>, Vec<Occupancy>) = pieces.into_iter().unzip();
         let passed = grids.into_iter().reduce(Occupancy::united).unwrap_or_else(|| self.grid.empty());
-        Ok((joined(near), passed))
+        Ok((runner.concat(near, 0)?, passed))
     }
 
     /// Those of the near triangles that touch a cell the other operand passes, or leave the common box.
@@ -233,14 +236,6 @@ impl View<'_> {
     fn corners(&self, triangle: [u32; 3]) -> [glam::Vec3A; 3] {
         triangle.map(|v| self.frame.point(&self.operand.positions[v as usize]))
     }
-}
-
-/// Lists one after the other.
-pub(super) fn joined<T>(lists: Vec<Vec<T>>) -> Vec<T> {
-    let mut lists = lists.into_iter();
-    let mut all = lists.next().unwrap_or_default();
-    lists.for_each(|list| all.extend(list));
-    all
 }
 
 /// The common part of two boxes, if there is one (touching boxes have one).
