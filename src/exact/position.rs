@@ -17,6 +17,34 @@ use super::perturbed::{COEFFICIENTS, PerturbedPoint, Polynomial};
 /// certainty; the fast path of [`crossing`].
 #[must_use]
 pub fn crossing_filter(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> Option<[f64; 3]> {
+    let mut position = [0.0; 3];
+    for (rounded, Near { value: x, error }) in position.iter_mut().zip(near_crossing(p, q, triangle)?) {
+        let error = error + x.low.abs() * 4.0 * f64::EPSILON;
+        let (from_above, from_below) = (x.high + (x.low + error), x.high + (x.low - error));
+        if from_above != from_below {
+            return None;
+        }
+        *rounded = from_above + 0.0;
+    }
+    Some(position)
+}
+
+/// A number that is known but for an error.
+#[derive(Clone, Copy, Debug)]
+struct Near {
+    value: DoubleDouble,
+    error: f64,
+}
+
+impl Near {
+    fn exactly(value: f64) -> Self {
+        Self { value: DoubleDouble::from(value), error: 0.0 }
+    }
+}
+
+/// The crossing point of edge `(p, q)` with the plane of the triangle but for errors, if double-double arithmetic can tell.
+#[inline]
+fn near_crossing(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> Option<[Near; 3]> {
     const LOW: f64 = f64::from_bits((1023 - 300) << 52);
     const HIGH: f64 = f64::from_bits((1023 + 300) << 52);
     const TINY: f64 = f64::from_bits((1023 - 900) << 52);
@@ -47,24 +75,17 @@ pub fn crossing_filter(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> 
     }
     let t = height_p / total;
     let t_error = f64::from_bits((1023 - 94) << 52) * (condition + 1.0);
-    let mut position = [0.0; 3];
+    let mut position = p.map(Near::exactly);
     for k in 0..3 {
         if along[k].high == 0.0 {
-            position[k] = p[k];
             continue;
         }
         if along[k].high.abs() < TINY {
             return None;
         }
-        let x = DoubleDouble::from(p[k]) + along[k] * t;
         let error = along[k].high.abs() * t_error
-            + f64::from_bits((1023 - 97) << 52) * (p[k].abs() + along[k].high.abs())
-            + x.low.abs() * 4.0 * f64::EPSILON;
-        let (from_above, from_below) = (x.high + (x.low + error), x.high + (x.low - error));
-        if from_above != from_below {
-            return None;
-        }
-        position[k] = from_above + 0.0;
+            + f64::from_bits((1023 - 97) << 52) * (p[k].abs() + along[k].high.abs());
+        position[k] = Near { value: DoubleDouble::from(p[k]) + along[k] * t, error };
     }
     Some(position)
 }
@@ -125,11 +146,51 @@ pub(crate) enum Unrounded {
     Crossing(Box<([PerturbedPoint; 2], [PerturbedPoint; 3])>),
 }
 
+impl Unrounded {
+    fn near(&self) -> Option<[Near; 3]> {
+        match self {
+            Self::Given(position) => Some(position.map(Near::exactly)),
+            Self::Crossing(of) => {
+                let ([p, q], triangle) = &**of;
+                near_crossing(&p.position, &q.position, triangle.each_ref().map(|corner| &corner.position))
+            }
+        }
+    }
+}
+
+/// Whether double-double arithmetic is certain that three points do not lie on one line.
+fn surely_off_line(points: &[Unrounded; 3]) -> bool {
+    /// A sum of two products of differences is a few times 2^-104 of its terms off: this is generous.
+    const ROUNDING: f64 = f64::from_bits((1023 - 97) << 52);
+    const FLOOR: f64 = f64::from_bits((1023 - 900) << 52);
+    let [x, y, z] = points.each_ref().map(Unrounded::near);
+    let (Some(x), Some(y), Some(z)) = (x, y, z) else { return false };
+    let difference = |from: &[Near; 3], to: &[Near; 3]| -> [Near; 3] {
+        std::array::from_fn(|k| {
+            let value = to[k].value - from[k].value;
+            let size = to[k].value.high.abs() + from[k].value.high.abs();
+            Near { value, error: to[k].error + from[k].error + ROUNDING * size }
+        })
+    };
+    let (u, v) = (difference(&x, &y), difference(&x, &z));
+    let size = |near: Near| near.value.high.abs() + near.error;
+    (0..3).any(|k| {
+        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
+        let cross = u[l].value * v[m].value - u[m].value * v[l].value;
+        let error = |a: Near, b: Near| size(a) * b.error + size(b) * a.error + ROUNDING * size(a) * size(b);
+        // (Not a number where something overflowed.)
+        cross.high.abs() > 2.0 * (error(u[l], v[m]) + error(u[m], v[l])) + FLOOR
+    })
+}
+
 /// Whether three points lie on one line, exactly.
 ///
 /// # Panics
 /// As [`crossing`].
 pub(crate) fn on_one_line(points: &[Unrounded; 3]) -> bool {
+    if surely_off_line(points) {
+        return false;
+    }
     let coordinates = points.iter().flat_map(|point| match point {
         Unrounded::Given(position) => vec![position],
         Unrounded::Crossing(of) => of.0.iter().chain(&of.1).map(|p| &p.position).collect(),
@@ -234,7 +295,7 @@ mod tests {
     #[test]
     fn crossings_with_one_line_lie_on_it_before_they_are_rounded() {
         let mut rng = ChaCha8Rng::seed_from_u64(10);
-        let (mut seen_rounded_off, mut seen_beside) = (false, false);
+        let (mut seen_rounded_off, mut seen_beside, mut seen_by_filter) = (false, false, false);
         for _ in 0..500 {
             let mut point = || unperturbed(std::array::from_fn(|_| f64::from(rng.random_range(-20i32..21))));
             let line = [point(), point()];
@@ -271,10 +332,12 @@ mod tests {
             let near = Unrounded::Given(rounded(&y).map(|coordinate| coordinate + 1.0));
             if !crate::exact::collinear(&rounded(&end), &line[1].position, &rounded(&near)) {
                 seen_beside = true;
-                assert!(!on_one_line(&[end, x, near]));
+                let points = [end, x, near];
+                seen_by_filter |= surely_off_line(&points);
+                assert!(!on_one_line(&points));
             }
         }
-        assert!(seen_rounded_off && seen_beside);
+        assert!(seen_rounded_off && seen_beside && seen_by_filter);
     }
 
     #[test]
