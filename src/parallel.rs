@@ -85,7 +85,7 @@ impl<'a> Runner<'a> {
                 fill(range, &mut piece);
                 piece
             })?;
-            return self.concat(pieces, 0);
+            return self.concat(pieces);
         }
         let mut all = Vec::with_capacity(room);
         for start in (0..count).step_by(grain.max(1)) {
@@ -126,18 +126,17 @@ impl<'a> Runner<'a> {
         self.each(pieces, |(first, piece)| fill(first, piece)).map(drop)
     }
 
-    /// Lists one after the other, with room for some items more.
+    /// Lists one after the other.
     pub(crate) fn concat<T: Copy + Default + Send + Sync>(
         self,
         mut lists: Vec<Vec<T>>,
-        more: usize,
     ) -> Result<Vec<T>, Error> {
         if lists.len() < 2 {
             return Ok(lists.pop().unwrap_or_default());
         }
         let count = lists.iter().map(Vec::len).sum();
         // Zeros cost nothing until they are written over, side by side.
-        let mut all = vec![T::default(); count + more];
+        let mut all = vec![T::default(); count];
         let mut rest = all.as_mut_slice();
         let mut places = Vec::with_capacity(lists.len());
         for list in lists {
@@ -146,7 +145,6 @@ impl<'a> Runner<'a> {
             rest = after;
         }
         self.each(places, |(place, list)| place.copy_from_slice(&list))?;
-        all.truncate(count);
         Ok(all)
     }
 

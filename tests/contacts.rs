@@ -316,3 +316,33 @@ fn an_edge_with_many_triangles_some_of_them_flat_is_parted() {
         assert!((parted.volume() - solid.volume()).abs() < 1e-12);
     }
 }
+
+/// A long bar across many upright ones, flush with them at both sides: its walls get corners at both their long edges. With
+/// fans of needles instead of strips the next operation would meet all of them at every place.
+#[test]
+fn a_wall_beside_which_many_end_is_a_strip() -> Result<(), trisect::Error> {
+    const UPRIGHT: u32 = 20;
+    let length = f64::from(2 * UPRIGHT + 1);
+    let bar = Solid::try_from(primitives::cuboid([0.0, 0.0, 0.0], [1.0, length, 1.0])?)?;
+    let mut upright = Mesh::default();
+    for k in 0..UPRIGHT {
+        let y = f64::from(2 * k + 1);
+        upright.append(&primitives::cuboid([0.0, y, -1.0], [1.0, y + 1.0, 2.0])?)?;
+    }
+    let upright = Solid::try_from(upright)?;
+    for operands in [[&bar, &upright], [&upright, &bar]] {
+        let result = run(Union, &operands);
+        assert_sound(&result, "a bar across upright ones");
+        let mesh = result.solid().mesh();
+        assert_eq!(mesh.volume(), length + 2.0 * f64::from(UPRIGHT));
+        for side in [0.0, 1.0] {
+            let corners = |t: &[u32; 3]| t.map(|v| mesh.positions[v as usize]);
+            for corners in mesh.triangles.iter().map(corners).filter(|t| t.iter().all(|p| p[0] == side)) {
+                let along = corners.map(|corner| corner[1]);
+                let extent = along.iter().fold(0.0f64, |most, y| most.max(y - along[0]).max(along[0] - y));
+                assert!(extent <= 3.0, "a needle: {corners:?}");
+            }
+        }
+    }
+    Ok(())
+}

@@ -83,7 +83,8 @@ impl Ingredients<'_> {
             triangles.push(triangle.corners.map(|point| numbers.of(point)));
             origins.push(triangle.origin);
         }
-        let positions = numbers.into_positions();
+        let mut positions = numbers.into_positions();
+        shrink(&mut positions);
         shrink(&mut triangles);
         Ok(Assembled { positions, triangles, origins, ..Assembled::default() })
     }
@@ -204,7 +205,7 @@ impl Ingredients<'_> {
             let origins = self.append(part, range, numbers, |triangle| {
                 *places.next().expect("as many as were counted") = triangle;
             });
-            debug_assert!(places.next().is_none(), "fewer than were counted");
+            assert!(places.next().is_none(), "fewer than were counted");
             origins
         })?;
         triangles.truncate(count);
@@ -245,12 +246,19 @@ impl Ingredients<'_> {
         let first =
             Origin { operand: part.side as u32, triangle: range.start as u32, reversed: part.reversed };
         let mut kept = Kept::none_of(first, triangles.len());
-        for (place, corners) in triangles.iter().enumerate() {
-            let [a, b, c] = corners.map(|v| numbers[v as usize]);
-            if a != Numbers::NONE && self.is_whole(part.side, (range.start + place) as u32) {
-                add(if part.reversed { [a, c, b] } else { [a, b, c] });
-                kept.insert(place);
+        let mut t = range.start as u32;
+        for (triangles, bits) in triangles.chunks(64).zip(kept.bits_mut()) {
+            // In a register: a store for each triangle would wait for the last one.
+            let mut kept = 0;
+            for (bit, corners) in triangles.iter().enumerate() {
+                let [a, b, c] = corners.map(|v| numbers[v as usize]);
+                if a != Numbers::NONE && self.is_whole(part.side, t) {
+                    add(if part.reversed { [a, c, b] } else { [a, b, c] });
+                    kept |= 1 << bit;
+                }
+                t += 1;
             }
+            *bits = kept;
         }
         let mut origins = Origins::default();
         origins.push_kept(kept);

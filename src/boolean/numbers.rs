@@ -22,8 +22,7 @@ pub(super) struct Numbers {
     /// By side, whether every kept vertex has the winding number 0 or 1.
     once: Vec<bool>,
     positions: Vec<[f64; 3]>,
-    /// How many of the points have been added.
-    added: usize,
+    points: usize,
 }
 
 /// So many points are looked at by one thread at once.
@@ -41,12 +40,12 @@ impl Numbers {
     /// For so many points.
     pub(super) fn new(points: usize) -> Self {
         Self {
-            numbers: vec![0; points],
+            numbers: Vec::with_capacity(points),
             of_others: FxHashMap::default(),
             doubtful: Vec::new(),
             once: Vec::new(),
             positions: Vec::new(),
-            added: 0,
+            points,
         }
     }
 
@@ -62,27 +61,30 @@ impl Numbers {
     ) -> Result<(), Error> {
         let [zero, one] = [0, 1].map(|winding| if is_kept(winding) { KEPT } else { Self::NONE });
         let once = AtomicBool::new(true);
-        let states = &mut self.numbers[self.added..][..windings.len()];
-        self.added += windings.len();
-        runner.fill(states, PIECE, |first, states| {
-            for (state, &winding) in states.iter_mut().zip(&windings[first..]) {
-                *state = match winding {
-                    0 => zero,
-                    1 => one,
-                    winding => {
-                        once.store(false, Ordering::Relaxed);
-                        if is_kept(winding) { KEPT } else { Self::NONE }
-                    }
-                };
+        let state = |&winding: &i32| match winding {
+            0 => zero,
+            1 => one,
+            winding => {
+                once.store(false, Ordering::Relaxed);
+                if is_kept(winding) { KEPT } else { Self::NONE }
             }
-        })?;
+        };
+        if runner.is_parallel() {
+            let start = self.numbers.len();
+            self.numbers.resize(start + windings.len(), 0);
+            runner.fill(&mut self.numbers[start..], PIECE, |first, states| {
+                states.iter_mut().zip(&windings[first..]).for_each(|(of, winding)| *of = state(winding));
+            })?;
+        } else {
+            self.numbers.extend(windings.iter().map(state));
+        }
         self.once.push(once.into_inner());
         Ok(())
     }
 
     /// Adds all other points, in use only if they are marked.
     pub(super) fn add_others(&mut self) {
-        self.numbers[self.added..].fill(DOUBTFUL);
+        self.numbers.resize(self.points, DOUBTFUL);
     }
 
     /// Whether all winding numbers round the vertices of a side are 0 or 1.
@@ -131,41 +133,13 @@ impl Numbers {
         representative: impl Fn(u32) -> u32,
         runner: Runner<'_>,
     ) -> Result<(), Error> {
-        let grain = if runner.is_parallel() { PIECE } else { self.numbers.len().max(1) };
-        let states = &self.numbers;
-        let is_used = |state: &&u32| [KEPT, STANDS].contains(state);
-        let counts =
-            runner.pieces(states.len(), grain, |range| states[range].iter().filter(is_used).count())?;
-        self.positions = vec![[0.0; 3]; counts.iter().sum()];
-        let mut pieces = Vec::with_capacity(counts.len());
-        let (mut rest, mut first) = (self.positions.as_mut_slice(), 0);
-        for ((place, states), count) in self.numbers.chunks_mut(grain).enumerate().zip(counts) {
-            let (positions, after) = rest.split_at_mut(count);
-            pieces.push((place * grain, states, first, positions));
-            (rest, first) = (after, first + count as u32);
-        }
-        let of_others = runner.each(pieces, |(start, states, first, positions)| {
-            let mut of_others = Vec::new();
-            let mut next = 0;
-            for (point, state) in (start as u32..).zip(states) {
-                let number = first + next as u32;
-                *state = match *state {
-                    KEPT => number,
-                    STANDS => {
-                        of_others.push((point, number));
-                        Self::NONE
-                    }
-                    _ => {
-                        *state = Self::NONE;
-                        continue;
-                    }
-                };
-                positions[next] = position(point);
-                next += 1;
-            }
-            of_others
-        })?;
-        self.of_others.extend(of_others.into_iter().flatten());
+        let of_others = if runner.is_parallel() {
+            self.count_side_by_side(position, runner)?
+        } else {
+            self.positions.reserve(self.points);
+            number(&mut self.numbers, 0, 0, |point| self.positions.push(position(point)))
+        };
+        self.of_others.extend(of_others);
         for &point in &self.doubtful {
             let other = representative(point);
             if other != point {
@@ -173,6 +147,33 @@ impl Numbers {
             }
         }
         Ok(())
+    }
+
+    /// Numbers the points piece by piece, after those in use have been counted in each.
+    fn count_side_by_side(
+        &mut self,
+        position: impl Fn(u32) -> [f64; 3] + Sync,
+        runner: Runner<'_>,
+    ) -> Result<Vec<(u32, u32)>, Error> {
+        let states = &self.numbers;
+        let is_used = |state: &&u32| [KEPT, STANDS].contains(state);
+        let counts =
+            runner.pieces(states.len(), PIECE, |range| states[range].iter().filter(is_used).count())?;
+        self.positions = vec![[0.0; 3]; counts.iter().sum()];
+        let mut pieces = Vec::with_capacity(counts.len());
+        let (mut rest, mut first) = (self.positions.as_mut_slice(), 0);
+        for ((place, states), count) in self.numbers.chunks_mut(PIECE).enumerate().zip(counts) {
+            let (positions, after) = rest.split_at_mut(count);
+            pieces.push(((place * PIECE) as u32, states, first, positions));
+            (rest, first) = (after, first + count as u32);
+        }
+        let of_others = runner.each(pieces, |(start, states, first, positions)| {
+            let mut places = positions.iter_mut();
+            number(states, start, first, |point| {
+                *places.next().expect("as many as were counted") = position(point);
+            })
+        })?;
+        Ok(of_others.concat())
     }
 
     /// The number of a point in use.
@@ -193,4 +194,26 @@ impl Numbers {
     pub(super) fn into_positions(self) -> Vec<[f64; 3]> {
         self.positions
     }
+}
+
+/// Numbers the points in use from `next` on, of points from `start` on with the given states, and calls `add` for each.
+/// Returns those that stand for others with their numbers.
+fn number(states: &mut [u32], start: u32, mut next: u32, mut add: impl FnMut(u32)) -> Vec<(u32, u32)> {
+    let mut of_others = Vec::new();
+    for (point, state) in (start..).zip(states) {
+        *state = match *state {
+            KEPT => next,
+            STANDS => {
+                of_others.push((point, next));
+                Numbers::NONE
+            }
+            _ => {
+                *state = Numbers::NONE;
+                continue;
+            }
+        };
+        add(point);
+        next += 1;
+    }
+    of_others
 }

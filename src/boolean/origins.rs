@@ -28,10 +28,9 @@ impl Kept {
         Self { first, bits: vec![0; count.div_ceil(64)] }
     }
 
-    /// Adds the triangle `place` places after the first.
-    #[inline]
-    pub(super) fn insert(&mut self, place: usize) {
-        self.bits[place / 64] |= 1 << (place % 64);
+    /// A bit for each triangle, 64 in a word, those past the last one zero.
+    pub(super) fn bits_mut(&mut self) -> &mut [u64] {
+        &mut self.bits
     }
 
     fn runs(&self) -> impl Iterator<Item = Run> {
@@ -253,7 +252,7 @@ mod tests {
                 let first = Origin { operand: 1, triangle: 17, reversed: rng.random() };
                 let (mut kept, mut list) = (Kept::none_of(first, count), Vec::new());
                 for place in (0..count).filter(|_| rng.random_bool(share)).collect::<Vec<_>>() {
-                    kept.insert(place);
+                    kept.bits_mut()[place / 64] |= 1 << (place % 64);
                     list.push(Origin { triangle: 17 + place as u32, ..first });
                 }
                 let mut origins = Origins::default();
@@ -262,6 +261,22 @@ mod tests {
                 origins.push(more);
                 list.push(more);
                 assert_eq!(origins.iter().collect::<Vec<_>>(), list, "{share} of {count}");
+
+                let whole = [7, 5].map(|operand| Origins::of_operand(operand, 2_000));
+                let renumbered = origins.clone().through(whole.each_ref());
+                let expected =
+                    list.iter().map(|origin| Origin { operand: [7, 5][origin.operand as usize], ..*origin });
+                assert!(renumbered.iter().eq(expected));
+                let places: Vec<Origin> = (0..list.len() as u32)
+                    .filter(|_| rng.random_bool(0.5))
+                    .map(|triangle| Origin { operand: 0, triangle, reversed: true })
+                    .collect();
+                let through = places.iter().copied().collect::<Origins>().through([&origins, &whole[1]]);
+                let turned = |origin: &Origin| {
+                    let source = list[origin.triangle as usize];
+                    Origin { reversed: !source.reversed, ..source }
+                };
+                assert!(through.iter().eq(places.iter().map(turned)));
             }
         }
     }

@@ -207,7 +207,7 @@ impl View<'_> {
         })?;
         let (near, grids): (Vec<Vec<u32>>, Vec<Occupancy>) = pieces.into_iter().unzip();
         let passed = grids.into_iter().reduce(Occupancy::united).unwrap_or_else(|| self.grid.empty());
-        Ok((runner.concat(near, 0)?, passed))
+        Ok((runner.concat(near)?, passed))
     }
 
     /// Those of the near triangles that touch a cell the other operand passes, or leave the common box.

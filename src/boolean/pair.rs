@@ -212,10 +212,10 @@ fn largest_coordinate(bounds: &[Bounds; 2]) -> f64 {
 }
 
 /// Bytes of the tables whose size the operands give: places, classes and winding numbers of vertices, the near triangles
-/// (twice), and the result if nothing were left out (triangles twice: as written by several threads, and together).
+/// (twice), the places of directions, and the result if nothing were left out.
 fn fixed_tables(sides: &[Operand<'_>; 2]) -> u64 {
-    const PER_VERTEX: usize = size_of::<Place>() + 4 * size_of::<u32>() + size_of::<[f64; 3]>();
-    const PER_TRIANGLE: usize = 2 * size_of::<u32>() + 2 * size_of::<[u32; 3]>();
+    const PER_VERTEX: usize = size_of::<Place>() + 5 * size_of::<u32>() + size_of::<[f64; 3]>();
+    const PER_TRIANGLE: usize = 2 * size_of::<u32>() + size_of::<[u32; 3]>();
     sides
         .iter()
         .map(|side| (side.positions.len() * PER_VERTEX + side.triangles.len() * PER_TRIANGLE) as u64)

@@ -17,6 +17,8 @@ use crate::parallel::Runner;
 
 /// No face, segment or node.
 const NONE: u32 = u32::MAX;
+/// So many edges are looked at between looks at the limits.
+const EDGES_BETWEEN_CHECKS: usize = 1 << 12;
 /// More than two faces.
 const MANY: u32 = u32::MAX - 1;
 
@@ -60,6 +62,9 @@ impl PlaneFaces {
         let mut dropped = BitSet::new(crossings.nodes.len());
         let mut joined: Vec<[u32; 2]> = Vec::new();
         for (index, &[f, g]) in borders.beside.iter().enumerate() {
+            if index % EDGES_BETWEEN_CHECKS == 0 {
+                runner.control.check()?;
+            }
             if f == NONE {
                 continue;
             }

@@ -75,6 +75,30 @@ impl Triangulator {
         shape
     }
 
+    /// The same where the triangulation is sound, else appends nothing and returns false; large regions in no more than
+    /// n log n steps.
+    pub(crate) fn soundly(
+        &mut self,
+        points: &[[f64; 2]],
+        edges: &[[u32; 2]],
+        triangles: &mut Vec<[u32; 3]>,
+    ) -> bool {
+        let before = triangles.len();
+        let boundary = self.tracer.trace(points, edges);
+        let is_sound = holes::group(points, boundary).iter().all(|polygon| {
+            let rings: Vec<&[u32]> =
+                std::iter::once(&polygon.outer).chain(&polygon.holes).map(Vec::as_slice).collect();
+            if rings.iter().map(|ring| ring.len()).sum::<usize>() >= DELAUNAY_FROM {
+                return delaunay::triangulate(points, &rings, triangles);
+            }
+            self.with_holes(points, polygon, triangles) == Shape::Sound
+        });
+        if !is_sound {
+            triangles.truncate(before);
+        }
+        is_sound
+    }
+
     /// Triangulates one closed loop.
     pub(crate) fn simple(
         &mut self,

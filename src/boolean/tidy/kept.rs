@@ -59,7 +59,7 @@ pub(super) fn edges_beyond(
     cutter: &Cutter<'_>,
     parts: &[Part],
     complete: &BitSet,
-    numbers: &Numbers,
+    numbers: &Renumbering,
 ) -> FxHashSet<(u32, u32)> {
     let mut beyond = FxHashSet::default();
     for_kept(cutter, parts, |part, _, points, count| {
@@ -78,13 +78,13 @@ pub(super) fn edges_beyond(
 }
 
 /// Numbers without gaps for some of the vertices and nodes, in their order.
-pub(super) struct Numbers {
+pub(super) struct Renumbering {
     chosen: BitSet,
     /// How many of them come before each word of the set.
     before: Vec<u32>,
 }
 
-impl Numbers {
+impl Renumbering {
     /// Numbers for the given ones of `count` points.
     pub(super) fn of(count: usize, points: impl IntoIterator<Item = u32>) -> Self {
         let mut chosen = BitSet::new(count);

@@ -10,7 +10,7 @@ use super::super::outcome::Origin;
 use super::super::planes::source_and_axes;
 use super::Tidied;
 use super::adjacency::Adjacency;
-use super::kept::{Numbers, edges_beyond, kept_triangles};
+use super::kept::{Renumbering, edges_beyond, kept_triangles};
 use super::manifold::Surface;
 use crate::exact::{Sign, orient2d};
 use crate::mesh::Buckets;
@@ -75,7 +75,7 @@ impl<'a> Patch<'a> {
             flat: piece.flat,
             alive: true,
         }));
-        let numbers = Numbers::of(count, faces.iter().flat_map(|face| face.corners));
+        let numbers = Renumbering::of(count, faces.iter().flat_map(|face| face.corners));
         let beyond = edges_beyond(cutter, parts, &complete, &numbers);
         for face in &mut faces {
             face.corners = face.corners.map(|point| numbers.here(point));

@@ -12,7 +12,7 @@ use super::patch::{Face, Patch};
 use super::shared_edges::Edge;
 use super::zero_area::is_low;
 use crate::mesh::UnionFind;
-use crate::polygon::{Shape, Triangulator};
+use crate::polygon::Triangulator;
 
 /// Edges to split, with the vertices on them.
 pub(super) struct Splits {
@@ -91,12 +91,16 @@ fn strips(patch: &Patch<'_>, faces: &[u32], splits: &Splits, planes: &Planes<'_>
         }
     }
     sides.sort_unstable();
+    let between = sides.chunk_by(|x, y| x.0 == y.0).filter_map(|group| match *group {
+        [(edge, false, one), (_, true, other)] => Some((edge, one, other)),
+        _ => None,
+    });
+    let borders: Vec<(Edge, u32, u32)> = between.collect();
+    let is_crowded = crowded(patch, &borders);
     let origin = |place: u32| patch.faces[faces[place as usize] as usize].origin;
     let mut together = UnionFind::new(faces.len());
-    for group in sides.chunk_by(|x, y| x.0 == y.0) {
-        if let &[(_, false, one), (_, true, other)] = group
-            && planes.mergeable(origin(one), origin(other))
-        {
+    for (&(_, one, other), is_crowded) in borders.iter().zip(is_crowded) {
+        if !is_crowded && planes.mergeable(origin(one), origin(other)) {
             together.join(one, other);
         }
     }
@@ -107,6 +111,27 @@ fn strips(patch: &Patch<'_>, faces: &[u32], splits: &Splits, planes: &Planes<'_>
     }
     strips.retain(|strip| strip.len() > 1);
     strips
+}
+
+/// For each of some edges, ascending, whether there are, or may be, more than two triangles: bodies touch there, and come apart
+/// only if all of them keep the edge.
+fn crowded(patch: &Patch<'_>, edges: &[(Edge, u32, u32)]) -> Vec<bool> {
+    let mut lower_ends = BitSet::new(patch.point_count());
+    edges.iter().for_each(|(edge, ..)| lower_ends.insert(edge.0));
+    let mut triangles = vec![0u32; edges.len()];
+    for face in patch.faces.iter().filter(|face| face.alive) {
+        for k in 0..3 {
+            let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
+            let edge = (u.min(v), u.max(v));
+            if lower_ends.contains(edge.0)
+                && let Ok(place) = edges.binary_search_by_key(&edge, |entry| entry.0)
+            {
+                triangles[place] += 1;
+            }
+        }
+    }
+    let is_known = |&(u, v): &Edge| patch.is_complete(u) || patch.is_complete(v);
+    edges.iter().zip(triangles).map(|((edge, ..), count)| count != 2 || !is_known(edge)).collect()
 }
 
 /// Triangulates some faces of one plane as one, if that is possible soundly.
@@ -125,7 +150,8 @@ fn triangulate(patch: &mut Patch<'_>, strip: &[u32], splits: &Splits, triangulat
             edges.extend(way.windows(2).map(|pair| [pair[0], pair[1]]));
         }
     }
-    edges.sort_unstable_by_key(|&[u, v]| (u.min(v), u.max(v), u > v));
+    let order = |&[u, v]: &[u32; 2]| (u.min(v), u.max(v), u > v);
+    edges.sort_unstable_by_key(order);
     let mut boundary: Vec<[u32; 2]> = Vec::with_capacity(edges.len());
     for edge in edges {
         if boundary.last() == Some(&[edge[1], edge[0]]) {
@@ -156,7 +182,7 @@ fn triangulate(patch: &mut Patch<'_>, strip: &[u32], splits: &Splits, triangulat
     let local = |point: u32| points.binary_search(&point).map_or(u32::MAX, |place| place as u32);
     let local_boundary: Vec<[u32; 2]> = boundary.iter().map(|edge| edge.map(local)).collect();
     let mut triangles = Vec::new();
-    if triangulator.triangulate(&flat, &local_boundary, &mut triangles) != Shape::Sound {
+    if !triangulator.soundly(&flat, &local_boundary, &mut triangles) {
         return;
     }
     let triangles: Vec<[u32; 3]> =
@@ -165,8 +191,8 @@ fn triangulate(patch: &mut Patch<'_>, strip: &[u32], splits: &Splits, triangulat
         // Others may lie beside an edge between points whose triangles are not all here.
         patch.is_complete(u)
             || patch.is_complete(v)
-            || borders.contains(&(u.min(v), u.max(v)))
-            || boundary.contains(&[u, v])
+            || borders.binary_search(&(u.min(v), u.max(v))).is_ok()
+            || boundary.binary_search_by_key(&order(&[u, v]), order).is_ok()
     };
     let is_fine = |corners: &[u32; 3]| {
         !is_low(corners.map(|point| patch.position(point)), patch.rounding())
