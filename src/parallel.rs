@@ -57,17 +57,8 @@ impl<'a> Runner<'a> {
         grain: usize,
         piece: impl Fn(Range<usize>) -> T + Sync,
     ) -> Result<Vec<T>, Error> {
-        let pieces = count.div_ceil(grain.max(1));
-        let run = |i: usize| -> Result<T, Error> {
-            self.control.check()?;
-            Ok(piece(i * grain..((i + 1) * grain).min(count)))
-        };
-        #[cfg(feature = "parallel")]
-        if self.parallel && pieces > 1 {
-            use rayon::prelude::*;
-            return (0..pieces).into_par_iter().map(run).collect();
-        }
-        (0..pieces).map(run).collect()
+        let starts = (0..count).step_by(grain.max(1));
+        self.each(starts.map(|start| start..(start + grain.max(1)).min(count)).collect(), piece)
     }
 
     /// What `fill` appends for each piece of `0..count`, in order; about `room` items. The limits are checked before every
@@ -99,7 +90,7 @@ impl<'a> Runner<'a> {
     pub(crate) fn each<T: Send, R: Send>(
         self,
         items: Vec<T>,
-        work: impl Fn(T) -> R + Sync + Send,
+        work: impl Fn(T) -> R + Sync,
     ) -> Result<Vec<R>, Error> {
         let run = |item: T| -> Result<R, Error> {
             self.control.check()?;
@@ -119,7 +110,7 @@ impl<'a> Runner<'a> {
         self,
         items: &mut [T],
         grain: usize,
-        fill: impl Fn(usize, &mut [T]) + Sync + Send,
+        fill: impl Fn(usize, &mut [T]) + Sync,
     ) -> Result<(), Error> {
         let grain = grain.max(1);
         let pieces = items.chunks_mut(grain).enumerate().map(|(i, piece)| (i * grain, piece)).collect();
@@ -137,13 +128,8 @@ impl<'a> Runner<'a> {
         let count = lists.iter().map(Vec::len).sum();
         // Zeros cost nothing until they are written over, side by side.
         let mut all = vec![T::default(); count];
-        let mut rest = all.as_mut_slice();
-        let mut places = Vec::with_capacity(lists.len());
-        for list in lists {
-            let (place, after) = rest.split_at_mut(list.len());
-            places.push((place, list));
-            rest = after;
-        }
+        let lengths: Vec<usize> = lists.iter().map(Vec::len).collect();
+        let places = parts(&mut all, lengths).into_iter().zip(lists).collect();
         self.each(places, |(place, list)| place.copy_from_slice(&list))?;
         Ok(all)
     }
@@ -253,6 +239,12 @@ pub(crate) fn all<T: Sync>(items: &[T], test: impl Fn(&T) -> bool + Sync + Send)
         return items.par_chunks(1 << 14).all(|run| run.iter().all(&test));
     }
     items.iter().all(test)
+}
+
+/// Cuts `items` into parts of given lengths.
+pub(crate) fn parts<T>(mut items: &mut [T], lengths: impl IntoIterator<Item = usize>) -> Vec<&mut [T]> {
+    let part = |length| items.split_off_mut(..length).expect("no longer than the items together");
+    lengths.into_iter().map(part).collect()
 }
 
 /// Ranges that cut `0..length` into pieces of nearly equal size.

@@ -11,7 +11,7 @@ use super::operands::Operands;
 use super::origins::{Kept, Origins};
 use super::outcome::Origin;
 use crate::Error;
-use crate::parallel::{Runner, ranges};
+use crate::parallel::{Runner, parts, ranges};
 
 /// A triangle that cutting made or changed.
 #[derive(Clone, Copy, Debug)]
@@ -193,14 +193,8 @@ impl Ingredients<'_> {
         let count: usize = counts.iter().sum();
         // Zeros cost nothing until they are written over.
         let mut triangles = vec![[0; 3]; count + self.new.len()];
-        let mut rest = triangles.as_mut_slice();
-        let mut places = Vec::with_capacity(pieces.len());
-        for ((part, range), count) in pieces.into_iter().zip(counts) {
-            let (place, after) = rest.split_at_mut(count);
-            places.push((part, range, place));
-            rest = after;
-        }
-        let lists = runner.each(places, |(part, range, place)| {
+        let places = pieces.into_iter().zip(parts(&mut triangles, counts)).collect();
+        let lists = runner.each(places, |((part, range), place)| {
             let mut places = place.iter_mut();
             let origins = self.append(part, range, numbers, |triangle| {
                 *places.next().expect("as many as were counted") = triangle;

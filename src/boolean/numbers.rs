@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rustc_hash::FxHashMap;
 
 use crate::Error;
-use crate::parallel::Runner;
+use crate::parallel::{Runner, parts};
 
 /// Which points a result uses, and their numbers in it.
 ///
@@ -160,18 +160,20 @@ impl Numbers {
         let counts =
             runner.pieces(states.len(), PIECE, |range| states[range].iter().filter(is_used).count())?;
         self.positions = vec![[0.0; 3]; counts.iter().sum()];
-        let mut pieces = Vec::with_capacity(counts.len());
-        let (mut rest, mut first) = (self.positions.as_mut_slice(), 0);
-        for ((place, states), count) in self.numbers.chunks_mut(PIECE).enumerate().zip(counts) {
-            let (positions, after) = rest.split_at_mut(count);
-            pieces.push(((place * PIECE) as u32, states, first, positions));
-            (rest, first) = (after, first + count as u32);
-        }
-        let of_others = runner.each(pieces, |(start, states, first, positions)| {
+        let (mut start, mut next) = (0, 0);
+        let pieces = self.numbers.chunks_mut(PIECE).zip(parts(&mut self.positions, counts));
+        let pieces = pieces.map(|(states, positions)| {
+            let first = (start, next);
+            (start, next) = (start + states.len() as u32, next + positions.len() as u32);
+            (first, states, positions)
+        });
+        let of_others = runner.each(pieces.collect(), |((start, next), states, positions)| {
             let mut places = positions.iter_mut();
-            number(states, start, first, |point| {
+            let of_others = number(states, start, next, |point| {
                 *places.next().expect("as many as were counted") = position(point);
-            })
+            });
+            assert!(places.next().is_none(), "fewer than were counted");
+            of_others
         })?;
         Ok(of_others.concat())
     }

@@ -21,11 +21,6 @@ impl Planes<'_> {
         self.groups[origin.operand as usize].get(origin.triangle as usize).copied().unwrap_or(0)
     }
 
-    /// The two axes onto which a face is best projected, in the order in which it is seen counter-clockwise.
-    pub(super) fn axes(&self, origin: Origin) -> (usize, usize) {
-        source_and_axes(self.operands, origin).1
-    }
-
     /// Whether two faces look the same way from the same plane and belong to the same group, so that the border between
     /// them means nothing.
     pub(super) fn mergeable(&self, x: Origin, y: Origin) -> bool {

@@ -9,6 +9,18 @@ pub(super) struct Polygon {
     pub(super) holes: Vec<Vec<u32>>,
 }
 
+impl Polygon {
+    /// All its loops, the outline first.
+    pub(super) fn rings(&self) -> Vec<&[u32]> {
+        std::iter::once(&self.outer).chain(&self.holes).map(Vec::as_slice).collect()
+    }
+
+    /// The number of its vertices, those visited twice counted twice.
+    pub(super) fn len(&self) -> usize {
+        self.outer.len() + self.holes.iter().map(Vec::len).sum::<usize>()
+    }
+}
+
 /// Groups loops into polygons: counter-clockwise loops are outlines, each clockwise one goes to the smallest outline around
 /// it. A clockwise loop in no outline stands alone.
 pub(super) fn group(points: &[[f64; 2]], loops: Vec<Vec<u32>>) -> Vec<Polygon> {

@@ -86,10 +86,8 @@ impl Triangulator {
         let before = triangles.len();
         let boundary = self.tracer.trace(points, edges);
         let is_sound = holes::group(points, boundary).iter().all(|polygon| {
-            let rings: Vec<&[u32]> =
-                std::iter::once(&polygon.outer).chain(&polygon.holes).map(Vec::as_slice).collect();
-            if rings.iter().map(|ring| ring.len()).sum::<usize>() >= DELAUNAY_FROM {
-                return delaunay::triangulate(points, &rings, triangles);
+            if polygon.len() >= DELAUNAY_FROM {
+                return delaunay::triangulate(points, &polygon.rings(), triangles);
             }
             self.with_holes(points, polygon, triangles) == Shape::Sound
         });
@@ -121,13 +119,8 @@ impl Triangulator {
         if polygon.holes.is_empty() {
             return self.simple(points, &polygon.outer, triangles);
         }
-        let vertices = polygon.outer.len() + polygon.holes.iter().map(Vec::len).sum::<usize>();
-        if vertices >= DELAUNAY_FROM {
-            let rings: Vec<&[u32]> =
-                std::iter::once(&polygon.outer).chain(&polygon.holes).map(Vec::as_slice).collect();
-            if delaunay::triangulate(points, &rings, triangles) {
-                return Shape::Sound;
-            }
+        if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate(points, &polygon.rings(), triangles) {
+            return Shape::Sound;
         }
         match holes::bridge(points, polygon) {
             Some(joined) => self.ears.clip(points, &joined, triangles),

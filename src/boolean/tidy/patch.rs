@@ -160,14 +160,19 @@ impl<'a> Patch<'a> {
         self.cutter.rounding
     }
 
-    /// The two axes onto which a face is best projected, in the order in which it is seen counter-clockwise.
-    pub(super) fn axes(&self, origin: Origin) -> (usize, usize) {
-        source_and_axes(self.cutter.operands, origin).1
+    /// Points along the axis a face looks along most, so that it is seen counter-clockwise.
+    pub(super) fn projected(&self, points: &[u32], origin: Origin) -> Vec<[f64; 2]> {
+        let (_, (x, y)) = source_and_axes(self.cutter.operands, origin);
+        let projected = |&point: &u32| {
+            let position = self.position(point);
+            [position[x], position[y]]
+        };
+        points.iter().map(projected).collect()
     }
 
     /// Whether a triangle looks the way of the face it was cut from.
     pub(super) fn is_sound(&self, corners: &[u32; 3], origin: Origin) -> bool {
-        let (x, y) = self.axes(origin);
+        let (_, (x, y)) = source_and_axes(self.cutter.operands, origin);
         let [a, b, c] = corners.map(|point| {
             let position = self.position(point);
             [position[x], position[y]]

@@ -112,14 +112,7 @@ impl Remover<'_> {
         if outline.len() < 3 {
             return true;
         }
-        let (x, y) = self.planes.axes(origin);
-        let points: Vec<[f64; 2]> = outline
-            .iter()
-            .map(|&point| {
-                let position = patch.position(point);
-                [position[x], position[y]]
-            })
-            .collect();
+        let points = patch.projected(outline, origin);
         let numbers: Vec<u32> = (0..outline.len() as u32).collect();
         let mut triangles = Vec::new();
         if self.triangulator.simple(&points, &numbers, &mut triangles) != Shape::Sound {

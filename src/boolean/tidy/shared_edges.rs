@@ -14,15 +14,12 @@ use super::super::planes::Planes;
 use super::manifold::{HalfEdges, Surface};
 use super::patch::Patch;
 use super::point_grid::PointGrid;
-use super::split_faces::{Splits, split_faces};
+use super::split_faces::{Edge, Splits, split_faces};
 use super::zero_area::is_low;
 use crate::exact::collinear;
 use crate::mesh::Buckets;
 use crate::spatial::{BoxTree, Frame};
 use crate::{Control, Error};
-
-/// An edge, from its lower point to its higher one.
-pub(super) type Edge = (u32, u32);
 
 /// Rounds of splitting: halves may have vertices on them again.
 const ROUNDS: usize = 4;

@@ -9,10 +9,12 @@ use super::super::cut_faces::BitSet;
 use super::super::planes::Planes;
 use super::manifold::Surface;
 use super::patch::{Face, Patch};
-use super::shared_edges::Edge;
 use super::zero_area::is_low;
-use crate::mesh::UnionFind;
+use crate::mesh::{Buckets, UnionFind};
 use crate::polygon::Triangulator;
+
+/// An edge, from its lower point to its higher one.
+pub(super) type Edge = (u32, u32);
 
 /// Edges to split, with the vertices on them.
 pub(super) struct Splits {
@@ -64,18 +66,19 @@ pub(super) fn split_faces(patch: &mut Patch<'_>, splits: &Splits, planes: Option
     let faces: Vec<u32> = (0..patch.faces.len() as u32)
         .filter(|&index| splits.is_split(&patch.faces[index as usize]))
         .collect();
-    let strips = planes.map_or_else(Vec::new, |planes| strips(patch, &faces, splits, planes));
-    let mut triangulator = Triangulator::default();
-    for strip in strips {
-        triangulate(patch, &strip, splits, &mut triangulator);
+    if let Some(planes) = planes {
+        let mut triangulator = Triangulator::default();
+        for strip in strips(patch, &faces, splits, planes).each().filter(|strip| strip.len() > 1) {
+            triangulate(patch, strip, splits, &mut triangulator);
+        }
     }
     for index in faces {
         split_face(patch, index, splits);
     }
 }
 
-/// Faces of one plane that are to be split and lie side by side.
-fn strips(patch: &Patch<'_>, faces: &[u32], splits: &Splits, planes: &Planes<'_>) -> Vec<Vec<u32>> {
+/// The faces that are to be split, those of one plane side by side together.
+fn strips(patch: &Patch<'_>, faces: &[u32], splits: &Splits, planes: &Planes<'_>) -> Buckets<u32> {
     // Every side that is not to be split: its ends, whether it runs from the lower one, and the place of its face.
     let mut sides: Vec<(Edge, bool, u32)> = Vec::with_capacity(2 * faces.len());
     for (place, &index) in (0..).zip(faces) {
@@ -105,12 +108,7 @@ fn strips(patch: &Patch<'_>, faces: &[u32], splits: &Splits, planes: &Planes<'_>
         }
     }
     let (count, labels) = together.labels();
-    let mut strips = vec![Vec::new(); count];
-    for (&label, &index) in labels.iter().zip(faces) {
-        strips[label as usize].push(index);
-    }
-    strips.retain(|strip| strip.len() > 1);
-    strips
+    Buckets::new(count, labels.iter().copied().zip(faces.iter().copied()))
 }
 
 /// For each of some edges, ascending, whether there are, or may be, more than two triangles: bodies touch there, and come apart
@@ -171,14 +169,7 @@ fn triangulate(patch: &mut Patch<'_>, strip: &[u32], splits: &Splits, triangulat
         return;
     }
     let face = patch.faces[strip[0] as usize];
-    let (x, y) = patch.axes(face.origin);
-    let flat: Vec<[f64; 2]> = points
-        .iter()
-        .map(|&point| {
-            let position = patch.position(point);
-            [position[x], position[y]]
-        })
-        .collect();
+    let flat = patch.projected(&points, face.origin);
     let local = |point: u32| points.binary_search(&point).map_or(u32::MAX, |place| place as u32);
     let local_boundary: Vec<[u32; 2]> = boundary.iter().map(|edge| edge.map(local)).collect();
     let mut triangles = Vec::new();
