@@ -17,38 +17,18 @@
 //! rounded; operands that touch resolve as regularised set operations do; the same input gives the same bits on any number of
 //! threads. **Not guaranteed**: that rounding introduces no crossings of the size of an ulp.
 
-mod assemble;
+mod arrangement;
 mod candidates;
-mod capsule;
-mod capsule_tree;
-mod certificate;
-mod crossings;
+mod classify;
+mod complex;
 mod cut;
-mod cut_edges;
-mod cut_faces;
-mod directions;
-mod identify;
-mod merge_order;
-mod multiplicity;
-mod nary;
-mod numbers;
-mod operands;
-mod origins;
-mod outcome;
-mod overlap;
+mod many;
 mod pair;
-mod plane_faces;
-mod planes;
-mod refined_boxes;
-mod self_crossings;
-mod sheets;
+mod result;
 mod tidy;
-mod unrounded;
-mod walls;
-mod winding;
 
-pub use certificate::{Certificate, OperandState};
-pub use outcome::{Origin, Outcome};
+pub use result::certificate::{Certificate, OperandState};
+pub use result::outcome::{Origin, Outcome};
 
 use crate::control::Control;
 use crate::parallel::Runner;
@@ -144,8 +124,8 @@ impl Options {
             return Err(Error::InvalidArgument("a boolean needs at least one operand".into()));
         }
         match self.threads {
-            None => nary::run(self, operation, operands, Runner::new(&self.control, true)),
-            Some(0 | 1) => nary::run(self, operation, operands, Runner::new(&self.control, false)),
+            None => many::run(self, operation, operands, Runner::new(&self.control, true)),
+            Some(0 | 1) => many::run(self, operation, operands, Runner::new(&self.control, false)),
             Some(threads) => self.run_in_pool(operation, operands, threads),
         }
     }
@@ -161,7 +141,7 @@ impl Options {
             .num_threads(threads)
             .build()
             .map_err(|error| Error::InvalidArgument(format!("cannot make {threads} threads: {error}")))?;
-        pool.install(|| nary::run(self, operation, operands, Runner::new(&self.control, true)))
+        pool.install(|| many::run(self, operation, operands, Runner::new(&self.control, true)))
     }
 
     #[cfg(not(feature = "parallel"))]
@@ -171,7 +151,7 @@ impl Options {
         operands: &[&Solid],
         _threads: usize,
     ) -> Result<Outcome, Error> {
-        nary::run(self, operation, operands, Runner::new(&self.control, false))
+        many::run(self, operation, operands, Runner::new(&self.control, false))
     }
 }
 

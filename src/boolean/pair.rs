@@ -2,23 +2,23 @@
 
 use rustc_hash::FxHashSet;
 
-use super::Operation;
-use super::assemble::{Assembled, Ingredients, NewTriangle};
-use super::candidates::Candidates;
-use super::crossings;
-use super::cut::Cutter;
-use super::cut_edges::CutEdges;
-use super::cut_faces::CutFaces;
-use super::identify::Identification;
-use super::multiplicity::{self, Part};
-use super::operands::{Operand, Operands};
-use super::outcome::Origin;
-use super::overlap::{Overlap, Place};
-use super::plane_faces::PlaneFaces;
-use super::planes::Planes;
-use super::tidy;
-use super::walls;
-use super::winding;
+use crate::boolean::Operation;
+use crate::boolean::arrangement::crossings;
+use crate::boolean::arrangement::cut_edges::CutEdges;
+use crate::boolean::arrangement::cut_faces::CutFaces;
+use crate::boolean::arrangement::identify::Identification;
+use crate::boolean::arrangement::plane_faces::PlaneFaces;
+use crate::boolean::candidates::Candidates;
+use crate::boolean::candidates::overlap::{Overlap, Place};
+use crate::boolean::classify::multiplicity::{self, Part};
+use crate::boolean::classify::winding;
+use crate::boolean::complex::operands::{Operand, Operands};
+use crate::boolean::complex::planes::Planes;
+use crate::boolean::cut::Cutter;
+use crate::boolean::cut::walls;
+use crate::boolean::result::assemble::{Assembled, Ingredients, NewTriangle};
+use crate::boolean::result::outcome::Origin;
+use crate::boolean::tidy;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::{Error, Solid};
@@ -32,19 +32,19 @@ const MOST_VERTICES: usize = 1 << 31;
 
 /// Settings of one combination.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Settings<'a> {
+pub(crate) struct Settings<'a> {
     /// Whether bodies that touch become one.
-    pub(super) fuse: bool,
+    pub(crate) fuse: bool,
     /// Whether points at the same place become one where operands touch.
-    pub(super) glue: bool,
+    pub(crate) glue: bool,
     /// Whether vertices that nobody needs are removed.
-    pub(super) remove_vertices: bool,
+    pub(crate) remove_vertices: bool,
     /// The result's group of each triangle of A and of B; empty if there are no groups.
-    pub(super) groups: [&'a [u32]; 2],
+    pub(crate) groups: [&'a [u32]; 2],
 }
 
 /// Combines two solids.
-pub(super) fn combine(
+pub(crate) fn combine(
     operation: Operation,
     a: &Solid,
     b: &Solid,

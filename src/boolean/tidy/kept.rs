@@ -2,11 +2,11 @@
 
 use rustc_hash::FxHashSet;
 
-use super::super::cut::Cutter;
-use super::super::cut_faces::BitSet;
-use super::super::multiplicity::Part;
-use super::super::outcome::Origin;
 use super::patch::Face;
+use crate::boolean::arrangement::cut_faces::BitSet;
+use crate::boolean::classify::multiplicity::Part;
+use crate::boolean::cut::Cutter;
+use crate::boolean::result::outcome::Origin;
 
 /// Calls `found` for every kept uncut triangle: part, triangle, its points, and how often it counts (negative where it is
 /// turned over once more).

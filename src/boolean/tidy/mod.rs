@@ -17,11 +17,11 @@ mod short_edges;
 mod split_faces;
 mod zero_area;
 
-use super::assemble::NewTriangle;
-use super::cut::Cutter;
-use super::cut_faces::BitSet;
-use super::multiplicity::Part;
-use super::planes::Planes;
+use crate::boolean::arrangement::cut_faces::BitSet;
+use crate::boolean::classify::multiplicity::Part;
+use crate::boolean::complex::planes::Planes;
+use crate::boolean::cut::Cutter;
+use crate::boolean::result::assemble::NewTriangle;
 use crate::parallel::Runner;
 use crate::{Control, Error};
 use manifold::HalfEdges;

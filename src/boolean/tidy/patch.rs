@@ -2,16 +2,16 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::super::assemble::NewTriangle;
-use super::super::cut::Cutter;
-use super::super::cut_faces::BitSet;
-use super::super::multiplicity::Part;
-use super::super::outcome::Origin;
-use super::super::planes::source_and_axes;
 use super::Tidied;
 use super::adjacency::Adjacency;
 use super::kept::{Renumbering, edges_beyond, kept_triangles};
 use super::manifold::Surface;
+use crate::boolean::arrangement::cut_faces::BitSet;
+use crate::boolean::classify::multiplicity::Part;
+use crate::boolean::complex::planes::source_and_axes;
+use crate::boolean::cut::Cutter;
+use crate::boolean::result::assemble::NewTriangle;
+use crate::boolean::result::outcome::Origin;
 use crate::exact::{Sign, orient2d};
 use crate::mesh::Buckets;
 

@@ -4,9 +4,9 @@
 //! operation made, or met, are asked about. The hole is triangulated anew, in the projection of its plane, and only where
 //! all new triangles are sound and no edge would occur twice.
 
-use super::super::outcome::Origin;
-use super::super::planes::Planes;
 use super::patch::Patch;
+use crate::boolean::complex::planes::Planes;
+use crate::boolean::result::outcome::Origin;
 use crate::exact::collinear;
 use crate::polygon::{Shape, Triangulator};
 use crate::{Control, Error};

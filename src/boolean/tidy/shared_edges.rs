@@ -9,13 +9,13 @@ use std::cell::LazyCell;
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
-use super::super::cut::Cutter;
-use super::super::planes::Planes;
 use super::manifold::{HalfEdges, Surface};
 use super::patch::Patch;
 use super::point_grid::PointGrid;
 use super::split_faces::{Edge, Splits, split_faces};
 use super::zero_area::is_low;
+use crate::boolean::complex::planes::Planes;
+use crate::boolean::cut::Cutter;
 use crate::exact::collinear;
 use crate::mesh::Buckets;
 use crate::spatial::{BoxTree, Frame};

@@ -6,8 +6,8 @@ use std::collections::BinaryHeap;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
-use super::super::cut::Cutter;
 use super::patch::{Face, Patch};
+use crate::boolean::cut::Cutter;
 use crate::exact::collinear;
 
 /// A flip: the two triangles that share the longest side from `c` to `a` of the flat triangle `a, b, c`.

@@ -1,0 +1,235 @@
+//! Many operands: which pairs are combined in which order.
+//!
+//! A union merges neighbours first (space is halved again and again), so that most merges are local and pieces vanish
+//! early; a difference takes the union of all tools off the first operand in one step; an intersection starts with the
+//! smallest operands; a symmetric difference goes from left to right.
+
+mod merge_order;
+mod sheets;
+
+use std::borrow::Cow;
+
+use crate::boolean::cut::dominant_axis;
+use crate::boolean::pair::{self, Settings};
+use crate::boolean::result::certificate::{Notes, OperandState};
+use crate::boolean::result::origins::Origins;
+use crate::boolean::{Contact, Operation, Options, Origin, Outcome};
+use crate::exact::{Sign, orient2d};
+use crate::mesh::{FaceGroup, FaceGroups};
+use crate::parallel::Runner;
+use crate::{Error, Mesh, Solid};
+
+/// From this many triangles on, threads are worth waking.
+const PARALLEL_FROM: usize = 4_096;
+
+/// An operand, or what some of them have become.
+struct Partial<'a> {
+    solid: Cow<'a, Solid>,
+    /// Where each triangle came from.
+    origins: Origins,
+    /// The result's group of each triangle; empty if no operand has groups.
+    groups: Vec<u32>,
+    ties: u64,
+    /// Whether rounding turned over some triangle on the way.
+    may_be_inverted: bool,
+}
+
+impl<'a> Partial<'a> {
+    fn new(solid: Cow<'a, Solid>, origins: Origins, groups: Vec<u32>) -> Self {
+        Self { solid, origins, groups, ties: 0, may_be_inverted: false }
+    }
+
+    /// The middle of its box.
+    fn centre(&self) -> [f64; 3] {
+        self.solid.bounds().map_or([0.0; 3], |b| std::array::from_fn(|k| 0.5 * b.low[k] + 0.5 * b.high[k]))
+    }
+}
+
+/// Runs an operation over all operands.
+pub(crate) fn run(
+    options: &Options,
+    operation: Operation,
+    operands: &[&Solid],
+    runner: Runner<'_>,
+) -> Result<Outcome, Error> {
+    let groups = merged_groups(operands);
+    let mut partials: Vec<Partial<'_>> = operands
+        .iter()
+        .enumerate()
+        .map(|(i, solid)| {
+            if solid.is_edge_manifold() {
+                let groups = groups.of_operand(i, solid);
+                let origins = Origins::of_operand(i as u32, solid.mesh().triangles.len());
+                return Partial::new(Cow::Borrowed(*solid), origins, groups);
+            }
+            let (solid, source) = solid.separated();
+            let groups = groups.of_operand(i, &solid);
+            Partial::new(Cow::Owned(solid), sheets::origins(i as u32, &source), groups)
+        })
+        .collect();
+    let engine = Engine { options, runner };
+    let result = match operation {
+        Operation::Union => engine.union(partials)?,
+        Operation::Difference => {
+            let first = partials.remove(0);
+            if partials.is_empty() {
+                first
+            } else {
+                engine.combine(Operation::Difference, &first, &engine.union(partials)?)?
+            }
+        }
+        Operation::Intersection => {
+            // Smallest first; the order of equal ones is that of the arguments.
+            partials.sort_by_key(|partial| partial.solid.mesh().triangles.len());
+            engine.fold(Operation::Intersection, partials)?
+        }
+        Operation::SymmetricDifference => engine.fold(Operation::SymmetricDifference, partials)?,
+    };
+    let notes = Notes {
+        contacts: result.ties,
+        inverted: if result.may_be_inverted { count_inverted(&result, operands) } else { 0 },
+        operands: operands.iter().map(|solid| OperandState::of(solid)).collect(),
+    };
+    Ok(finish(result, groups.list, notes))
+}
+
+struct Engine<'o> {
+    options: &'o Options,
+    runner: Runner<'o>,
+}
+
+impl Engine<'_> {
+    fn fold<'a>(&self, operation: Operation, partials: Vec<Partial<'a>>) -> Result<Partial<'a>, Error> {
+        let count = partials.len() as f64;
+        let mut partials = partials.into_iter();
+        let mut result = partials.next().ok_or_else(no_operands)?;
+        for (i, partial) in partials.enumerate() {
+            self.runner.control.report("combining", i as f64 / count)?;
+            result = self.combine(operation, &result, &partial)?;
+        }
+        Ok(result)
+    }
+
+    /// Merges neighbours, round by round.
+    fn union<'a>(&self, partials: Vec<Partial<'a>>) -> Result<Partial<'a>, Error> {
+        let centres: Vec<[f64; 3]> = partials.iter().map(Partial::centre).collect();
+        let mut places: Vec<Option<Partial<'a>>> = partials.into_iter().map(Some).collect();
+        let (merges, mut done) = (places.len().saturating_sub(1), 0);
+        for pairs in merge_order::halving(&centres) {
+            self.runner.control.report("uniting", done as f64 / merges as f64)?;
+            // Whole merges side by side while there are enough of them, else parallel inside each.
+            let inside = if pairs.len() >= 8 { self.runner.serial() } else { self.runner };
+            let engine = Engine { options: self.options, runner: inside };
+            let merged = self.runner.pieces(pairs.len(), 1, |range| {
+                let [x, y] = pairs[range.start].map(|place| places[place].as_ref());
+                let both = x.zip(y).expect("a place is taken until it is merged into another");
+                engine.combine(Operation::Union, both.0, both.1)
+            })?;
+            done += merged.len();
+            for (&[x, y], merged) in pairs.iter().zip(merged) {
+                (places[x], places[y]) = (Some(merged?), None);
+            }
+        }
+        places.into_iter().flatten().next().ok_or_else(no_operands)
+    }
+
+    fn combine<'a>(
+        &self,
+        operation: Operation,
+        a: &Partial<'_>,
+        b: &Partial<'_>,
+    ) -> Result<Partial<'a>, Error> {
+        let settings = Settings {
+            fuse: self.options.contact == Contact::Fuse,
+            glue: operation == Operation::SymmetricDifference,
+            remove_vertices: self.options.remove_vertices,
+            groups: [&a.groups, &b.groups],
+        };
+        let triangles = a.solid.mesh().triangles.len() + b.solid.mesh().triangles.len();
+        let runner = if triangles < PARALLEL_FROM { self.runner.serial() } else { self.runner };
+        let made = pair::combine(operation, &a.solid, &b.solid, settings, runner)?;
+        let sources = [a, b];
+        let groups = if a.groups.is_empty() {
+            Vec::new()
+        } else {
+            made.origins
+                .iter()
+                .map(|origin| sources[origin.operand as usize].groups[origin.triangle as usize])
+                .collect()
+        };
+        let origins = made.origins.through([&a.origins, &b.origins]);
+        Ok(Partial {
+            solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(made.positions, made.triangles))),
+            origins,
+            groups,
+            ties: a.ties + b.ties + made.ties,
+            may_be_inverted: a.may_be_inverted || b.may_be_inverted || made.has_inverted,
+        })
+    }
+}
+
+/// Triangles of a result that look the other way than the faces they were cut from.
+fn count_inverted(result: &Partial<'_>, operands: &[&Solid]) -> u64 {
+    let mesh = result.solid.mesh();
+    let corners = |mesh: &Mesh, t: u32| mesh.triangles[t as usize].map(|v| mesh.positions[v as usize]);
+    let is_inverted = |(t, origin): &(u32, Origin)| {
+        let source = corners(operands[origin.operand as usize].mesh(), origin.triangle);
+        let triangle = corners(mesh, *t);
+        let (axis, positive) = dominant_axis(&source);
+        let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
+        let [a, b, c] = triangle.map(|p| [p[x], p[y]]);
+        let expected = if positive != origin.reversed { Sign::Positive } else { Sign::Negative };
+        ![expected, Sign::Zero].contains(&orient2d(a, b, c))
+    };
+    (0..).zip(result.origins.iter()).filter(is_inverted).count() as u64
+}
+
+fn no_operands() -> Error {
+    Error::InvalidArgument("a boolean needs at least one operand".into())
+}
+
+fn finish(result: Partial<'_>, list: Vec<FaceGroup>, notes: Notes) -> Outcome {
+    let mut solid = result.solid.into_owned();
+    solid.set_groups(FaceGroups { list, of_triangle: result.groups });
+    Outcome::new(solid, result.origins, notes)
+}
+
+/// The groups of all operands together; equal ones become one.
+struct MergedGroups {
+    list: Vec<FaceGroup>,
+    /// For each operand the number of each of its groups; a last entry for an operand without any.
+    numbers: Vec<Vec<u32>>,
+}
+
+fn merged_groups(operands: &[&Solid]) -> MergedGroups {
+    let mut merged = MergedGroups { list: Vec::new(), numbers: Vec::new() };
+    if operands.iter().all(|solid| solid.mesh().groups.list.is_empty()) {
+        return merged;
+    }
+    let mut number_of = |group: &FaceGroup| match merged.list.iter().position(|other| other == group) {
+        Some(number) => number as u32,
+        None => {
+            merged.list.push(group.clone());
+            merged.list.len() as u32 - 1
+        }
+    };
+    for solid in operands {
+        let groups = &solid.mesh().groups;
+        let mut numbers: Vec<u32> = groups.list.iter().map(&mut number_of).collect();
+        if groups.list.is_empty() {
+            numbers.push(number_of(&FaceGroup::default()));
+        }
+        merged.numbers.push(numbers);
+    }
+    merged
+}
+
+impl MergedGroups {
+    fn of_operand(&self, operand: usize, solid: &Solid) -> Vec<u32> {
+        let Some(numbers) = self.numbers.get(operand) else { return Vec::new() };
+        let mesh = solid.mesh();
+        (0..mesh.triangles.len())
+            .map(|t| numbers[mesh.groups.of_triangle.get(t).map_or(0, |&group| group as usize)])
+            .collect()
+    }
+}

@@ -1,0 +1,159 @@
+//! What is known of a result.
+
+use std::fmt;
+
+use serde_json::{Value, json};
+
+use crate::Solid;
+use crate::exact::collinear;
+
+/// What a result is, and what making it met.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Certificate {
+    /// Number of vertices.
+    pub vertices: usize,
+    /// Number of triangles.
+    pub triangles: usize,
+    /// Every directed edge is met by its opposite equally often.
+    pub closed: bool,
+    /// Every edge has two triangles and every vertex one fan of them.
+    pub manifold: bool,
+    /// Pieces of the surface connected by edges.
+    pub components: usize,
+    /// The genus, summed over the components; `None` if not manifold.
+    pub genus: Option<usize>,
+    /// Enclosed volume, in cubed units of the coordinates.
+    pub volume: f64,
+    /// Surface area, in squared units.
+    pub area: f64,
+    /// Triangles whose corners lie exactly on one line.
+    pub zero_area: usize,
+    /// Triangles that rounding turned over: they look the other way than the faces they were cut from.
+    pub inverted: u64,
+    /// No new vertex lies further from its exact place than this, in units of the coordinates: each coordinate is
+    /// correctly rounded.
+    pub largest_rounding: f64,
+    /// Decisions that plain coordinates left open, because operands touch or are aligned; the perturbation took them.
+    pub contacts: u64,
+    /// For each operand what is known of its crossings with itself.
+    pub operands: Vec<OperandState>,
+}
+
+/// What is known of an operand's crossings with itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OperandState {
+    /// Nobody has asked; see [`Solid::self_crossings`].
+    NotChecked,
+    /// It does not cross itself, but for so many pairs of triangles no deeper than rounding.
+    Clean {
+        /// Pairs of triangles that cross by rounding.
+        tolerated: usize,
+    },
+    /// It crosses itself in so many pairs of triangles: the result counts such regions as often as they are enclosed.
+    Crossing {
+        /// Pairs of triangles.
+        count: usize,
+    },
+}
+
+impl OperandState {
+    /// What a solid knows of itself.
+    #[must_use]
+    pub fn of(solid: &Solid) -> Self {
+        match solid.known_self_crossings() {
+            None => Self::NotChecked,
+            Some(known) if known.is_clean() => Self::Clean { tolerated: known.tolerated },
+            Some(known) => Self::Crossing { count: known.count },
+        }
+    }
+}
+
+/// What the pipeline noted while it worked.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Notes {
+    pub(crate) contacts: u64,
+    pub(crate) inverted: u64,
+    pub(crate) operands: Vec<OperandState>,
+}
+
+impl Certificate {
+    pub(crate) fn new(solid: &Solid, notes: &Notes) -> Self {
+        let mesh = solid.mesh();
+        let zero_area = mesh
+            .triangles
+            .iter()
+            .filter(|corners| {
+                let [a, b, c] = corners.map(|v| &mesh.positions[v as usize]);
+                collinear(a, b, c)
+            })
+            .count();
+        // Half a unit in the last place for each coordinate.
+        let largest = mesh.positions.iter().flatten().fold(0.0f64, |largest, x| largest.max(x.abs()));
+        let half_ulp = 0.5 * (largest.next_up() - largest);
+        Self {
+            vertices: mesh.positions.len(),
+            triangles: mesh.triangles.len(),
+            closed: crate::mesh::is_closed(mesh),
+            manifold: solid.is_manifold(),
+            components: solid.components(),
+            genus: solid.genus(),
+            volume: solid.volume(),
+            area: solid.area(),
+            zero_area,
+            inverted: notes.inverted,
+            largest_rounding: half_ulp * 3.0f64.sqrt(),
+            contacts: notes.contacts,
+            operands: notes.operands.clone(),
+        }
+    }
+
+    /// The certificate as a JSON object with stable keys.
+    #[must_use]
+    pub fn to_json(&self) -> Value {
+        let operands: Vec<Value> = self
+            .operands
+            .iter()
+            .map(|state| match state {
+                OperandState::NotChecked => json!({ "self_crossings": null }),
+                OperandState::Clean { tolerated } => json!({ "self_crossings": 0, "tolerated": tolerated }),
+                OperandState::Crossing { count } => json!({ "self_crossings": count }),
+            })
+            .collect();
+        json!({
+            "vertices": self.vertices,
+            "triangles": self.triangles,
+            "closed": self.closed,
+            "manifold": self.manifold,
+            "components": self.components,
+            "genus": self.genus,
+            "volume": self.volume,
+            "area": self.area,
+            "zero_area": self.zero_area,
+            "inverted": self.inverted,
+            "largest_rounding": self.largest_rounding,
+            "contacts": self.contacts,
+            "operands": operands,
+        })
+    }
+}
+
+impl fmt::Display for Certificate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} triangles", self.triangles)?;
+        f.write_str(if self.closed { ", closed" } else { ", NOT closed" })?;
+        f.write_str(if self.manifold { ", manifold" } else { ", NOT manifold" })?;
+        write!(f, ", {} shell{}", self.components, if self.components == 1 { "" } else { "s" })?;
+        if let Some(genus) = self.genus {
+            write!(f, ", genus {genus}")?;
+        }
+        write!(f, ", volume {}, area {}", self.volume, self.area)?;
+        if self.zero_area > 0 {
+            write!(f, ", {} without area", self.zero_area)?;
+        }
+        if self.inverted > 0 {
+            write!(f, ", {} turned over by rounding", self.inverted)?;
+        }
+        Ok(())
+    }
+}

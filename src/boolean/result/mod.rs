@@ -1,0 +1,7 @@
+//! The result: its arrays, where each triangle comes from, and what is known of it.
+
+pub(super) mod assemble;
+pub(super) mod certificate;
+pub(super) mod numbers;
+pub(super) mod origins;
+pub(super) mod outcome;

@@ -1,0 +1,128 @@
+//! What a boolean returns.
+
+use std::sync::OnceLock;
+
+use rustc_hash::FxHashMap;
+
+use crate::Solid;
+use crate::boolean::result::certificate::{Certificate, Notes};
+use crate::boolean::result::origins::Origins;
+
+/// Where a triangle of a result came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Origin {
+    /// Position of the operand in the argument list.
+    pub operand: u32,
+    /// Index of the triangle in that operand's [`Solid::mesh`] (see [`Solid::source_triangle`] for the mesh the solid
+    /// was made of). Where faces of one plane were merged, one of them.
+    pub triangle: u32,
+    /// Whether the result's triangle faces the other way.
+    pub reversed: bool,
+}
+
+/// The result of a boolean: a closed solid, where its triangles came from, and a certificate.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    solid: Solid,
+    origins: Origins,
+    /// The same one by one, once asked for.
+    list: OnceLock<Vec<Origin>>,
+    notes: Notes,
+    certificate: OnceLock<Certificate>,
+}
+
+impl Outcome {
+    pub(crate) fn new(solid: Solid, origins: Origins, notes: Notes) -> Self {
+        Self { solid, origins, list: OnceLock::new(), notes, certificate: OnceLock::new() }
+    }
+
+    /// The result; an empty one is a success.
+    #[must_use]
+    pub fn solid(&self) -> &Solid {
+        &self.solid
+    }
+
+    /// The result, by value.
+    #[must_use]
+    pub fn into_solid(self) -> Solid {
+        self.solid
+    }
+
+    /// For every triangle of the result, where it came from. The list is made when first asked for; O(n).
+    #[must_use]
+    pub fn origins(&self) -> &[Origin] {
+        self.list.get_or_init(|| self.origins.iter().collect())
+    }
+
+    /// What is known of the result. Computed once, when first asked for; O(n).
+    #[must_use]
+    pub fn certificate(&self) -> &Certificate {
+        self.certificate.get_or_init(|| Certificate::new(&self.solid, &self.notes))
+    }
+
+    /// The curves in which surfaces of different operands meet, as chains of vertices of the result; a closed curve ends
+    /// with the vertex it began with. O(n).
+    #[must_use]
+    pub fn curves(&self) -> Vec<Vec<u32>> {
+        let mut side_of: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+        let mut edges = Vec::new();
+        for (corners, origin) in self.solid.mesh().triangles.iter().zip(self.origins.iter()) {
+            for k in 0..3 {
+                let (u, v) = (corners[k], corners[(k + 1) % 3]);
+                match side_of.remove(&(v, u)) {
+                    Some(operand) if operand != origin.operand => edges.push([u.min(v), u.max(v)]),
+                    Some(_) => {}
+                    None => {
+                        side_of.insert((u, v), origin.operand);
+                    }
+                }
+            }
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        chains(&edges)
+    }
+}
+
+/// Edges strung together into chains: from ends and branchings first, then what is left, which is closed.
+fn chains(edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
+    let mut at: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
+    for (i, edge) in edges.iter().enumerate() {
+        for &v in edge {
+            at.entry(v).or_default().push(i);
+        }
+    }
+    let mut used = vec![false; edges.len()];
+    let mut chains = Vec::new();
+    let mut follow = |start: u32, first: usize, used: &mut Vec<bool>| {
+        let mut chain = vec![start];
+        let mut edge = first;
+        loop {
+            used[edge] = true;
+            let [u, v] = edges[edge];
+            let next = if *chain.last().unwrap_or(&start) == u { v } else { u };
+            chain.push(next);
+            let around = &at[&next];
+            match around.iter().find(|&&i| !used[i]) {
+                Some(&i) if around.len() == 2 => edge = i,
+                _ => break,
+            }
+        }
+        chains.push(chain);
+    };
+    let mut ends: Vec<u32> = at.iter().filter(|(_, around)| around.len() != 2).map(|(&v, _)| v).collect();
+    ends.sort_unstable();
+    for v in ends {
+        for &i in &at[&v] {
+            if !used[i] {
+                follow(v, i, &mut used);
+            }
+        }
+    }
+    for i in 0..edges.len() {
+        if !used[i] {
+            follow(edges[i][0], i, &mut used);
+        }
+    }
+    chains
+}
