@@ -18,7 +18,9 @@ pub mod order;
 mod orient;
 pub mod perturbed;
 pub mod position;
+mod projection;
 
 pub use integer::Integer;
 pub(crate) use orient::{PlaneFilter, orient3d_filter};
 pub use orient::{Sign, collinear, orient2d, orient3d};
+pub(crate) use projection::Projection;

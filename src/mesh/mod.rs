@@ -3,6 +3,7 @@
 //! [`Mesh`] holds positions and triangles and promises nothing. [`Solid::try_from`] is the gate: it checks a mesh,
 //! mends what can be mended without guessing, and otherwise tells what is wrong and where ([`Diagnosis`]).
 
+mod bit_set;
 mod bounds;
 mod buckets;
 mod chain;
@@ -12,6 +13,7 @@ mod diagnosis;
 mod duplicates;
 mod edges;
 mod groups;
+mod manifold;
 mod measure;
 mod nesting;
 mod orient;
@@ -25,11 +27,13 @@ mod transform;
 mod union_find;
 mod weld;
 
+pub(crate) use bit_set::BitSet;
 pub use bounds::Bounds;
 pub(crate) use buckets::Buckets;
 pub use diagnose::diagnose;
 pub use diagnosis::{Diagnosis, Fault, Place};
 pub use groups::{FaceGroup, FaceGroups, Material};
+pub(crate) use manifold::{HalfEdges, Surface, make_manifold};
 pub use self_crossing::{SelfCrossing, SelfCrossings};
 pub use solid::{Cleaning, Solid};
 pub(crate) use union_find::UnionFind;

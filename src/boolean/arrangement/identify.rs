@@ -8,9 +8,10 @@ use rustc_hash::FxHashMap;
 use crate::Error;
 use crate::boolean::arrangement::crossings::Crossings;
 use crate::boolean::arrangement::cut_edges::CutEdges;
-use crate::boolean::arrangement::cut_faces::{BitSet, CutFace, CutFaces, UNCUT};
+use crate::boolean::arrangement::cut_faces::{CutFace, CutFaces, UNCUT};
 use crate::boolean::arrangement::plane_faces::PlaneFaces;
 use crate::boolean::complex::operands::Operands;
+use crate::mesh::BitSet;
 use crate::parallel::Runner;
 
 /// Up to this many points are compared pair by pair.

@@ -8,10 +8,11 @@
 use crate::Error;
 use crate::boolean::arrangement::crossings::Crossings;
 use crate::boolean::arrangement::cut_edges::{CutEdges, locate};
-use crate::boolean::arrangement::cut_faces::{BitSet, CutFaces, UNCUT};
+use crate::boolean::arrangement::cut_faces::{CutFaces, UNCUT};
 use crate::boolean::complex::operands::Operands;
 use crate::boolean::complex::planes::Planes;
 use crate::exact::{Sign, orient3d};
+use crate::mesh::BitSet;
 use crate::mesh::UnionFind;
 use crate::parallel::Runner;
 

@@ -1,9 +1,8 @@
 //! Which faces of the result lie in one plane, by the exact planes of their source triangles.
 
 use crate::boolean::complex::operands::Operands;
-use crate::boolean::cut::dominant_axis;
 use crate::boolean::result::outcome::Origin;
-use crate::exact::{Sign, collinear, orient2d, orient3d, orient3d_filter};
+use crate::exact::{Projection, Sign, collinear, orient2d, orient3d, orient3d_filter};
 
 /// Compares source planes of triangles of the result.
 #[derive(Clone, Copy, Debug)]
@@ -60,19 +59,15 @@ fn source(operands: &Operands<'_>, origin: Origin) -> [[f64; 3]; 3] {
     if origin.reversed { [a, c, b] } else { [a, b, c] }
 }
 
-/// The face a triangle comes from, and the two axes onto which it is best projected, in the order in which it is seen
-/// counter-clockwise.
-pub(crate) fn source_and_axes(operands: &Operands<'_>, origin: Origin) -> ([[f64; 3]; 3], (usize, usize)) {
+/// The face a triangle comes from, and how it is projected.
+pub(crate) fn source_and_projection(operands: &Operands<'_>, origin: Origin) -> ([[f64; 3]; 3], Projection) {
     let source = source(operands, origin);
-    let (axis, positive) = dominant_axis(&source);
-    let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
-    (source, if positive { (x, y) } else { (y, x) })
+    (source, Projection::of(&source))
 }
 
 /// Whether the normals of two triangles of one plane point the same way.
 fn same_way(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
-    let (axis, positive) = dominant_axis(x);
-    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-    let [a, b, c] = y.map(|p| [p[i], p[j]]);
-    (orient2d(a, b, c) == Sign::Positive) == positive
+    let seen = Projection::of(x);
+    let [a, b, c] = y.map(|p| seen.project(&p));
+    orient2d(a, b, c) == Sign::Positive
 }

@@ -19,6 +19,7 @@ use crate::boolean::arrangement::plane_faces::PlaneFaces;
 use crate::boolean::arrangement::unrounded::ExtraCrossing;
 use crate::boolean::classify::multiplicity::Part;
 use crate::boolean::complex::operands::Operands;
+use crate::exact::Projection;
 use crate::parallel::Runner;
 use crate::polygon::{Shape, Triangulator};
 
@@ -144,9 +145,9 @@ impl Cutter<'_> {
         }
         scratch.positions.clear();
         scratch.positions.extend(points.iter().map(|&point| *self.position(point)));
-        let (x, y) = self.projection(part, face);
+        let seen = self.projection(part, face);
         scratch.points.clear();
-        scratch.points.extend(scratch.positions.iter().map(|position| [position[x], position[y]]));
+        scratch.points.extend(scratch.positions.iter().map(|position| seen.project(position)));
         scratch.triangles.clear();
         let shape =
             scratch.triangulator.triangulate(&scratch.points, &scratch.boundary, &mut scratch.triangles);
@@ -218,33 +219,12 @@ impl Cutter<'_> {
         })
     }
 
-    /// The two axes onto which a face is projected, in the order in which the kept side is seen counter-clockwise.
-    fn projection(&self, part: Part, face: &CutFace) -> (usize, usize) {
+    /// How a face is projected: its kept side is seen from the front.
+    fn projection(&self, part: Part, face: &CutFace) -> Projection {
         let corners = self.operands.corners(part.side, face.triangle).map(|corner| corner.position);
-        let (axis, positive) = dominant_axis(&corners);
-        let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
-        if positive != part.reversed { (x, y) } else { (y, x) }
+        let seen = Projection::of(&corners);
+        if part.reversed { seen.reversed() } else { seen }
     }
-}
-
-/// The axis the normal of a triangle is largest along, and whether it looks along it (or against it). Any axis will do
-/// for a triangle without area.
-pub(crate) fn dominant_axis(corners: &[[f64; 3]; 3]) -> (usize, bool) {
-    let [a, b, c] = corners;
-    let edge = |p: &[f64; 3], q: &[f64; 3]| -> [f64; 3] { std::array::from_fn(|k| q[k] - p[k]) };
-    let (mut u, mut v) = (edge(a, b), edge(a, c));
-    // To unit size, so that products neither vanish nor overflow.
-    let size = u.iter().chain(&v).fold(0.0f64, |size, x| size.max(x.abs()));
-    if size > 0.0 && size.is_finite() {
-        u = u.map(|x| x / size);
-        v = v.map(|x| x / size);
-    }
-    let normal: [f64; 3] = std::array::from_fn(|k| {
-        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-        u[l] * v[m] - u[m] * v[l]
-    });
-    let axis = (1..3).fold(0, |best, k| if normal[k].abs() > normal[best].abs() { k } else { best });
-    (axis, normal[axis] >= 0.0)
 }
 
 /// Removes pairs of opposite edges.

@@ -21,11 +21,11 @@ use crate::boolean::arrangement::unrounded::ExtraCrossing;
 use crate::boolean::candidates::Candidates;
 use crate::boolean::classify::multiplicity::Part;
 use crate::boolean::complex::operands::Operands;
-use crate::boolean::cut::{Cutter, dominant_axis};
+use crate::boolean::cut::Cutter;
 use crate::boolean::result::assemble::NewTriangle;
 use crate::boolean::result::outcome::Origin;
 use crate::exact::perturbed::PerturbedPoint;
-use crate::exact::{Sign, collinear, orient2d, orient3d, position};
+use crate::exact::{Projection, Sign, collinear, orient2d, orient3d, position};
 use crate::parallel::Runner;
 use crate::polygon;
 use crate::spatial::{BoxTree, Frame};
@@ -107,10 +107,9 @@ fn touch(operands: &Operands<'_>, s: u32, t: u32) -> Option<bool> {
     if !coplanar || collinear(&a[0], &a[1], &a[2]) || collinear(&b[0], &b[1], &b[2]) {
         return None;
     }
-    let (axis, positive) = dominant_axis(&a);
-    let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
-    let [p, q, r] = b.map(|p| [p[x], p[y]]);
-    Some((orient2d(p, q, r) == Sign::Positive) != positive)
+    let seen = Projection::of(&a);
+    let [p, q, r] = b.map(|p| seen.project(&p));
+    Some(orient2d(p, q, r) != Sign::Positive)
 }
 
 /// What is left of the faces of all sheets.
@@ -153,8 +152,8 @@ struct Sum<'a> {
     cutter: &'a Cutter<'a>,
     parts: &'a [Part],
     sheet: &'a Sheet,
-    /// The axes onto which the plane is projected.
-    axes: (usize, usize),
+    /// How the plane is projected.
+    seen: Projection,
     /// The sheet's points, and where they are in the projection.
     points: Vec<u32>,
     flat: Vec<[f64; 2]>,
@@ -171,13 +170,13 @@ impl<'a> Sum<'a> {
         crossings: &'a mut Vec<ExtraCrossing>,
     ) -> Self {
         let (side, triangle) = sheet[0];
-        let (axis, _) = dominant_axis(&cutter.operands.corners(side, triangle).map(|corner| corner.position));
-        let axes = ((axis + 1) % 3, (axis + 2) % 3);
+        let corners = cutter.operands.corners(side, triangle).map(|corner| corner.position);
+        let seen = Projection::of(&corners).along_axis();
         Self {
             cutter,
             parts,
             sheet,
-            axes,
+            seen,
             points: Vec::new(),
             flat: Vec::new(),
             lines: Vec::new(),
@@ -186,7 +185,7 @@ impl<'a> Sum<'a> {
     }
 
     fn project(&self, position: &[f64; 3]) -> [f64; 2] {
-        [position[self.axes.0], position[self.axes.1]]
+        self.seen.project(position)
     }
 
     fn position(&self, point: u32) -> &[f64; 3] {
@@ -263,7 +262,7 @@ impl<'a> Sum<'a> {
             return None;
         }
         // The plane through the one that stands on the sheet in the direction of projection.
-        let axis = 3 - self.axes.0 - self.axes.1;
+        let axis = self.seen.axis();
         let size = (0..3).fold(0.0f64, |size, k| size.max((b[k] - a[k]).abs()));
         let mut above = *a;
         above[axis] += size;

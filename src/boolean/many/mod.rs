@@ -9,12 +9,11 @@ mod sheets;
 
 use std::borrow::Cow;
 
-use crate::boolean::cut::dominant_axis;
 use crate::boolean::pair::{self, Settings};
 use crate::boolean::result::certificate::{Notes, OperandState};
 use crate::boolean::result::origins::Origins;
 use crate::boolean::{Contact, Operation, Options, Origin, Outcome};
-use crate::exact::{Sign, orient2d};
+use crate::exact::{Projection, Sign, orient2d};
 use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
@@ -175,11 +174,10 @@ fn count_inverted(result: &Partial<'_>, operands: &[&Solid]) -> u64 {
     let is_inverted = |(t, origin): &(u32, Origin)| {
         let source = corners(operands[origin.operand as usize].mesh(), origin.triangle);
         let triangle = corners(mesh, *t);
-        let (axis, positive) = dominant_axis(&source);
-        let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
-        let [a, b, c] = triangle.map(|p| [p[x], p[y]]);
-        let expected = if positive != origin.reversed { Sign::Positive } else { Sign::Negative };
-        ![expected, Sign::Zero].contains(&orient2d(a, b, c))
+        let seen = Projection::of(&source);
+        let seen = if origin.reversed { seen.reversed() } else { seen };
+        let [a, b, c] = triangle.map(|p| seen.project(&p));
+        orient2d(a, b, c) == Sign::Negative
     };
     (0..).zip(result.origins.iter()).filter(is_inverted).count() as u64
 }

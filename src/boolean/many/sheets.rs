@@ -2,7 +2,7 @@
 
 use crate::boolean::result::origins::Origins;
 use crate::boolean::result::outcome::Origin;
-use crate::boolean::tidy::manifold::{HalfEdges, Surface, make_manifold};
+use crate::mesh::{HalfEdges, Surface, make_manifold};
 use crate::{Mesh, Solid};
 
 /// A whole mesh that is taken apart.

@@ -4,13 +4,14 @@ use std::ops::Range;
 
 use crate::Error;
 use crate::boolean::arrangement::cut_edges::CutEdges;
-use crate::boolean::arrangement::cut_faces::{BitSet, CutFaces};
+use crate::boolean::arrangement::cut_faces::CutFaces;
 use crate::boolean::arrangement::identify::Identification;
 use crate::boolean::classify::multiplicity::Part;
 use crate::boolean::complex::operands::Operands;
 use crate::boolean::result::numbers::Numbers;
 use crate::boolean::result::origins::{Kept, Origins};
 use crate::boolean::result::outcome::Origin;
+use crate::mesh::BitSet;
 use crate::parallel::{Runner, parts, ranges};
 
 /// A triangle that cutting made or changed.

@@ -3,10 +3,10 @@
 use rustc_hash::FxHashSet;
 
 use super::patch::Face;
-use crate::boolean::arrangement::cut_faces::BitSet;
 use crate::boolean::classify::multiplicity::Part;
 use crate::boolean::cut::Cutter;
 use crate::boolean::result::outcome::Origin;
+use crate::mesh::BitSet;
 
 /// Calls `found` for every kept uncut triangle: part, triangle, its points, and how often it counts (negative where it is
 /// turned over once more).

@@ -6,13 +6,13 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::manifold::Surface;
 use super::patch::Patch;
 use super::split_faces::{Edge, Splits, split_faces};
 use super::zero_area::{identify, is_exactly_flat};
-use crate::boolean::arrangement::cut_faces::BitSet;
 use crate::boolean::complex::planes::Planes;
 use crate::exact::collinear;
+use crate::mesh::BitSet;
+use crate::mesh::Surface;
 use crate::mesh::UnionFind;
 
 /// Rounds: points that become one may leave further triangles without area.

@@ -8,7 +8,6 @@
 mod adjacency;
 mod kept;
 mod lines;
-pub(crate) mod manifold;
 mod patch;
 mod point_grid;
 mod remove;
@@ -17,14 +16,14 @@ mod short_edges;
 mod split_faces;
 mod zero_area;
 
-use crate::boolean::arrangement::cut_faces::BitSet;
 use crate::boolean::classify::multiplicity::Part;
 use crate::boolean::complex::planes::Planes;
 use crate::boolean::cut::Cutter;
 use crate::boolean::result::assemble::NewTriangle;
+use crate::mesh::BitSet;
+use crate::mesh::{HalfEdges, make_manifold};
 use crate::parallel::Runner;
 use crate::{Control, Error};
-use manifold::HalfEdges;
 use patch::Patch;
 use rustc_hash::FxHashSet;
 
@@ -146,7 +145,7 @@ fn separate(
     };
     #[cfg(debug_assertions)]
     assert_eq!(patch.boundary(), boundary, "splitting edges opened the surface");
-    let copied_from = manifold::make_manifold(patch, &half_edges);
+    let copied_from = make_manifold(patch, &half_edges);
     patch.connect();
     Ok(copied_from)
 }

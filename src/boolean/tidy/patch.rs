@@ -5,15 +5,15 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::Tidied;
 use super::adjacency::Adjacency;
 use super::kept::{Renumbering, edges_beyond, kept_triangles};
-use super::manifold::Surface;
-use crate::boolean::arrangement::cut_faces::BitSet;
 use crate::boolean::classify::multiplicity::Part;
-use crate::boolean::complex::planes::source_and_axes;
+use crate::boolean::complex::planes::source_and_projection;
 use crate::boolean::cut::Cutter;
 use crate::boolean::result::assemble::NewTriangle;
 use crate::boolean::result::outcome::Origin;
 use crate::exact::{Sign, orient2d};
+use crate::mesh::BitSet;
 use crate::mesh::Buckets;
+use crate::mesh::Surface;
 
 /// A triangle of the patch.
 #[derive(Clone, Copy, Debug)]
@@ -162,21 +162,14 @@ impl<'a> Patch<'a> {
 
     /// Points along the axis a face looks along most, so that it is seen counter-clockwise.
     pub(super) fn projected(&self, points: &[u32], origin: Origin) -> Vec<[f64; 2]> {
-        let (_, (x, y)) = source_and_axes(self.cutter.operands, origin);
-        let projected = |&point: &u32| {
-            let position = self.position(point);
-            [position[x], position[y]]
-        };
-        points.iter().map(projected).collect()
+        let (_, seen) = source_and_projection(self.cutter.operands, origin);
+        points.iter().map(|&point| seen.project(self.position(point))).collect()
     }
 
     /// Whether a triangle looks the way of the face it was cut from.
     pub(super) fn is_sound(&self, corners: &[u32; 3], origin: Origin) -> bool {
-        let (_, (x, y)) = source_and_axes(self.cutter.operands, origin);
-        let [a, b, c] = corners.map(|point| {
-            let position = self.position(point);
-            [position[x], position[y]]
-        });
+        let (_, seen) = source_and_projection(self.cutter.operands, origin);
+        let [a, b, c] = corners.map(|point| seen.project(self.position(point)));
         orient2d(a, b, c) == Sign::Positive
     }
 
@@ -338,9 +331,12 @@ impl Surface for Patch<'_> {
     fn left_of_side(&self, triangle: u32, side: usize) -> [f64; 3] {
         let face = &self.faces[triangle as usize];
         let corners = [0, 1, 2].map(|k| *self.position(face.corners[(side + k) % 3]));
-        let (source, (x, y)) = source_and_axes(self.cutter.operands, face.origin);
-        let [p, q] = [corners[0], corners[1]].map(|point| [point[x], point[y]]);
-        let left = |c: &[f64; 3]| (q[0] - p[0]) * (c[y] - p[1]) - (q[1] - p[1]) * (c[x] - p[0]);
+        let (source, seen) = source_and_projection(self.cutter.operands, face.origin);
+        let [p, q] = [corners[0], corners[1]].map(|point| seen.project(&point));
+        let left = |c: &[f64; 3]| {
+            let [x, y] = seen.project(c);
+            (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])
+        };
         source
             .into_iter()
             .max_by(|c, d| left(c).total_cmp(&left(d)))

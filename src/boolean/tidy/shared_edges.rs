@@ -9,7 +9,6 @@ use std::cell::LazyCell;
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
-use super::manifold::{HalfEdges, Surface};
 use super::patch::Patch;
 use super::point_grid::PointGrid;
 use super::split_faces::{Edge, Splits, split_faces};
@@ -18,6 +17,7 @@ use crate::boolean::complex::planes::Planes;
 use crate::boolean::cut::Cutter;
 use crate::exact::collinear;
 use crate::mesh::Buckets;
+use crate::mesh::{HalfEdges, Surface};
 use crate::spatial::{BoxTree, Frame};
 use crate::{Control, Error};
 

@@ -5,11 +5,11 @@
 
 use rustc_hash::FxHashMap;
 
-use super::manifold::Surface;
 use super::patch::{Face, Patch};
 use super::zero_area::is_low;
-use crate::boolean::arrangement::cut_faces::BitSet;
 use crate::boolean::complex::planes::Planes;
+use crate::mesh::BitSet;
+use crate::mesh::Surface;
 use crate::mesh::{Buckets, UnionFind};
 use crate::polygon::Triangulator;
 

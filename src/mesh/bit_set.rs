@@ -1,0 +1,37 @@
+//! A set of small integers, one bit each: a list of `n` flags in `n / 8` bytes, which 64 at a time can be skipped or counted.
+
+/// A set of small integers.
+#[derive(Debug, Default)]
+pub(crate) struct BitSet(Vec<u64>);
+
+impl BitSet {
+    pub(crate) fn new(size: usize) -> Self {
+        Self(vec![0; size.div_ceil(64)])
+    }
+
+    pub(crate) fn insert(&mut self, index: u32) {
+        self.0[index as usize / 64] |= 1 << (index % 64);
+    }
+
+    pub(crate) fn remove(&mut self, index: u32) {
+        self.0[index as usize / 64] &= !(1 << (index % 64));
+    }
+
+    /// The elements, ascending.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = u32> {
+        let words = self.0.iter().enumerate().filter(|&(_, &word)| word != 0);
+        words.flat_map(|(i, &word)| {
+            (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| 64 * i as u32 + bit)
+        })
+    }
+
+    /// Its bits, 64 in a word.
+    pub(crate) fn words(&self) -> &[u64] {
+        &self.0
+    }
+
+    #[inline]
+    pub(crate) fn contains(&self, index: u32) -> bool {
+        self.0[index as usize / 64] >> (index % 64) & 1 == 1
+    }
+}
