@@ -83,7 +83,7 @@ impl HalfEdges {
     }
 
     /// All edges, ascending: ends, and the triangles there.
-    pub(super) fn edges_with_triangles(
+    pub(crate) fn edges_with_triangles(
         &self,
     ) -> impl Iterator<Item = (u32, u32, impl ExactSizeIterator<Item = u32> + Clone)> {
         self.edges().map(|(u, v, group)| (u, v, group.iter().map(|entry| entry.half_edge / 3)))
