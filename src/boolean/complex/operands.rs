@@ -15,7 +15,7 @@ use rustc_hash::FxHashSet;
 
 use crate::boolean::complex::directions::Directions;
 use crate::exact::perturbed::{self, PerturbedPoint, jitter};
-use crate::exact::{PlaneFilter, Sign, orient3d_filter};
+use crate::exact::{FILTER_RANGE, PlaneFilter, Sign, orient3d_filter};
 
 /// One operand: borrowed arrays.
 #[derive(Clone, Copy, Debug)]
@@ -72,7 +72,6 @@ const OUTSIDE: u8 = 2;
 impl<'a> Operands<'a> {
     /// `near` lists the triangles of A and of B that may meet the other operand, with all those round such places.
     pub(crate) fn new(sides: [Operand<'a>; 2], sense: i32, largest: f64, near: [Vec<u32>; 2]) -> Self {
-        const FILTER_LIMIT: f64 = f64::from_bits((1023 + 350) << 52);
         let entries =
             [0, 1].map(|side| sides[side].triangles.len().saturating_mul(sides[1 - side].positions.len()));
         let table = |entries| std::iter::repeat_with(|| AtomicU8::new(UNKNOWN)).take(entries).collect();
@@ -82,7 +81,7 @@ impl<'a> Operands<'a> {
             first_of_b: sides[0].positions.len() as u32,
             sides,
             sense,
-            filter_floor: if largest <= FILTER_LIMIT { 0.0 } else { f64::INFINITY },
+            filter_floor: if largest <= FILTER_RANGE { 0.0 } else { f64::INFINITY },
             near,
             directions: OnceLock::new(),
             ties: AtomicU64::new(0),
