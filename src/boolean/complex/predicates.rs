@@ -4,10 +4,7 @@ use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 
 use super::{Complex, Corner};
 use crate::exact::perturbed::{self, jitter};
-use crate::exact::{PlaneFilter, Sign, orient3d_filter};
-
-/// Up to this coordinate the filters of `exact` are sound: no product of three differences overflows.
-const FILTER_LIMIT: f64 = f64::from_bits((1023 + 350) << 52);
+use crate::exact::{FILTER_RANGE, PlaneFilter, Sign, orient3d_filter};
 
 /// The plane through three corners, for many points against it.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +31,7 @@ pub(crate) struct Predicates<'a> {
 
 impl<'a> Predicates<'a> {
     pub(crate) fn new(complex: &'a Complex<'a>) -> Self {
-        let filter_floor = if complex.largest_coordinate() <= FILTER_LIMIT { 0.0 } else { f64::INFINITY };
+        let filter_floor = if complex.largest_coordinate() <= FILTER_RANGE { 0.0 } else { f64::INFINITY };
         Self { complex, filter_floor, ties: AtomicU64::new(0) }
     }
 
