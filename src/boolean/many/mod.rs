@@ -12,7 +12,7 @@ use std::borrow::Cow;
 use crate::boolean::pair::{self, Settings};
 use crate::boolean::result::certificate::{Notes, OperandState};
 use crate::boolean::result::origins::Origins;
-use crate::boolean::{Contact, Operation, Options, Origin, Outcome};
+use crate::boolean::{BooleanOptions, Contact, Operation, Origin, Outcome};
 use crate::exact::{Projection, Sign, orient2d};
 use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
@@ -46,7 +46,7 @@ impl<'a> Partial<'a> {
 
 /// Runs an operation over all operands.
 pub(crate) fn run(
-    options: &Options,
+    options: &BooleanOptions,
     operation: Operation,
     operands: &[&Solid],
     runner: Runner<'_>,
@@ -93,7 +93,7 @@ pub(crate) fn run(
 }
 
 struct Engine<'o> {
-    options: &'o Options,
+    options: &'o BooleanOptions,
     runner: Runner<'o>,
 }
 
