@@ -29,7 +29,7 @@ mod pair;
 mod result;
 mod tidy;
 
-pub use operation::{Contact, Operation};
+pub use operation::{Contact, Operation, UnknownName};
 pub use options::BooleanOptions;
 pub use result::certificate::{Certificate, OperandState};
 pub use result::outcome::{Origin, Outcome};

@@ -131,18 +131,12 @@ fn write(
 
 /// What `--dry-run` says.
 fn announce(operation: Operation, operands: &[Operand], targets: &[Target], session: &mut Session<'_>) {
-    let verb = match operation {
-        Operation::Union => "unite",
-        Operation::Intersection => "intersect",
-        Operation::Difference => "subtract all others from the first of",
-        Operation::SymmetricDifference => "take the symmetric difference of",
-    };
     let triangles = operands.iter().map(|operand| operand.solid.mesh().triangles.len()).sum();
     let names: Vec<String> =
         targets.iter().map(|target| format!("{} ({})", target.name(), target.format())).collect();
     let writing = if names.is_empty() { "nothing".into() } else { names.join(", ") };
     session.console.say(&format!(
-        "dry run: would {verb} {} with {} and write {writing}",
+        "dry run: would take the {operation} of {} with {} and write {writing}",
         report::counted(operands.len(), "operand"),
         report::counted(triangles, "triangle"),
     ));

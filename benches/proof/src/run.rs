@@ -102,6 +102,7 @@ fn identity_error(case: &Case, volume: f64) -> f64 {
         Operation::Intersection => volume + volume_of(Operation::Difference, case) - va,
         Operation::Difference => volume + volume_of(either, case) - va,
         Operation::SymmetricDifference => volume + 2.0 * volume_of(either, case) - all,
+        other => unreachable!("nothing is expected of {other}"),
     };
     let [low, high] = extent(case.a.positions.iter().chain(&case.b.positions));
     error / (0..3).map(|k| high[k] - low[k]).product::<f64>()
