@@ -6,9 +6,9 @@
 //! whose winding number is neither 0 nor 1; else it is what rounding does to every computed mesh, and the multiplicities
 //! of the boolean carry it.
 
-use crate::boolean::complex::rays::{Ray, coordinate_past, signed_crossing};
 use crate::boolean::complex::ids::VertexId;
 use crate::boolean::complex::predicates::Predicates;
+use crate::boolean::complex::rays::{Ray, coordinate_past, signed_crossing};
 use crate::boolean::complex::{Complex, Corner, Operand};
 use crate::mesh::{SelfCrossing, SelfCrossings};
 use crate::parallel::Runner;

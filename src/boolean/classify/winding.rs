@@ -8,8 +8,8 @@
 use crate::Error;
 use crate::boolean::arrangement::curve::Curve;
 use crate::boolean::candidates::overlap::{Overlap, Place};
-use crate::boolean::complex::rays;
 use crate::boolean::complex::ids::VertexId;
+use crate::boolean::complex::rays;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::spatial::Regions;
