@@ -1,0 +1,96 @@
+//! Curves as path data.
+
+use std::fmt::Write;
+
+use super::arc::to_endpoint;
+use crate::parametric::error::Result;
+use crate::parametric::numeric::vector::Point;
+use crate::parametric::{Curve, CurveMeshing, EllipticArc, NurbsCurve};
+
+/// A curve as SVG path data, y negated. Lines, polynomial curves up to degree 3 and elliptic arcs are written exactly;
+/// of the others the polynomial pieces of higher degree and the rational ones as polygons within `tolerance`. Numbers
+/// are written so that reading them gives the same bits.
+///
+/// # Errors
+/// Those of [`CurveMeshing::mesh`] for curves that must be approximated.
+pub fn path_data(curve: &dyn Curve<2>, tolerance: f64) -> Result<String> {
+    let mut data = String::new();
+    let start = curve.point(curve.domain()[0]);
+    command(&mut data, "M", &[start]);
+    match curve.as_composite() {
+        Some(composite) => {
+            for segment in composite.segments() {
+                append(&mut data, segment.as_ref(), tolerance)?;
+            }
+        }
+        None => append(&mut data, curve, tolerance)?,
+    }
+    if curve.is_closed() {
+        data.push('Z');
+    }
+    Ok(data)
+}
+
+fn append(data: &mut String, curve: &dyn Curve<2>, tolerance: f64) -> Result<()> {
+    if let Some(arc) = curve.as_arc() {
+        append_arc(data, arc);
+        return Ok(());
+    }
+    let nurbs = curve.to_nurbs();
+    for piece in nurbs.pieces() {
+        let letter = match (piece.points.len(), &piece.weights) {
+            (2, None) => Some("L"),
+            (3, None) => Some("Q"),
+            (4, None) => Some("C"),
+            _ => None,
+        };
+        match letter {
+            Some(letter) => command(data, letter, &piece.points[1..]),
+            None => {
+                // One piece, over its own part of the parameter.
+                let ends = piece.domain.map(|t| vec![t; piece.points.len()]).concat();
+                let weights = piece.weights.as_ref().map(|w| w.iter().map(|w| w[0]).collect::<Vec<_>>());
+                let points = match &weights {
+                    None => piece.points.clone(),
+                    Some(w) => piece.points.iter().zip(w).map(|(p, w)| p.map(|x| x / w)).collect(),
+                };
+                let part = NurbsCurve::trusted(piece.points.len() - 1, ends, points, weights);
+                let mesh = CurveMeshing::new(tolerance).mesh(&part)?;
+                command(data, "L", &mesh.points[1..]);
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Arcs in parts of at most half a turn, which the end points determine safely.
+fn append_arc(data: &mut String, arc: &EllipticArc<2>) {
+    let [start, end] = arc.domain();
+    let parts = if end > 3.0 { 3 } else { 1 };
+    for part in 1..=parts {
+        let t = if part == parts { end } else { start + (end - start) * f64::from(part) / f64::from(parts) };
+        let mut written = to_endpoint(arc, arc.point(t));
+        written.large = false;
+        // Negating y mirrors the rotation and the direction of turning.
+        let sweep = u8::from(!written.sweep);
+        let [rx, ry] = written.radii;
+        let _ = write!(data, "A{rx} {ry} {} 0 {sweep} ", -written.rotation);
+        coordinates(data, written.end);
+    }
+}
+
+fn command(data: &mut String, letter: &str, points: &[Point<2>]) {
+    data.push_str(letter);
+    for (i, p) in points.iter().enumerate() {
+        if i > 0 {
+            data.push(' ');
+        }
+        coordinates(data, *p);
+    }
+}
+
+/// Shortest digits that read back as the same numbers.
+fn coordinates(data: &mut String, p: Point<2>) {
+    // Zero without a sign.
+    let _ = write!(data, "{} {}", p[0] + 0.0, 0.0 - p[1]);
+}

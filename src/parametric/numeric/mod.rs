@@ -1,0 +1,6 @@
+//! What the other rooms compute with: small vectors, Bernstein polynomials, knot vectors, quadrature.
+
+pub(crate) mod bernstein;
+pub(crate) mod gauss;
+pub(crate) mod knots;
+pub(crate) mod vector;
