@@ -41,7 +41,7 @@ mod region;
 mod solid;
 
 pub use curve::{
-    Bezier, Composite, CubicSpline, Curve, CurveMesh, CurveMeshing, EllipticArc, HermiteSpline,
+    Bezier, Composite, CubicSpline, Curve, CurveForm, CurveMesh, CurveMeshing, EllipticArc, HermiteSpline,
     LagrangeCurve, NurbsCurve, Polyline, Refinement, Reversed, Segment, SharedCurve, Spacing, SplineEnds,
     TangentRule,
 };

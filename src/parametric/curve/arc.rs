@@ -3,8 +3,9 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::nurbs::NurbsCurve;
-use super::param_curve::{Curve, clamped};
+use super::param_curve::{Curve, CurveForm};
 use crate::parametric::error::{GeometryError, Result, check_points, check_positive};
+use crate::parametric::numeric::domain::clamped;
 use crate::parametric::numeric::vector::{self, Point};
 
 /// An arc of an ellipse: `C + a cos(start + s t) + b sin(start + s t)`, `0 <= t <= |sweep|`, where `s` is the
@@ -176,7 +177,7 @@ impl<const D: usize> Curve<D> for EllipticArc<D> {
         NurbsCurve::trusted(2, knots, points, Some(weights))
     }
 
-    fn as_arc(&self) -> Option<&Self> {
-        Some(self)
+    fn form(&self) -> CurveForm<'_, D> {
+        CurveForm::EllipticArc { axes: self.axes(), sweep: self.sweep }
     }
 }

@@ -1,9 +1,10 @@
 //! Bezier curves of any degree.
 
 use super::nurbs::NurbsCurve;
-use super::param_curve::{Curve, clamped};
+use super::param_curve::Curve;
 use crate::parametric::error::{Result, check_count};
 use crate::parametric::numeric::bernstein;
+use crate::parametric::numeric::domain::{clamped, interval};
 use crate::parametric::numeric::vector::{self, Point};
 
 /// A Bezier curve `sum P_i B_i(t)` over 0..1, of degree one less than the number of its control points.
@@ -148,7 +149,7 @@ impl<const D: usize> PiecewiseBezier<D> {
 
     fn locate(&self, t: f64) -> (usize, f64, f64) {
         let t = clamped(t, self.domain());
-        let i = super::param_curve::interval(&self.parameters, t);
+        let i = interval(&self.parameters, t);
         let length = self.parameters[i + 1] - self.parameters[i];
         (i, (t - self.parameters[i]) / length, length)
     }

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::nurbs::{NurbsCurve, end_direction, start_direction};
-use super::param_curve::{Curve, SharedCurve, clamped, interval};
+use super::param_curve::{Curve, CurveForm, SharedCurve};
 use crate::parametric::error::{GeometryError, Result};
+use crate::parametric::numeric::domain::{clamped, interval};
 use crate::parametric::numeric::vector::{self, Point};
 
 /// Gap between segments, in units of the curve's size, up to which they count as meeting.
@@ -41,9 +42,9 @@ impl<const D: usize> Composite<D> {
     fn assemble(segments: &[SharedCurve<D>], closed: bool) -> Result<Self> {
         let mut flat: Vec<SharedCurve<D>> = Vec::new();
         for segment in segments {
-            match segment.as_composite() {
-                Some(composite) => flat.extend(composite.segments.iter().cloned()),
-                None => flat.push(Arc::clone(segment)),
+            match segment.form() {
+                CurveForm::Chain(segments) => flat.extend(segments.iter().cloned()),
+                _ => flat.push(Arc::clone(segment)),
             }
         }
         if flat.is_empty() {
@@ -159,7 +160,7 @@ impl<const D: usize> Curve<D> for Composite<D> {
         super::nurbs_tools::concatenate(&self.segments, &self.starts)
     }
 
-    fn as_composite(&self) -> Option<&Self> {
-        Some(self)
+    fn form(&self) -> CurveForm<'_, D> {
+        CurveForm::Chain(&self.segments)
     }
 }

@@ -1,10 +1,11 @@
 //! Polynomial interpolation.
 
 use super::nurbs::NurbsCurve;
-use super::param_curve::{Curve, clamped};
+use super::param_curve::Curve;
 use super::parameters::Spacing;
 use crate::parametric::error::{GeometryError, Result, check_count};
 use crate::parametric::numeric::bernstein::binomial;
+use crate::parametric::numeric::domain::clamped;
 use crate::parametric::numeric::vector::{self, Point};
 
 /// The polynomial curve of least degree through given points at given parameters.

@@ -1,8 +1,9 @@
 //! Straight lines and segments.
 
 use super::nurbs::NurbsCurve;
-use super::param_curve::{Curve, clamped};
+use super::param_curve::Curve;
 use crate::parametric::error::{GeometryError, Result, check_points};
+use crate::parametric::numeric::domain::clamped;
 use crate::parametric::numeric::vector::{self, Point};
 
 /// A segment from one point to another: `(1 - t) P + t Q` over 0..1, or the part `t0..t1` of the line

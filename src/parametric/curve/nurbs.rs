@@ -1,8 +1,8 @@
 //! B-spline and NURBS curves (Piegl and Tiller, "The NURBS Book").
 
-use super::param_curve::{Curve, clamped};
 use crate::parametric::error::{GeometryError, Result, check_points};
 use crate::parametric::numeric::bernstein::{self, binomial};
+use crate::parametric::numeric::domain::clamped;
 use crate::parametric::numeric::knots;
 use crate::parametric::numeric::vector::{self, Point};
 
@@ -238,12 +238,14 @@ pub(crate) fn end_direction<const D: usize>(polygon: &[Point<D>]) -> Point<D> {
     before.map_or([0.0; D], |p| vector::sub(end, *p))
 }
 
-impl<const D: usize> Curve<D> for NurbsCurve<D> {
-    fn domain(&self) -> [f64; 2] {
+impl<const D: usize> NurbsCurve<D> {
+    /// First and last parameter.
+    pub(crate) fn domain(&self) -> [f64; 2] {
         knots::domain(self.degree, &self.knots)
     }
 
-    fn point(&self, t: f64) -> Point<D> {
+    /// The point at a parameter, clamped to the domain.
+    pub(crate) fn evaluate(&self, t: f64) -> Point<D> {
         let domain = self.domain();
         // The ends come from the pieces, so that clamped curves meet their control points and closed ones close.
         let t = clamped(t, domain);
@@ -256,10 +258,11 @@ impl<const D: usize> Curve<D> for NurbsCurve<D> {
             let weight = piece.weights.as_ref().map_or(1.0, |weights| weights[at][0]);
             return piece.points[at].map(|x| x / weight);
         }
-        self.derivatives(t, 0)[0]
+        self.evaluate_derivatives(t, 0)[0]
     }
 
-    fn derivatives(&self, t: f64, order: usize) -> Vec<Point<D>> {
+    /// The point and the derivatives up to `order` (Piegl and Tiller, sections 3.3 and 4.3).
+    pub(crate) fn evaluate_derivatives(&self, t: f64, order: usize) -> Vec<Point<D>> {
         let t = clamped(t, self.domain());
         let span = knots::span(self.degree, &self.knots, t);
         let basis = knots::basis_derivatives(self.degree, &self.knots, span, t, order);
@@ -276,12 +279,8 @@ impl<const D: usize> Curve<D> for NurbsCurve<D> {
         if self.weights.is_none() { numerator } else { quotient_derivatives(&numerator, &denominator) }
     }
 
-    fn breaks(&self) -> Vec<f64> {
-        knots::distinct(self.degree, &self.knots)
-    }
-
-    /// Knots repeated as often as the degree, unless the directions on both sides agree (as in a circle).
-    fn corners(&self) -> Vec<f64> {
+    /// Inner knots where the direction jumps.
+    pub(crate) fn kinks(&self) -> Vec<f64> {
         let mut corners = knots::corners(self.degree, &self.knots);
         corners.retain(|&knot| {
             let after = self.pieces.partition_point(|piece| piece.domain[0] < knot);
@@ -295,14 +294,11 @@ impl<const D: usize> Curve<D> for NurbsCurve<D> {
         corners
     }
 
-    fn control_polygon(&self, a: f64, b: f64, polygon: &mut Vec<Point<D>>) {
+    /// Appends the control polygon of the part `a..b` of one piece.
+    pub(crate) fn restrict(&self, a: f64, b: f64, polygon: &mut Vec<Point<D>>) {
         let middle = 0.5 * (a + b);
         let i = self.pieces.partition_point(|piece| piece.domain[0] <= middle).max(1) - 1;
         self.pieces[i].restrict(a, b, polygon);
-    }
-
-    fn to_nurbs(&self) -> Self {
-        self.clone()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Rewriting NURBS curves: higher degree, finer knots, several with one basis, several end to end.
 
 use super::nurbs::{NurbsCurve, Piece};
-use super::param_curve::{Curve, SharedCurve};
+use super::param_curve::SharedCurve;
 use crate::parametric::numeric::bernstein;
 use crate::parametric::numeric::knots;
 use crate::parametric::numeric::vector::{self, Point};

@@ -3,10 +3,8 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use super::arc::EllipticArc;
-use super::composite::Composite;
 use super::nurbs::NurbsCurve;
-use crate::parametric::numeric::vector::{self, Point};
+use crate::parametric::numeric::vector;
 
 /// A parametric curve in the plane (`D = 2`) or in space (`D = 3`).
 ///
@@ -61,96 +59,29 @@ pub trait Curve<const D: usize>: Debug + Send + Sync {
         vector::bounding_box(polygon).unwrap_or([start; 2])
     }
 
-    /// This curve as a composite, if it is one; composites of composites are spliced flat by this.
-    fn as_composite(&self) -> Option<&Composite<D>> {
-        None
-    }
-
-    /// This curve as an elliptic arc, if it is one; files that know arcs keep them exactly by this.
-    fn as_arc(&self) -> Option<&EllipticArc<D>> {
-        None
+    /// What the curve is made of, for code that keeps some forms as they are: composites of composites are spliced
+    /// flat, files that know arcs write them exactly.
+    fn form(&self) -> CurveForm<'_, D> {
+        CurveForm::General
     }
 }
 
 /// A curve shared between the things built from it.
 pub type SharedCurve<const D: usize> = Arc<dyn Curve<D>>;
 
-/// `t` moved into the domain; the start for NaN.
-pub(crate) fn clamped(t: f64, domain: [f64; 2]) -> f64 {
-    if t > domain[0] { t.min(domain[1]) } else { domain[0] }
-}
-
-/// Index of the interval of ascending `nodes` that contains `t`: the last one whose start is not above `t`.
-pub(crate) fn interval(nodes: &[f64], t: f64) -> usize {
-    nodes.partition_point(|&node| node <= t).clamp(1, nodes.len() - 1) - 1
-}
-
-/// A curve traversed the other way, over the same domain.
-#[derive(Clone, Debug)]
-pub struct Reversed<const D: usize> {
-    curve: SharedCurve<D>,
-}
-
-impl<const D: usize> Reversed<D> {
-    /// `curve` from its end to its start.
-    #[must_use]
-    pub fn new(curve: SharedCurve<D>) -> Self {
-        Self { curve }
-    }
-
-    fn mirrored(&self, t: f64) -> f64 {
-        let [start, end] = self.curve.domain();
-        // Both ends must map onto each other exactly.
-        if t == start {
-            end
-        } else if t == end {
-            start
-        } else {
-            start + (end - t)
-        }
-    }
-}
-
-impl<const D: usize> Curve<D> for Reversed<D> {
-    fn domain(&self) -> [f64; 2] {
-        self.curve.domain()
-    }
-
-    fn point(&self, t: f64) -> Point<D> {
-        self.curve.point(self.mirrored(clamped(t, self.domain())))
-    }
-
-    fn derivatives(&self, t: f64, order: usize) -> Vec<Point<D>> {
-        // The one-sided rule needs the derivative from the other side at an inner break.
-        let t = clamped(t, self.domain());
-        let mirrored = self.mirrored(t);
-        let nudged = if self.curve.breaks().contains(&mirrored) && t != self.domain()[1] {
-            mirrored.next_down().max(self.domain()[0])
-        } else {
-            mirrored
-        };
-        let mut derivatives = self.curve.derivatives(nudged, order);
-        for odd in derivatives.iter_mut().skip(1).step_by(2) {
-            *odd = vector::scale(*odd, -1.0);
-        }
-        derivatives
-    }
-
-    fn breaks(&self) -> Vec<f64> {
-        self.curve.breaks().iter().rev().map(|&t| self.mirrored(t)).collect()
-    }
-
-    fn corners(&self) -> Vec<f64> {
-        self.curve.corners().iter().rev().map(|&t| self.mirrored(t)).collect()
-    }
-
-    fn control_polygon(&self, a: f64, b: f64, polygon: &mut Vec<Point<D>>) {
-        let first = polygon.len();
-        self.curve.control_polygon(self.mirrored(b), self.mirrored(a), polygon);
-        polygon[first..].reverse();
-    }
-
-    fn to_nurbs(&self) -> NurbsCurve<D> {
-        self.curve.to_nurbs().reversed()
-    }
+/// The forms of curve that some code keeps as they are.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum CurveForm<'a, const D: usize> {
+    /// These curves end to end.
+    Chain(&'a [SharedCurve<D>]),
+    /// An arc of an ellipse over `0 <= t <= |sweep|`.
+    EllipticArc {
+        /// The centre, and the two half diameters that carry the cosine and the sine.
+        axes: [[f64; D]; 3],
+        /// The signed angle (radians) from the start to the end.
+        sweep: f64,
+    },
+    /// Any other: what it is made of is not told.
+    General,
 }

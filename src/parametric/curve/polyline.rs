@@ -1,9 +1,10 @@
 //! Curves of straight edges.
 
 use super::nurbs::NurbsCurve;
-use super::param_curve::{Curve, clamped, interval};
+use super::param_curve::Curve;
 use super::parameters::Spacing;
 use crate::parametric::error::{Result, check_count};
+use crate::parametric::numeric::domain::{clamped, interval};
 use crate::parametric::numeric::vector::{self, Point};
 
 /// Straight edges through given points (Al-Athamneh 2016). A closed polyline repeats its first point at the end.

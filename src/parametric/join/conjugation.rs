@@ -11,9 +11,10 @@
 //!
 //! B-splines join in the same way: R has the knots of both and none at the joint.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
-use super::constraints::{Constraints, solve_within};
+use super::constraints::{Constraints, solve_within, stacked};
+use super::metric::{JoinMetric, basis_at, gram, root};
 use super::report::{JoinReport, largest_norm};
 use crate::parametric::curve::bezier::Bezier;
 use crate::parametric::curve::nurbs::NurbsCurve;
@@ -21,18 +22,7 @@ use crate::parametric::curve::nurbs_tools::{elevated, over_unit};
 use crate::parametric::curve::param_curve::Curve;
 use crate::parametric::error::{GeometryError, Result};
 use crate::parametric::numeric::gauss::gauss_legendre;
-use crate::parametric::numeric::knots;
 use crate::parametric::numeric::vector::{self, Point};
-
-/// What "nearest" means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum JoinMetric {
-    /// `sum |e_i|^2 + |d_i|^2`, the changes of the control points (equation 11 of the paper).
-    Discrete,
-    /// `int_0^1 |P~ - P|^2 + |Q~ - Q|^2 dt`, the changes of the curves (equation 12), integrated exactly.
-    #[default]
-    Integral,
-}
 
 /// One of the two curves to be joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -358,38 +348,6 @@ impl<const D: usize> Problem<'_, D> {
     }
 }
 
-/// Index of the first basis function that does not vanish at `t`, and the values and derivatives of those that do not.
-fn basis_at<const D: usize>(curve: &NurbsCurve<D>, t: f64, order: usize) -> (usize, Vec<Vec<f64>>) {
-    let span = knots::span(curve.degree(), curve.knots(), t);
-    (span - curve.degree(), knots::basis_derivatives(curve.degree(), curve.knots(), span, t, order))
-}
-
-/// `I_ij = int N_i N_j dt` over 0..1, by a quadrature that is exact for the degree.
-fn gram<const D: usize>(curve: &NurbsCurve<D>) -> DMatrix<f64> {
-    let count = curve.control().len();
-    let mut gram = DMatrix::zeros(count, count);
-    let rule = gauss_legendre(curve.degree() + 1);
-    for piece in curve.breaks().windows(2) {
-        for [x, weight] in &rule {
-            let (first, basis) = basis_at(curve, vector::mix(piece[0], piece[1], *x), 0);
-            for (i, a) in basis[0].iter().enumerate() {
-                for (j, b) in basis[0].iter().enumerate() {
-                    gram[(first + i, first + j)] += weight * (piece[1] - piece[0]) * a * b;
-                }
-            }
-        }
-    }
-    gram
-}
-
-/// A matrix whose square (its transpose times itself) is the symmetric positive definite `gram`.
-fn root(gram: &DMatrix<f64>) -> DMatrix<f64> {
-    let eigen = gram.clone().symmetric_eigen();
-    // Rounding must not make a small positive eigenvalue negative.
-    let roots = DVector::from_iterator(gram.nrows(), eigen.eigenvalues.iter().map(|x| x.max(0.0).sqrt()));
-    DMatrix::from_diagonal(&roots) * eigen.eigenvectors.transpose()
-}
-
 fn arc_length<const D: usize>(curve: &NurbsCurve<D>) -> f64 {
     let rule = gauss_legendre(16);
     let piece = |ends: &[f64]| -> f64 {
@@ -405,11 +363,4 @@ fn to_matrix<const D: usize>(points: &[Point<D>]) -> DMatrix<f64> {
 
 fn to_points<const D: usize>(matrix: &DMatrix<f64>) -> Vec<Point<D>> {
     (0..matrix.nrows()).map(|i| std::array::from_fn(|j| matrix[(i, j)])).collect()
-}
-
-pub(crate) fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut all = DMatrix::zeros(above.nrows() + below.nrows(), above.ncols());
-    all.rows_mut(0, above.nrows()).copy_from(above);
-    all.rows_mut(above.nrows(), below.nrows()).copy_from(below);
-    all
 }

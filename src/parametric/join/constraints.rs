@@ -61,8 +61,8 @@ impl Constraints {
             let rest = row - factors.transpose() * &rows;
             if rest.norm() > RANK_TOLERANCE {
                 taken.push(i);
-                rows = super::conjugation::stacked(&rows, row);
-                right = super::conjugation::stacked(&right, &self.right[i]);
+                rows = stacked(&rows, row);
+                right = stacked(&right, &self.right[i]);
                 contributes[self.of_row[i]] = true;
                 continue;
             }
@@ -170,4 +170,12 @@ fn least_squares(rows: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
         .unwrap_or_else(|| DMatrix::zeros(columns, right.ncols()));
     qr.p().inv_permute_rows(&mut solution);
     solution
+}
+
+/// The rows of `above`, then those of `below`.
+pub(crate) fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut all = DMatrix::zeros(above.nrows() + below.nrows(), above.ncols());
+    all.rows_mut(0, above.nrows()).copy_from(above);
+    all.rows_mut(above.nrows(), below.nrows()).copy_from(below);
+    all
 }

@@ -2,7 +2,9 @@
 
 mod conjugation;
 mod constraints;
+mod metric;
 mod report;
 
-pub use conjugation::{CurveJoin, JoinMetric, Joined, JoinedSpline, JointAt, Operand};
+pub use conjugation::{CurveJoin, Joined, JoinedSpline, JointAt, Operand};
+pub use metric::JoinMetric;
 pub use report::{ConstraintReport, JoinReport};

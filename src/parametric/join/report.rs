@@ -1,6 +1,6 @@
 //! What joining two curves has come to.
 
-use super::conjugation::JoinMetric;
+use super::metric::JoinMetric;
 use crate::parametric::curve::nurbs::NurbsCurve;
 use crate::parametric::curve::param_curve::Curve;
 use crate::parametric::numeric::vector;

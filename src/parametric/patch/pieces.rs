@@ -2,6 +2,7 @@
 
 use super::surface::Patch;
 use crate::parametric::curve::nurbs::insert;
+use crate::parametric::numeric::domain::interval;
 use crate::parametric::numeric::knots;
 use crate::parametric::numeric::vector::{self, Point};
 
@@ -127,7 +128,7 @@ pub(crate) struct Pieces {
 impl Pieces {
     /// Number of the interval of `breaks[k]` that holds `t`.
     pub(crate) fn interval(&self, k: usize, t: f64) -> usize {
-        crate::parametric::curve::param_curve::interval(&self.breaks[k], t)
+        interval(&self.breaks[k], t)
     }
 
     /// Control net of the piece in the given intervals, and the map of its parameters: `(t - start) * scale`.

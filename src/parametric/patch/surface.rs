@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use crate::parametric::curve::nurbs::{NurbsCurve, check_weights};
-use crate::parametric::curve::param_curve::clamped;
 use crate::parametric::error::{GeometryError, Result, check_points};
 use crate::parametric::numeric::bernstein::binomial;
+use crate::parametric::numeric::domain::clamped;
 use crate::parametric::numeric::gauss::gauss_legendre;
 use crate::parametric::numeric::knots;
 use crate::parametric::numeric::vector::{self, Point};

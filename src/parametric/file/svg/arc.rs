@@ -51,9 +51,7 @@ pub(crate) fn from_endpoints(start: Point<2>, arc: &EndpointArc) -> Option<Resul
 }
 
 /// An arc of at most half a turn as SVG writes it: its principal axes from the two half diameters.
-pub(crate) fn to_endpoint(arc: &EllipticArc<2>, end: Point<2>) -> EndpointArc {
-    let [_, a, b] = arc.axes();
-    let [_, sweep] = arc.angles();
+pub(crate) fn to_endpoint([a, b]: [Point<2>; 2], sweep: f64, end: Point<2>) -> EndpointArc {
     // The ellipse is the image of the unit circle under the matrix with columns a and b; its axes are the singular
     // vectors, in closed form for two by two.
     let (e, f) = (0.5 * (a[0] + b[1]), 0.5 * (a[0] - b[1]));

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::arc::to_endpoint;
 use crate::parametric::error::Result;
 use crate::parametric::numeric::vector::Point;
-use crate::parametric::{Curve, CurveMeshing, EllipticArc, NurbsCurve};
+use crate::parametric::{Curve, CurveForm, CurveMeshing, NurbsCurve};
 
 /// A curve as SVG path data, y negated. Lines, polynomial curves up to degree 3 and elliptic arcs are written exactly;
 /// of the others the polynomial pieces of higher degree and the rational ones as polygons within `tolerance`. Numbers
@@ -17,13 +17,12 @@ pub fn path_data(curve: &dyn Curve<2>, tolerance: f64) -> Result<String> {
     let mut data = String::new();
     let start = curve.point(curve.domain()[0]);
     command(&mut data, "M", &[start]);
-    match curve.as_composite() {
-        Some(composite) => {
-            for segment in composite.segments() {
-                append(&mut data, segment.as_ref(), tolerance)?;
-            }
+    if let CurveForm::Chain(segments) = curve.form() {
+        for segment in segments {
+            append(&mut data, segment.as_ref(), tolerance)?;
         }
-        None => append(&mut data, curve, tolerance)?,
+    } else {
+        append(&mut data, curve, tolerance)?;
     }
     if curve.is_closed() {
         data.push('Z');
@@ -32,8 +31,8 @@ pub fn path_data(curve: &dyn Curve<2>, tolerance: f64) -> Result<String> {
 }
 
 fn append(data: &mut String, curve: &dyn Curve<2>, tolerance: f64) -> Result<()> {
-    if let Some(arc) = curve.as_arc() {
-        append_arc(data, arc);
+    if let CurveForm::EllipticArc { axes: [_, a, b], sweep } = curve.form() {
+        append_arc(data, curve, [a, b], sweep);
         return Ok(());
     }
     let nurbs = curve.to_nurbs();
@@ -64,17 +63,17 @@ fn append(data: &mut String, curve: &dyn Curve<2>, tolerance: f64) -> Result<()>
 }
 
 /// Arcs in parts of at most half a turn, which the end points determine safely.
-fn append_arc(data: &mut String, arc: &EllipticArc<2>) {
+fn append_arc(data: &mut String, arc: &dyn Curve<2>, half_diameters: [Point<2>; 2], sweep: f64) {
     let [start, end] = arc.domain();
     let parts = if end > 3.0 { 3 } else { 1 };
     for part in 1..=parts {
         let t = if part == parts { end } else { start + (end - start) * f64::from(part) / f64::from(parts) };
-        let mut written = to_endpoint(arc, arc.point(t));
+        let mut written = to_endpoint(half_diameters, sweep, arc.point(t));
         written.large = false;
         // Negating y mirrors the rotation and the direction of turning.
-        let sweep = u8::from(!written.sweep);
+        let flag = u8::from(!written.sweep);
         let [rx, ry] = written.radii;
-        let _ = write!(data, "A{rx} {ry} {} 0 {sweep} ", -written.rotation);
+        let _ = write!(data, "A{rx} {ry} {} 0 {flag} ", -written.rotation);
         coordinates(data, written.end);
     }
 }
