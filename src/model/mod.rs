@@ -187,6 +187,11 @@ impl Model {
     }
 }
 
+/// A fault of the model file itself.
+fn fault(what: impl Into<String>) -> Error {
+    Error::Model(what.into())
+}
+
 /// What is said of a kind that this build cannot read.
 #[cfg(not(feature = "parametric"))]
 fn without_parametric(kind: &str) -> Error {

@@ -7,7 +7,11 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use super::{Defaults, Kind, Mode, Model, Node, contour, primitive, transform};
+#[cfg(feature = "parametric")]
+use super::contour::Outline;
+#[cfg(feature = "parametric")]
+use super::parametric::{self, Curves, Described, Parametric};
+use super::{Defaults, Kind, Mode, Model, Node, contour, fault, primitive, transform};
 use crate::Error;
 use crate::boolean::Operation;
 use crate::field::{Formula, System, named_system};
@@ -25,10 +29,6 @@ struct Reading<'a> {
     nodes: Vec<Node>,
     names: BTreeMap<String, usize>,
     folder: &'a Path,
-}
-
-pub(super) fn fault(what: impl Into<String>) -> Error {
-    Error::Model(what.into())
 }
 
 fn within(label: &str) -> impl Fn(Error) -> Error + '_ {
@@ -312,7 +312,10 @@ impl Reading<'_> {
     /// The solid or region described by a JSON file.
     #[cfg(feature = "parametric")]
     fn described(&self, file: &str) -> Result<Kind, Error> {
-        super::parametric::file(self.folder, file)
+        Ok(match parametric::load(self.folder, file)? {
+            Described::Solid(solid) => Kind::Parametric(solid),
+            Described::Region(curves) => Kind::Contour(Outline::Curves(curves)),
+        })
     }
 
     #[cfg(not(feature = "parametric"))]
@@ -381,7 +384,9 @@ impl Node {
 }
 
 #[cfg(feature = "parametric")]
-use super::parametric::solid_of;
+fn solid_of(kind: &str, object: Map<String, Value>) -> Result<Kind, Error> {
+    Parametric::of_type(kind, object).map(Kind::Parametric)
+}
 
 #[cfg(not(feature = "parametric"))]
 fn solid_of(kind: &str, _: Map<String, Value>) -> Result<Kind, Error> {
@@ -390,7 +395,7 @@ fn solid_of(kind: &str, _: Map<String, Value>) -> Result<Kind, Error> {
 
 #[cfg(feature = "parametric")]
 fn region_of(description: Value) -> Result<Kind, Error> {
-    Ok(super::parametric::region_of(description))
+    Ok(Kind::Contour(Outline::Curves(Curves::new(description))))
 }
 
 #[cfg(not(feature = "parametric"))]
