@@ -7,7 +7,8 @@ use clap::ArgMatches;
 use serde_json::json;
 use trisect::Error;
 
-use super::arguments::{Colours, Convert, Writing};
+use super::argument_groups::{Colours, Writing};
+use super::arguments::Convert;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Input};
 use super::output::{self, Product, Target};
@@ -22,8 +23,8 @@ pub(crate) fn run(
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
     let (request, output) = input_and_output(arguments, matches)?;
-    let writing = Writing { output, ..arguments.writing };
-    let targets = output::targets(&writing, &arguments.drawing, session.common)?;
+    let writing = Writing { output, ..arguments.results.writing };
+    let targets = output::targets(&writing, &arguments.results.drawing, session.common)?;
     if targets.is_empty() {
         return Err(Fault::usage("nowhere to put the result: add an output file, -o FILE or --png FILE"));
     }
@@ -37,8 +38,8 @@ pub(crate) fn run(
     session.console.stage(&format!("reading {}", request.name()), 0.0);
     let Input { mesh, format, warnings, reserved: _reserved } =
         operands::read(&request, &session.limits, &control).map_err(of_input)?;
-    let (mesh, welded) = operands::welded(mesh, arguments.weld).map_err(of_input)?;
-    let (mesh, turned) = if arguments.orient { operands::oriented(mesh) } else { (mesh, false) };
+    let (mesh, welded) = operands::welded(mesh, arguments.repair.weld).map_err(of_input)?;
+    let (mesh, turned) = if arguments.repair.orient { operands::oriented(mesh) } else { (mesh, false) };
     let seconds = session.took("read", start);
     for warning in &warnings {
         session.warn(format!("{}: {warning}", request.name()));
@@ -74,7 +75,7 @@ pub(crate) fn run(
     }
     let start = Instant::now();
     session.console.stage("writing", 1.0);
-    let drawing = &arguments.drawing;
+    let drawing = &arguments.results.drawing;
     let picture = || {
         let operands = mesh.triangles.iter().map(|_| 0);
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), &mesh, operands);
@@ -94,7 +95,7 @@ pub(crate) fn run(
 
 /// The one input, and the outputs: those of `-o`, or else the second file.
 fn input_and_output(arguments: &Convert, matches: &ArgMatches) -> Result<(Request, Vec<PathBuf>), Fault> {
-    let mut output = arguments.writing.output.clone();
+    let mut output = arguments.results.writing.output.clone();
     if let ([_, second], true) = (arguments.files.as_slice(), output.is_empty()) {
         output.push(second.clone());
     } else if arguments.files.len() > 1 {

@@ -8,7 +8,7 @@ use trisect::Solid;
 use trisect::field::Contours;
 use trisect::model::{Evaluated, Evaluation, Model};
 
-use super::arguments::Colours;
+use super::argument_groups::Colours;
 use super::documents::{self, Document};
 use super::fault::{Exit, Fault};
 use super::field_arguments::Eval;
@@ -20,7 +20,7 @@ use super::session::Session;
 
 /// Evaluates a model.
 pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, Fault> {
-    let targets = output::targets(&arguments.writing, &arguments.drawing, session.common)?;
+    let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
     let common = session.common;
     let wanted = !targets.is_empty() || common.json || common.report.is_some();
     if !wanted && arguments.contours.is_none() && !arguments.dry_run {
@@ -133,13 +133,13 @@ fn write(
     session.console.stage("writing", 1.0);
     let outputs = if let Some(solid) = solid {
         let mesh = solid.mesh();
-        let drawing = &arguments.drawing;
+        let drawing = &arguments.results.drawing;
         let picture = || {
             let operands = mesh.triangles.iter().map(|_| 0);
             let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), mesh, operands);
             trisect::render::mesh(mesh, &output::view(drawing, None), colours.as_deref())
         };
-        let options = output::write_options(&arguments.writing, &session.limits);
+        let options = output::write_options(&arguments.results.writing, &session.limits);
         let product = Product { mesh, options, picture: &picture, documents: drawn };
         let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
         for warning in warnings {
