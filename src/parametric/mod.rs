@@ -47,7 +47,9 @@ pub use curve::{
 };
 pub use error::GeometryError;
 pub use file::{json, svg};
-pub use join::{ConstraintReport, CurveJoin, JoinMetric, JoinReport, Joined, JoinedSpline, JointAt, Operand};
-pub use patch::{Gap, Patch, PatchMesh, PatchMeshing, PatchTriangle, Side};
+pub use join::{
+    ConstraintReport, CurveJoin, JoinInput, JoinMetric, JoinReport, Joined, JoinedSpline, JointAt,
+};
+pub use patch::{Gap, Patch, PatchMesh, PatchMeshing, PatchSide, PatchTriangle};
 pub use region::{FillRule, Membership, PlaneMesh, Polygons, Region, RegionOperation};
 pub use solid::{Extrusion, Revolution, Sweep};

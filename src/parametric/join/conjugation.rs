@@ -26,7 +26,7 @@ use crate::parametric::numeric::vector::{self, Point};
 
 /// One of the two curves to be joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Operand {
+pub enum JoinInput {
     /// The first, P.
     First,
     /// The second, Q.
@@ -60,9 +60,9 @@ pub enum JointAt {
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveJoin {
     metric: JoinMetric,
-    keep: Option<Operand>,
+    keep: Option<JoinInput>,
     fixed_ends: bool,
-    kept_at: Vec<(Operand, f64, usize)>,
+    kept_at: Vec<(JoinInput, f64, usize)>,
     joint: JointAt,
     degree: usize,
 }
@@ -120,8 +120,8 @@ impl CurveJoin {
 
     /// Leaves one of the curves as it is (e = 0 or d = 0); the other continues it.
     #[must_use]
-    pub fn keep(mut self, operand: Operand) -> Self {
-        self.keep = Some(operand);
+    pub fn keep(mut self, input: JoinInput) -> Self {
+        self.keep = Some(input);
         self
     }
 
@@ -134,8 +134,8 @@ impl CurveJoin {
 
     /// Keeps the position (order 0) and the derivatives up to `order` of a curve at a parameter of its own.
     #[must_use]
-    pub fn keep_at(mut self, operand: Operand, parameter: f64, order: usize) -> Self {
-        self.kept_at.push((operand, parameter, order));
+    pub fn keep_at(mut self, input: JoinInput, parameter: f64, order: usize) -> Self {
+        self.kept_at.push((input, parameter, order));
         self
     }
 
@@ -182,8 +182,8 @@ impl CurveJoin {
                 reason: "rational curves cannot be joined",
             });
         }
-        for &(operand, parameter, _) in &self.kept_at {
-            let [start, end] = if operand == Operand::First { first.domain() } else { second.domain() };
+        for &(input, parameter, _) in &self.kept_at {
+            let [start, end] = if input == JoinInput::First { first.domain() } else { second.domain() };
             if !(parameter >= start && parameter <= end) {
                 let range = "in the domain of its curve";
                 return Err(GeometryError::OutOfRange {
@@ -196,8 +196,8 @@ impl CurveJoin {
         let degree = first.degree().max(second.degree()).max(self.degree);
         let lengths = [first.domain(), second.domain()].map(|[start, end]| end - start);
         let starts = [first.domain()[0], second.domain()[0]];
-        let operands = [first, second].map(|curve| elevated(&over_unit(curve), degree));
-        let problem = Problem { settings: self, operands, starts, lengths };
+        let inputs = [first, second].map(|curve| elevated(&over_unit(curve), degree));
+        let problem = Problem { settings: self, inputs, starts, lengths };
         match self.joint {
             JointAt::Parameter(mu) => problem.solve(mu),
             JointAt::Lengths => problem.solve(problem.joint_by_lengths()),
@@ -209,14 +209,14 @@ impl CurveJoin {
 /// The curves over 0..1 with one degree, and how their own parameters ran.
 struct Problem<'a, const D: usize> {
     settings: &'a CurveJoin,
-    operands: [NurbsCurve<D>; 2],
+    inputs: [NurbsCurve<D>; 2],
     starts: [f64; 2],
     lengths: [f64; 2],
 }
 
 impl<const D: usize> Problem<'_, D> {
     fn joint_by_lengths(&self) -> f64 {
-        let [a, b] = [0, 1].map(|k| arc_length(&self.operands[k]));
+        let [a, b] = [0, 1].map(|k| arc_length(&self.inputs[k]));
         if a + b > 0.0 { (a / (a + b)).clamp(1e-3, 1.0 - 1e-3) } else { 0.5 }
     }
 
@@ -245,32 +245,31 @@ impl<const D: usize> Problem<'_, D> {
         }
         let joined_knots = self.joined_knots(mu);
         let [a, b] = self.splits(&joined_knots, mu);
-        let points = [0, 1].map(|k| to_matrix(self.operands[k].control()));
-        let size = vector::extent(&[self.operands[0].control(), self.operands[1].control()].concat());
+        let points = [0, 1].map(|k| to_matrix(self.inputs[k].control()));
+        let size = vector::extent(&[self.inputs[0].control(), self.inputs[1].control()].concat());
         let constraints = self.constraints([&a, &b], &points);
         let found = constraints.independent(size)?;
         // Rows of the least-squares problem, weighted by a root of the metric's matrix.
         let roots = [0, 1].map(|k| match self.settings.metric {
             JoinMetric::Discrete => DMatrix::identity(points[k].nrows(), points[k].nrows()),
-            JoinMetric::Integral => root(&gram(&self.operands[k])),
+            JoinMetric::Integral => root(&gram(&self.inputs[k])),
         });
         let rows = stacked(&(&roots[0] * &a), &(&roots[1] * &b));
         let right = stacked(&(&roots[0] * &points[0]), &(&roots[1] * &points[1]));
         let solution = solve_within(&found.rows, &found.right, &rows, &right);
-        let p = self.operands[0].degree();
+        let p = self.inputs[0].degree();
         let curve = NurbsCurve::trusted(p, joined_knots, to_points(&solution), None);
         let changed = [&a * &solution, &b * &solution];
-        let part = |k: usize| {
-            NurbsCurve::trusted(p, self.operands[k].knots().to_vec(), to_points(&changed[k]), None)
-        };
+        let part =
+            |k: usize| NurbsCurve::trusted(p, self.inputs[k].knots().to_vec(), to_points(&changed[k]), None);
         let parts = [part(0), part(1)];
         let differences = [0, 1].map(|k| &changed[k] - &points[k]);
         let report = JoinReport {
             joint: mu,
             discrete: differences.iter().map(DMatrix::norm_squared).sum(),
-            integral: (0..2).map(|k| (root(&gram(&self.operands[k])) * &differences[k]).norm_squared()).sum(),
+            integral: (0..2).map(|k| (root(&gram(&self.inputs[k])) * &differences[k]).norm_squared()).sum(),
             largest_deviation: [0, 1].map(|k| {
-                let knots = self.operands[k].knots().to_vec();
+                let knots = self.inputs[k].knots().to_vec();
                 largest_norm(&NurbsCurve::<D>::trusted(p, knots, to_points(&differences[k]), None))
             }),
             freedom: solution.nrows() - found.rows.nrows(),
@@ -281,8 +280,8 @@ impl<const D: usize> Problem<'_, D> {
 
     /// Knots of the joined curve: both knot vectors end to end, without any at the joint.
     fn joined_knots(&self, mu: f64) -> Vec<f64> {
-        let p = self.operands[0].degree();
-        let [first, second] = [0, 1].map(|k| self.operands[k].knots());
+        let p = self.inputs[0].degree();
+        let [first, second] = [0, 1].map(|k| self.inputs[k].knots());
         let mut knots: Vec<f64> = first[..first.len() - p - 1].iter().map(|k| k * mu).collect();
         knots.extend(second[p + 1..].iter().map(|k| vector::mix(mu, 1.0, *k)));
         knots
@@ -290,8 +289,8 @@ impl<const D: usize> Problem<'_, D> {
 
     /// The matrices that take the joined curve's control points to those of its two parts.
     fn splits(&self, joined_knots: &[f64], mu: f64) -> [DMatrix<f64>; 2] {
-        let p = self.operands[0].degree();
-        let counts = [0, 1].map(|k| self.operands[k].control().len());
+        let p = self.inputs[0].degree();
+        let counts = [0, 1].map(|k| self.inputs[k].control().len());
         let unknowns = joined_knots.len() - p - 1;
         let mut matrices = counts.map(|rows| DMatrix::zeros(rows, unknowns));
         for column in 0..unknowns {
@@ -314,11 +313,11 @@ impl<const D: usize> Problem<'_, D> {
     /// All constraints as rows on the joined curve's control points.
     fn constraints(&self, splits: [&DMatrix<f64>; 2], points: &[DMatrix<f64>; 2]) -> Constraints {
         let mut constraints = Constraints::default();
-        let index = |operand: Operand| usize::from(operand == Operand::Second);
-        let letter = |operand: Operand| if operand == Operand::First { "P" } else { "Q" };
-        if let Some(operand) = self.settings.keep {
-            let k = index(operand);
-            let name = format!("{} kept whole", letter(operand));
+        let index = |input: JoinInput| usize::from(input == JoinInput::Second);
+        let letter = |input: JoinInput| if input == JoinInput::First { "P" } else { "Q" };
+        if let Some(input) = self.settings.keep {
+            let k = index(input);
+            let name = format!("{} kept whole", letter(input));
             constraints.add(name, splits[k], &points[k]);
         }
         if self.settings.fixed_ends {
@@ -329,9 +328,9 @@ impl<const D: usize> Problem<'_, D> {
             let (rows, right) = row(1, points[1].nrows() - 1);
             constraints.add("end of Q fixed".into(), &rows, &right);
         }
-        for &(operand, parameter, order) in &self.settings.kept_at {
-            let k = index(operand);
-            let curve = &self.operands[k];
+        for &(input, parameter, order) in &self.settings.kept_at {
+            let k = index(input);
+            let curve = &self.inputs[k];
             let unit = ((parameter - self.starts[k]) / self.lengths[k]).clamp(0.0, 1.0);
             let (first, basis) = basis_at(curve, unit, order.min(curve.degree()));
             for (r, values) in basis.into_iter().enumerate() {
@@ -340,7 +339,7 @@ impl<const D: usize> Problem<'_, D> {
                     row[(0, first + j)] = value;
                 }
                 let what = if r == 0 { "position".into() } else { format!("derivative {r}") };
-                let name = format!("{what} of {} at {parameter}", letter(operand));
+                let name = format!("{what} of {} at {parameter}", letter(input));
                 constraints.add(name, &(&row * splits[k]), &(&row * &points[k]));
             }
         }

@@ -5,6 +5,6 @@ mod constraints;
 mod metric;
 mod report;
 
-pub use conjugation::{CurveJoin, Joined, JoinedSpline, JointAt, Operand};
+pub use conjugation::{CurveJoin, JoinInput, Joined, JoinedSpline, JointAt};
 pub use metric::JoinMetric;
 pub use report::{ConstraintReport, JoinReport};

@@ -11,7 +11,7 @@ use super::deviation::{Deviation, Parameters};
 use super::flat_triangle::FlatTriangle;
 use super::joints::{Course, FaceSide};
 use super::needles;
-use super::surface::{Patch, Side};
+use super::surface::{Patch, PatchSide};
 use crate::parametric::curve::discretise::Refinement;
 use crate::parametric::error::GeometryError;
 use crate::parametric::numeric::vector::{self, Point};
@@ -145,7 +145,7 @@ impl FaceMesh {
 
     /// Whether the face is straight across the given side, so that the side's own nodes are all it needs along it.
     pub(crate) fn is_straight_across(&self, side: usize) -> bool {
-        let across = usize::from(matches!(Side::ALL[side], Side::VLow | Side::VHigh));
+        let across = usize::from(matches!(PatchSide::ALL[side], PatchSide::VLow | PatchSide::VHigh));
         self.edges[across] < 1.0
     }
 
@@ -162,7 +162,7 @@ impl FaceMesh {
 
     /// Adds a node of a shared edge on side number `side`, at `t` on the edge, `r` on the side.
     pub(crate) fn insert_on_side(&mut self, side: usize, r: f64, t: f64, vertex: u32) -> Result<(), Error> {
-        self.insert(Side::ALL[side].at(r), Some(vertex), t)
+        self.insert(PatchSide::ALL[side].at(r), Some(vertex), t)
     }
 
     /// Number of triangles, degenerate ones included.
@@ -251,18 +251,18 @@ impl FaceMesh {
             return EdgeKind::Inner;
         }
         let nodes = ends.map(|n| &self.nodes[n as usize]);
-        let on = |at: [f64; 2], side: Side| match side {
-            Side::VLow => at[1] == 0.0,
-            Side::UHigh => at[0] == 1.0,
-            Side::VHigh => at[1] == 1.0,
-            Side::ULow => at[0] == 0.0,
+        let on = |at: [f64; 2], side: PatchSide| match side {
+            PatchSide::VLow => at[1] == 0.0,
+            PatchSide::UHigh => at[0] == 1.0,
+            PatchSide::VHigh => at[1] == 1.0,
+            PatchSide::ULow => at[0] == 0.0,
         };
-        let side = (0..4).find(|&s| nodes.iter().all(|n| on(n.at, Side::ALL[s]))).unwrap_or(0);
+        let side = (0..4).find(|&s| nodes.iter().all(|n| on(n.at, PatchSide::ALL[s]))).unwrap_or(0);
         match &self.sides[side] {
             // Both ends are the point the side collapses to.
             FaceSide::Collapsed => nodes[0].vertex.map_or(EdgeKind::Inner, EdgeKind::Collapsed),
             FaceSide::Edge { edge, course } => {
-                let along = usize::from(matches!(Side::ALL[side], Side::UHigh | Side::ULow));
+                let along = usize::from(matches!(PatchSide::ALL[side], PatchSide::UHigh | PatchSide::ULow));
                 let mut between = nodes.map(|n| edge_parameter(n, n.at[along], *course));
                 between.sort_by(f64::total_cmp);
                 EdgeKind::Shared(EdgeSplit { edge: *edge, between })

@@ -1,6 +1,6 @@
 //! Where patches meet: boundary curves compared in either direction, joined into shared edges, corners identified.
 
-use super::surface::{Patch, Side};
+use super::surface::{Patch, PatchSide};
 use crate::parametric::curve::nurbs::NurbsCurve;
 use crate::parametric::curve::nurbs_tools::over_unit;
 use crate::parametric::curve::param_curve::Curve;
@@ -14,7 +14,7 @@ pub struct Gap {
     /// Index of the patch, from 0.
     pub patch: usize,
     /// Which of its boundaries.
-    pub side: Side,
+    pub side: PatchSide,
     /// Start and end of the open boundary (or of the open part between two creases).
     pub ends: [[f64; 3]; 2],
     /// Greatest distance from the boundary to the nearest other open boundary, and the place where it is so wide;
@@ -70,7 +70,7 @@ pub(crate) struct Edge {
 /// Faces (smooth parts of patches) with their shared edges and corners.
 #[derive(Clone, Debug)]
 pub(crate) struct Joints {
-    /// Sides of every face in the order of [`Side::ALL`].
+    /// Sides of every face in the order of [`PatchSide::ALL`].
     pub(crate) sides: Vec<[FaceSide; 4]>,
     pub(crate) edges: Vec<Edge>,
     /// For every face, the corner number of its corners (0,0), (1,0), (1,1), (0,1) of the unit square.
@@ -80,7 +80,7 @@ pub(crate) struct Joints {
     pub(crate) gaps: Vec<Gap>,
 }
 
-/// Corners at the start and the end of each side, in the order of [`Side::ALL`].
+/// Corners at the start and the end of each side, in the order of [`PatchSide::ALL`].
 const SIDE_CORNERS: [[usize; 2]; 4] = [[0, 1], [1, 2], [3, 2], [0, 3]];
 
 /// One side as the comparison sees it.
@@ -96,7 +96,7 @@ pub(crate) fn join(faces: &[Patch], owner: &[usize], tolerance: f64) -> Result<J
     let mut boundaries: Vec<Boundary> = Vec::new();
     let mut collapsed = vec![[true; 4]; faces.len()];
     for (face, patch) in faces.iter().enumerate() {
-        for (side, which) in Side::ALL.into_iter().enumerate() {
+        for (side, which) in PatchSide::ALL.into_iter().enumerate() {
             let curve = over_unit(&patch.boundary(which));
             let control = curve.control();
             if control.iter().any(|p| vector::distance(*p, control[0]) > tolerance) {
@@ -310,7 +310,7 @@ fn find_gaps(edges: &[Edge], boundaries: &[Boundary], owner: &[usize]) -> Vec<Ga
         let ends =
             boundaries.iter().find(|b| (b.face, b.side) == (face, side)).map_or([[0.0; 3]; 2], |b| b.ends);
         let width = widest.filter(|(width, _)| width.is_finite());
-        gaps.push(Gap { patch: owner[face], side: Side::ALL[side], ends, width });
+        gaps.push(Gap { patch: owner[face], side: PatchSide::ALL[side], ends, width });
     }
     gaps
 }

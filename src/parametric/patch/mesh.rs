@@ -10,7 +10,7 @@ use rustc_hash::FxHashSet;
 use super::face_mesh::{EdgeSplit, FaceMesh, Proposal, Start, number_nodes};
 use super::joints::{self, Course, FaceSide, Gap, Joints, nearest_parameter};
 use super::orientation;
-use super::surface::{Patch, Side};
+use super::surface::{Patch, PatchSide};
 use crate::parametric::curve::discretise::{CurveMeshing, Refinement, check_resolvable};
 use crate::parametric::curve::param_curve::Curve;
 use crate::parametric::error::{GeometryError, check_positive};
@@ -235,7 +235,8 @@ impl<'a> Builder<'a> {
     /// The first nodes of an edge, given to its faces.
     fn mesh_edge(&mut self, index: usize) -> Result<(), Error> {
         let edge = &self.joints.edges[index];
-        let along = |side: usize| usize::from(matches!(Side::ALL[side], Side::UHigh | Side::ULow));
+        let along =
+            |side: usize| usize::from(matches!(PatchSide::ALL[side], PatchSide::UHigh | PatchSide::ULow));
         let initial = edge.uses.iter().map(|&(_, side)| self.settings.grid[along(side)]).max().unwrap_or(2);
         let bends = edge.uses.iter().any(|&(face, side)| !self.meshes[face].is_straight_across(side));
         let mesh = CurveMeshing::new(EDGE_SHARE[usize::from(bends)] * self.settings.tolerance)
@@ -269,7 +270,7 @@ impl<'a> Builder<'a> {
                 Course::Opposite => 1.0 - t,
                 Course::Nearest(_) => {
                     let curve = crate::parametric::curve::nurbs_tools::over_unit(
-                        &self.faces.parts[face].boundary(Side::ALL[side]),
+                        &self.faces.parts[face].boundary(PatchSide::ALL[side]),
                     );
                     nearest_parameter(&curve, place)
                 }

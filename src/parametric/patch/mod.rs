@@ -14,4 +14,4 @@ mod surface;
 
 pub use joints::Gap;
 pub use mesh::{PatchMesh, PatchMeshing, PatchTriangle};
-pub use surface::{Patch, Side};
+pub use surface::{Patch, PatchSide};

@@ -1,7 +1,7 @@
 //! Which faces to turn so that all agree with their neighbours and closed shells face outwards.
 
 use super::joints::{FaceSide, Joints};
-use super::surface::{Patch, Side};
+use super::surface::{Patch, PatchSide};
 use crate::parametric::error::{GeometryError, Result};
 
 /// For every face, whether it must be turned. Neighbours must run along their shared edge in opposite directions.
@@ -56,7 +56,7 @@ pub(crate) fn agreeing_sides(parts: &[Patch], owner: &[usize], joints: &Joints) 
 /// Whether a face's boundary, taken against the clock, runs along the shared edge of the given side.
 fn runs_along(joints: &Joints, face: usize, side: usize) -> bool {
     match &joints.sides[face][side] {
-        FaceSide::Edge { course, .. } => Side::ALL[side].is_forward() != course.is_reversed(),
+        FaceSide::Edge { course, .. } => PatchSide::ALL[side].is_forward() != course.is_reversed(),
         FaceSide::Collapsed => true,
     }
 }

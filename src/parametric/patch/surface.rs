@@ -27,7 +27,7 @@ pub struct Patch {
 
 /// One of the four boundaries of a patch, running along the growing parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Side {
+pub enum PatchSide {
     /// `v` at its least, along `u`.
     VLow,
     /// `u` at its greatest, along `v`.
@@ -38,7 +38,7 @@ pub enum Side {
     ULow,
 }
 
-impl Side {
+impl PatchSide {
     /// All four, against the clock round the parameter rectangle (the last two traversed backwards).
     pub const ALL: [Self; 4] = [Self::VLow, Self::UHigh, Self::VHigh, Self::ULow];
 
@@ -58,7 +58,7 @@ impl Side {
     }
 }
 
-impl std::fmt::Display for Side {
+impl std::fmt::Display for PatchSide {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::VLow => "least v",
@@ -211,10 +211,10 @@ impl Patch {
 
     /// The boundary curve along a side, over the patch's own parameter.
     #[must_use]
-    pub fn boundary(&self, side: Side) -> NurbsCurve<3> {
-        let along = if matches!(side, Side::VLow | Side::VHigh) { 0 } else { 1 };
+    pub fn boundary(&self, side: PatchSide) -> NurbsCurve<3> {
+        let along = if matches!(side, PatchSide::VLow | PatchSide::VHigh) { 0 } else { 1 };
         let across = 1 - along;
-        let end = self.domain()[across][usize::from(matches!(side, Side::VHigh | Side::UHigh))];
+        let end = self.domain()[across][usize::from(matches!(side, PatchSide::VHigh | PatchSide::UHigh))];
         // Clamped knots put the boundary into the first or last row; other knots need the basis.
         let span = knots::span(self.degrees[across], &self.knots[across], end);
         let basis = knots::basis_derivatives(self.degrees[across], &self.knots[across], span, end, 0);
