@@ -1,9 +1,7 @@
 //! Twice continuously differentiable interpolating splines.
 
-use super::bezier::PiecewiseBezier;
-use super::nurbs::NurbsCurve;
-use super::param_curve::Curve;
 use super::parameters::Spacing;
+use super::piecewise::{PiecewiseBezier, curve_of_pieces};
 use crate::parametric::error::{Result, check_count, check_points};
 use crate::parametric::numeric::vector::{self, Point};
 
@@ -165,28 +163,4 @@ fn solve_cyclic<const D: usize>(mut rows: Vec<Row<D>>) -> Vec<Point<D>> {
     (0..=last).map(|i| vector::add_scaled(solution[i], factor, -correction[i][0])).collect()
 }
 
-impl<const D: usize> Curve<D> for CubicSpline<D> {
-    fn domain(&self) -> [f64; 2] {
-        self.spline.domain()
-    }
-
-    fn point(&self, t: f64) -> Point<D> {
-        self.spline.point(t)
-    }
-
-    fn derivatives(&self, t: f64, order: usize) -> Vec<Point<D>> {
-        self.spline.derivatives(t, order)
-    }
-
-    fn breaks(&self) -> Vec<f64> {
-        self.spline.parameters.clone()
-    }
-
-    fn control_polygon(&self, a: f64, b: f64, polygon: &mut Vec<Point<D>>) {
-        self.spline.control_polygon(a, b, polygon);
-    }
-
-    fn to_nurbs(&self) -> NurbsCurve<D> {
-        self.spline.to_nurbs()
-    }
-}
+curve_of_pieces!(CubicSpline);

@@ -1,9 +1,7 @@
 //! Cubic Hermite splines.
 
-use super::bezier::PiecewiseBezier;
-use super::nurbs::NurbsCurve;
-use super::param_curve::Curve;
 use super::parameters::Spacing;
+use super::piecewise::{PiecewiseBezier, curve_of_pieces};
 use crate::parametric::error::{GeometryError, Result, check_count, check_points};
 use crate::parametric::numeric::vector::{self, Point};
 
@@ -114,28 +112,4 @@ impl<const D: usize> HermiteSpline<D> {
     }
 }
 
-impl<const D: usize> Curve<D> for HermiteSpline<D> {
-    fn domain(&self) -> [f64; 2] {
-        self.spline.domain()
-    }
-
-    fn point(&self, t: f64) -> Point<D> {
-        self.spline.point(t)
-    }
-
-    fn derivatives(&self, t: f64, order: usize) -> Vec<Point<D>> {
-        self.spline.derivatives(t, order)
-    }
-
-    fn breaks(&self) -> Vec<f64> {
-        self.spline.parameters.clone()
-    }
-
-    fn control_polygon(&self, a: f64, b: f64, polygon: &mut Vec<Point<D>>) {
-        self.spline.control_polygon(a, b, polygon);
-    }
-
-    fn to_nurbs(&self) -> NurbsCurve<D> {
-        self.spline.to_nurbs()
-    }
-}
+curve_of_pieces!(HermiteSpline);

@@ -13,6 +13,7 @@ mod nurbs_as_curve;
 pub(crate) mod nurbs_tools;
 pub(crate) mod param_curve;
 mod parameters;
+mod piecewise;
 mod polyline;
 mod reversed;
 

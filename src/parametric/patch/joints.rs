@@ -93,23 +93,43 @@ struct Boundary {
 
 /// Joins the faces. `owner[i]` is the patch that face `i` is part of; boundaries within `tolerance` are one.
 pub(crate) fn join(faces: &[Patch], owner: &[usize], tolerance: f64) -> Result<Joints> {
-    let mut boundaries: Vec<Boundary> = Vec::new();
-    let mut collapsed = vec![[true; 4]; faces.len()];
+    let boundaries = collect_boundaries(faces, tolerance);
+    let (edges, edge_of) = match_boundaries(&boundaries, owner, tolerance)?;
+    let mut sides: Vec<[FaceSide; 4]> = vec![std::array::from_fn(|_| FaceSide::Collapsed); faces.len()];
+    for (boundary, (edge, course)) in boundaries.iter().zip(edge_of) {
+        sides[boundary.face][boundary.side] = FaceSide::Edge { edge, course };
+    }
+    let (corners, corner_places) = identify_corners(faces, &sides, &edges);
+    let gaps = find_gaps(&edges, &boundaries, owner);
+    Ok(Joints { sides, edges, corners, corner_places, gaps })
+}
+
+/// The sides of the faces that are not one point within `tolerance`.
+fn collect_boundaries(faces: &[Patch], tolerance: f64) -> Vec<Boundary> {
+    let mut boundaries = Vec::new();
     for (face, patch) in faces.iter().enumerate() {
         for (side, which) in PatchSide::ALL.into_iter().enumerate() {
             let curve = over_unit(&patch.boundary(which));
             let control = curve.control();
             if control.iter().any(|p| vector::distance(*p, control[0]) > tolerance) {
-                collapsed[face][side] = false;
                 let ends = [control[0], control[control.len() - 1]];
                 boundaries.push(Boundary { face, side, curve, ends });
             }
         }
     }
-    let mut placeholder: Vec<[FaceSide; 4]> = vec![std::array::from_fn(|_| FaceSide::Collapsed); faces.len()];
+    boundaries
+}
+
+/// The shared edges, and for every boundary its edge and how it runs along it.
+fn match_boundaries(
+    boundaries: &[Boundary],
+    owner: &[usize],
+    tolerance: f64,
+) -> Result<(Vec<Edge>, Vec<(usize, Course)>)> {
     let mut edges: Vec<Edge> = Vec::new();
     let mut edge_of: Vec<Option<(usize, Course)>> = vec![None; boundaries.len()];
-    // Boundaries that run along each other have near ends, whatever their direction.
+    // Boundaries that run along each other have near ends, whatever their direction: candidates are those whose lesser
+    // end in x is within the tolerance.
     let least = |b: &Boundary| b.ends[0][0].min(b.ends[1][0]);
     let mut by_place: Vec<(f64, usize)> = boundaries.iter().map(least).zip(0..).collect();
     by_place.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -117,11 +137,10 @@ pub(crate) fn join(faces: &[Patch], owner: &[usize], tolerance: f64) -> Result<J
         let from = by_place.partition_point(|(key, _)| *key < x - tolerance);
         by_place[from..].iter().take_while(move |(key, _)| *key <= x + tolerance).map(|(_, index)| *index)
     };
-    for i in 0..boundaries.len() {
+    for (i, first) in boundaries.iter().enumerate() {
         if edge_of[i].is_some() {
             continue;
         }
-        let first = &boundaries[i];
         let mut mates: Vec<(usize, Course)> = near_by(least(first))
             .filter(|&j| j > i && edge_of[j].is_none())
             .filter_map(|j| course(first, &boundaries[j], tolerance).map(|course| (j, course)))
@@ -144,14 +163,7 @@ pub(crate) fn join(faces: &[Patch], owner: &[usize], tolerance: f64) -> Result<J
         }
         edges.push(Edge { curve: first.curve.clone(), uses });
     }
-    for (boundary, joined) in boundaries.iter().zip(&edge_of) {
-        if let Some((edge, course)) = *joined {
-            placeholder[boundary.face][boundary.side] = FaceSide::Edge { edge, course };
-        }
-    }
-    let (corners, corner_places) = identify_corners(faces, &placeholder, &edges);
-    let gaps = find_gaps(&edges, &boundaries, owner);
-    Ok(Joints { sides: placeholder, edges, corners, corner_places, gaps })
+    Ok((edges, edge_of.into_iter().flatten().collect()))
 }
 
 /// How `other` runs along `edge`, if it does.

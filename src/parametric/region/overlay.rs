@@ -15,6 +15,7 @@ use rustc_hash::FxHashMap;
 
 use super::polygons::Polygons;
 use super::triangulate;
+use crate::parametric::error::{GeometryError, Result, check_points};
 use crate::parametric::numeric::vector::Point;
 
 /// Which points crossing or nested contours enclose.
@@ -46,8 +47,55 @@ pub enum RegionOperation {
 type Shapes = Vec<Vec<Vec<Point<2>>>>;
 type Contours<'a> = Vec<&'a [Point<2>]>;
 
+impl Polygons {
+    /// The region that `contours` describe by `rule`, whatever their direction and crossings.
+    ///
+    /// # Errors
+    /// [`GeometryError::NotFinite`], [`GeometryError::TooFewPoints`] for a contour of fewer than 3 points.
+    pub fn new(contours: &[Vec<[f64; 2]>], rule: FillRule) -> Result<Self> {
+        for contour in contours {
+            check_points("contour", contour)?;
+            if contour.len() < 3 {
+                return Err(GeometryError::TooFewPoints { what: "contour", needed: 3, found: contour.len() });
+            }
+        }
+        Ok(Self::trusted(normalised(contours, rule)))
+    }
+
+    /// This region and `other` combined; see [`RegionOperation`] and the notes on precision at
+    /// [`FillRule`].
+    #[must_use]
+    pub fn combined(&self, operation: RegionOperation, other: &Self) -> Self {
+        Self::trusted(combined(operation, self, other))
+    }
+
+    /// What is in either.
+    #[must_use]
+    pub fn union(&self, other: &Self) -> Self {
+        self.combined(RegionOperation::Union, other)
+    }
+
+    /// What is in both.
+    #[must_use]
+    pub fn intersection(&self, other: &Self) -> Self {
+        self.combined(RegionOperation::Intersection, other)
+    }
+
+    /// What is in this one and not in `other`.
+    #[must_use]
+    pub fn difference(&self, other: &Self) -> Self {
+        self.combined(RegionOperation::Difference, other)
+    }
+
+    /// What is in exactly one.
+    #[must_use]
+    pub fn symmetric_difference(&self, other: &Self) -> Self {
+        self.combined(RegionOperation::SymmetricDifference, other)
+    }
+}
+
 /// The region that `contours` describe, as polygons with holes.
-pub(crate) fn normalised(contours: &[Vec<Point<2>>], rule: FillRule) -> Shapes {
+fn normalised(contours: &[Vec<Point<2>>], rule: FillRule) -> Shapes {
     let rule = match rule {
         FillRule::EvenOdd => EngineRule::EvenOdd,
         FillRule::NonZero => EngineRule::NonZero,
@@ -57,7 +105,7 @@ pub(crate) fn normalised(contours: &[Vec<Point<2>>], rule: FillRule) -> Shapes {
 }
 
 /// Two regions combined.
-pub(crate) fn combined(operation: RegionOperation, a: &Polygons, b: &Polygons) -> Shapes {
+fn combined(operation: RegionOperation, a: &Polygons, b: &Polygons) -> Shapes {
     let rule = match operation {
         RegionOperation::Union => OverlayRule::Union,
         RegionOperation::Intersection => OverlayRule::Intersect,

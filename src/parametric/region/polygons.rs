@@ -3,33 +3,19 @@
 use robust::{Coord, orient2d};
 
 use super::membership::Membership;
-use super::overlay::{self, FillRule, RegionOperation};
-use super::triangulate::{self, PlaneMesh};
 use crate::parametric::error::{GeometryError, Result, check_points};
 use crate::parametric::numeric::vector::{self, Point};
 
 /// A bounded plane region with straight edges: polygons with holes that neither cross nor overlap. Outer contours
 /// run against the clock, holes with it; no contour repeats its first point at the end.
+///
+/// How regions are made of contours and combined is in `overlay`, how they are filled in `triangulate`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Polygons {
     shapes: Vec<Vec<Vec<Point<2>>>>,
 }
 
 impl Polygons {
-    /// The region that `contours` describe by `rule`, whatever their direction and crossings.
-    ///
-    /// # Errors
-    /// [`GeometryError::NotFinite`], [`GeometryError::TooFewPoints`] for a contour of fewer than 3 points.
-    pub fn new(contours: &[Vec<[f64; 2]>], rule: FillRule) -> Result<Self> {
-        for contour in contours {
-            check_points("contour", contour)?;
-            if contour.len() < 3 {
-                return Err(GeometryError::TooFewPoints { what: "contour", needed: 3, found: contour.len() });
-            }
-        }
-        Ok(Self { shapes: overlay::normalised(contours, rule) })
-    }
-
     pub(crate) fn trusted(shapes: Vec<Vec<Vec<Point<2>>>>) -> Self {
         Self { shapes }
     }
@@ -103,45 +89,6 @@ impl Polygons {
             Membership::Boundary => 0.0,
             Membership::Outside => -distance,
         }
-    }
-
-    /// This region and `other` combined; see [`RegionOperation`] and the notes on precision at
-    /// [`FillRule`].
-    #[must_use]
-    pub fn combined(&self, operation: RegionOperation, other: &Self) -> Self {
-        Self { shapes: overlay::combined(operation, self, other) }
-    }
-
-    /// What is in either.
-    #[must_use]
-    pub fn union(&self, other: &Self) -> Self {
-        self.combined(RegionOperation::Union, other)
-    }
-
-    /// What is in both.
-    #[must_use]
-    pub fn intersection(&self, other: &Self) -> Self {
-        self.combined(RegionOperation::Intersection, other)
-    }
-
-    /// What is in this one and not in `other`.
-    #[must_use]
-    pub fn difference(&self, other: &Self) -> Self {
-        self.combined(RegionOperation::Difference, other)
-    }
-
-    /// What is in exactly one.
-    #[must_use]
-    pub fn symmetric_difference(&self, other: &Self) -> Self {
-        self.combined(RegionOperation::SymmetricDifference, other)
-    }
-
-    /// Triangles that fill the region, with the contours' points as their only vertices (constrained Delaunay).
-    ///
-    /// # Errors
-    /// [`GeometryError::ContoursCross`]; never for regions made by this library.
-    pub fn triangulate(&self) -> Result<PlaneMesh> {
-        triangulate::fill(self)
     }
 
     /// Every edge cut into as many equal parts as `parts` says.

@@ -28,6 +28,16 @@ impl PlaneMesh {
     }
 }
 
+impl Polygons {
+    /// Triangles that fill the region, with the contours' points as their only vertices (constrained Delaunay).
+    ///
+    /// # Errors
+    /// [`GeometryError::ContoursCross`]; never for regions made by this library.
+    pub fn triangulate(&self) -> Result<PlaneMesh> {
+        fill(self)
+    }
+}
+
 type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
 /// The distinct points and the edges between them.
@@ -81,7 +91,7 @@ pub(crate) fn crossing(polygons: &Polygons) -> Option<Point<2>> {
 }
 
 /// The triangles inside.
-pub(crate) fn fill(polygons: &Polygons) -> Result<PlaneMesh> {
+fn fill(polygons: &Polygons) -> Result<PlaneMesh> {
     let (points, triangulation) =
         constrained(polygons).map_err(|place| GeometryError::ContoursCross { place })?;
     let inside = inside_faces(&triangulation);

@@ -299,12 +299,7 @@ where
             let [start, end] = ends[..] else { return Err(node.fault("a segment has two points")) };
             Arc::new(node.place(Segment::new(start, end))?)
         }
-        "line" => {
-            let spec: LineSpec = node.members()?;
-            let (at, direction) =
-                (point::<D>(node, "point", &spec.point)?, point(node, "direction", &spec.direction)?);
-            Arc::new(node.place(Segment::on_line(at, direction, spec.domain))?)
-        }
+        "line" => line::<D>(node)?,
         "arc" => Arc::new(arc::<D>(node)?),
         "polyline" => {
             let spec: PolylineSpec = node.members()?;
@@ -312,19 +307,7 @@ where
             Arc::new(node.place(Polyline::new(&through, &spacing(spec.spacing), spec.closed))?)
         }
         "hermite" => hermite::<D>(node)?,
-        "cubic_spline" => {
-            let spec: CubicSpec = node.members()?;
-            let through = points::<D>(node, "points", &spec.points)?;
-            let ends = match spec.ends {
-                None | Some(EndsSpec::Natural) => SplineEnds::Natural,
-                Some(EndsSpec::Periodic) => SplineEnds::Periodic,
-                Some(EndsSpec::Clamped([start, end])) => SplineEnds::Clamped([
-                    point(node, "ends/clamped/0", &start)?,
-                    point(node, "ends/clamped/1", &end)?,
-                ]),
-            };
-            Arc::new(node.place(CubicSpline::new(&through, &ends, &spacing(spec.spacing)))?)
-        }
+        "cubic_spline" => cubic_spline::<D>(node)?,
         "lagrange" => {
             let spec: LagrangeSpec = node.members()?;
             let through = points::<D>(node, "points", &spec.points)?;
@@ -334,28 +317,8 @@ where
             let spec: PointsSpec = node.members()?;
             Arc::new(node.place(Bezier::new(&points::<D>(node, "points", &spec.points)?))?)
         }
-        "bspline" => {
-            let spec: BsplineSpec = node.members()?;
-            let control = points::<D>(node, "points", &spec.points)?;
-            let knots = match spec.knots {
-                Some(knots) => knots,
-                None => node.place(NurbsCurve::clamped_uniform(spec.degree, &control))?.knots().to_vec(),
-            };
-            Arc::new(node.place(match spec.weights {
-                None => NurbsCurve::bspline(spec.degree, &knots, &control),
-                Some(weights) => NurbsCurve::nurbs(spec.degree, &knots, &control, &weights),
-            })?)
-        }
-        "composite" => {
-            let spec: CompositeSpec = node.members()?;
-            let pointer = format!("{}/segments", node.pointer);
-            let parts = spec.segments.iter().enumerate();
-            let parts = parts
-                .map(|(i, part)| inner::<D>(&Node::child(part, &pointer, i)))
-                .collect::<Result<Vec<_>>>()?;
-            let made = if spec.closed { Composite::closed(&parts) } else { Composite::new(&parts) };
-            Arc::new(node.place(made)?)
-        }
+        "bspline" => bspline::<D>(node)?,
+        "composite" => composite::<D>(node)?,
         "reversed" => {
             let spec: ReversedSpec = node.members()?;
             Arc::new(Reversed::new(inner::<D>(&Node::child(&spec.curve, &node.pointer, "curve"))?))
@@ -367,6 +330,53 @@ where
         }
         _ => return Err(node.unknown_type(name, "curve", &TYPES)),
     })
+}
+
+fn line<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>> {
+    let spec: LineSpec = node.members()?;
+    let (at, direction) =
+        (point::<D>(node, "point", &spec.point)?, point(node, "direction", &spec.direction)?);
+    Ok(Arc::new(node.place(Segment::on_line(at, direction, spec.domain))?))
+}
+
+fn cubic_spline<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>> {
+    let spec: CubicSpec = node.members()?;
+    let through = points::<D>(node, "points", &spec.points)?;
+    let ends = match spec.ends {
+        None | Some(EndsSpec::Natural) => SplineEnds::Natural,
+        Some(EndsSpec::Periodic) => SplineEnds::Periodic,
+        Some(EndsSpec::Clamped([start, end])) => SplineEnds::Clamped([
+            point(node, "ends/clamped/0", &start)?,
+            point(node, "ends/clamped/1", &end)?,
+        ]),
+    };
+    Ok(Arc::new(node.place(CubicSpline::new(&through, &ends, &spacing(spec.spacing)))?))
+}
+
+fn bspline<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>> {
+    let spec: BsplineSpec = node.members()?;
+    let control = points::<D>(node, "points", &spec.points)?;
+    let knots = match spec.knots {
+        Some(knots) => knots,
+        None => node.place(NurbsCurve::clamped_uniform(spec.degree, &control))?.knots().to_vec(),
+    };
+    Ok(Arc::new(node.place(match spec.weights {
+        None => NurbsCurve::bspline(spec.degree, &knots, &control),
+        Some(weights) => NurbsCurve::nurbs(spec.degree, &knots, &control, &weights),
+    })?))
+}
+
+fn composite<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>>
+where
+    SharedCurve<D>: FromAny,
+{
+    let spec: CompositeSpec = node.members()?;
+    let pointer = format!("{}/segments", node.pointer);
+    let parts = spec.segments.iter().enumerate();
+    let parts =
+        parts.map(|(i, part)| inner::<D>(&Node::child(part, &pointer, i))).collect::<Result<Vec<_>>>()?;
+    let made = if spec.closed { Composite::closed(&parts) } else { Composite::new(&parts) };
+    Ok(Arc::new(node.place(made)?))
 }
 
 fn arc<const D: usize>(node: &Node<'_>) -> Result<EllipticArc<D>> {
