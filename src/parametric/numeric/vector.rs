@@ -1,5 +1,7 @@
-//! Arithmetic on points of any dimension: `[f64; D]` as a vector. Three-dimensional code that needs more than
-//! this (cross products, frames) uses `glam`.
+//! Arithmetic on points of any dimension: `[f64; D]` as a vector.
+//!
+//! For code that is generic over the dimension only (curves of the plane and of space, homogeneous points), which
+//! `glam` has no vectors for. Where the dimension is 3, `glam::DVec3` with its operators reads better.
 
 pub(crate) type Point<const D: usize> = [f64; D];
 
@@ -54,10 +56,6 @@ pub(crate) fn turned(a: Point<2>) -> Point<2> {
 /// The third component of the cross product of plane vectors.
 pub(crate) fn cross2(a: Point<2>, b: Point<2>) -> f64 {
     a[0] * b[1] - a[1] * b[0]
-}
-
-pub(crate) fn cross3(a: Point<3>, b: Point<3>) -> Point<3> {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Distance of a point to a segment, the foot clamped to it (Choporov 2017, equation 6).

@@ -3,8 +3,9 @@
 
 use std::ops::Range;
 
+use glam::DVec3;
+
 use super::deviation::Deviation;
-use crate::parametric::numeric::vector::{self, Point};
 
 /// Intervals of the sampling grid along each direction.
 const STEPS: usize = 32;
@@ -28,16 +29,16 @@ pub(crate) struct Density {
 }
 
 /// Sampled points, row by row along u.
-struct Samples(Vec<Point<3>>);
+struct Samples(Vec<DVec3>);
 
 impl Samples {
     fn new(patch: &Deviation) -> Self {
         let at = |i: usize| i as f64 / STEPS as f64;
         let grid = (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| [at(i), at(j)]));
-        Self(grid.map(|at| patch.point(at)).collect())
+        Self(grid.map(|at| DVec3::from(patch.point(at))).collect())
     }
 
-    fn at(&self, i: usize, j: usize) -> Point<3> {
+    fn at(&self, i: usize, j: usize) -> DVec3 {
         self.0[i * (STEPS + 1) + j]
     }
 }
@@ -53,8 +54,8 @@ impl Density {
                 for k in 0..2 {
                     worth[k][i][j] = need[k];
                 }
-                lengths[0] += vector::distance(samples.at(i, j), samples.at(i + 1, j)) / STEPS as f64;
-                lengths[1] += vector::distance(samples.at(i, j), samples.at(i, j + 1)) / STEPS as f64;
+                lengths[0] += samples.at(i, j).distance(samples.at(i + 1, j)) / STEPS as f64;
+                lengths[1] += samples.at(i, j).distance(samples.at(i, j + 1)) / STEPS as f64;
             }
         }
         let mut density = Self { worth, lengths, edges: [0.0; 2] };
@@ -163,9 +164,9 @@ fn bent(samples: &Samples, i: usize, j: usize, tolerance: f64) -> [f64; 2] {
         let along_u = [inner_p - 1, inner_p, inner_p + 1].map(|p| samples.at(p, q));
         let along_v = [inner_q - 1, inner_q, inner_q + 1].map(|q| samples.at(p, q));
         let bends = [along_u, along_v].map(bend);
-        let sizes = bends.map(vector::norm);
+        let sizes = bends.map(DVec3::length);
         let product = sizes[0] * sizes[1];
-        let cosine = if product > 0.0 { vector::dot(bends[0], bends[1]) / product } else { -1.0 };
+        let cosine = if product > 0.0 { bends[0].dot(bends[1]) / product } else { -1.0 };
         let share = (2.0 + 2.0 * cosine).max(1.0).sqrt().recip();
         for k in 0..2 {
             sums[k] += (sizes[k] / (share * tolerance)).sqrt() / 8.0;
@@ -178,16 +179,15 @@ fn bent(samples: &Samples, i: usize, j: usize, tolerance: f64) -> [f64; 2] {
 /// difference. Where that asks for more cells than the bending does, the direction that needs fewer edges gets more.
 fn twisted([n, m]: [f64; 2], samples: &Samples, i: usize, j: usize, tolerance: f64) -> [f64; 2] {
     let [a, b, c, d] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|[i, j]| samples.at(i, j));
-    let mixed = vector::add(vector::sub(a, b), vector::sub(c, d));
+    let mixed = (a - b) + (c - d);
     // Only the twist out of the surface counts; within it, lines merely spread.
-    let normal = vector::cross3(vector::sub(c, a), vector::sub(d, b));
-    let length = vector::norm(normal);
-    let cells =
-        if length > 0.0 { vector::dot(mixed, normal).abs() / length / (2.0 * tolerance) } else { 0.0 };
+    let normal = (c - a).cross(d - b);
+    let length = normal.length();
+    let cells = if length > 0.0 { mixed.dot(normal).abs() / length / (2.0 * tolerance) } else { 0.0 };
     if cells <= n * m {
         return [n, m];
     }
-    let lengths = [vector::distance(a, b), vector::distance(a, d)];
+    let lengths = [a.distance(b), a.distance(d)];
     let ratio = (lengths[0] / lengths[1].max(1e-300)).clamp(0.03, 30.0);
     if n * n > cells * ratio {
         [n, cells / n]
@@ -199,11 +199,11 @@ fn twisted([n, m]: [f64; 2], samples: &Samples, i: usize, j: usize, tolerance: f
 }
 
 /// How far the middle point is from the segment between the others, as a vector.
-fn bend([a, b, c]: [Point<3>; 3]) -> Point<3> {
-    let edge = vector::sub(c, a);
-    let square = vector::dot(edge, edge);
-    let along = if square > 0.0 { vector::dot(vector::sub(b, a), edge) / square } else { 0.0 };
-    vector::sub(b, vector::add_scaled(a, edge, along.clamp(0.0, 1.0)))
+fn bend([a, b, c]: [DVec3; 3]) -> DVec3 {
+    let edge = c - a;
+    let square = edge.length_squared();
+    let along = if square > 0.0 { (b - a).dot(edge) / square } else { 0.0 };
+    b - (a + edge * along.clamp(0.0, 1.0))
 }
 
 /// A rectangle of sampling intervals.

@@ -1,6 +1,7 @@
 //! The mesh of one face: a Delaunay triangulation of the parameter square that grows until every triangle is near
 //! enough to the patch.
 
+use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 use smallvec::SmallVec;
 use spade::handles::FixedVertexHandle;
@@ -381,8 +382,8 @@ struct FaceSurface<'a> {
 }
 
 impl needles::Surface for FaceSurface<'_> {
-    fn place(&self, node: u32) -> Point<3> {
-        self.face.place(node as usize)
+    fn place(&self, node: u32) -> DVec3 {
+        self.face.place(node as usize).into()
     }
 
     fn parameters(&self, node: u32) -> [f64; 2] {

@@ -4,9 +4,8 @@
 //! nodes of one line are a triangle in the parameter plane and a segment in space. Exchanging its longest edge for the
 //! other diagonal of the two triangles beside it leaves the surface as it is and no such triangle.
 
+use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
-
-use crate::parametric::numeric::vector::{self, Point};
 
 /// Height in units of the longest edge below which a triangle counts as having no area.
 const FLATTEST: f64 = 1e-10;
@@ -14,7 +13,7 @@ const FLATTEST: f64 = 1e-10;
 /// What decides about an exchange, by node numbers.
 pub(crate) trait Surface {
     /// Place of a node in space.
-    fn place(&self, node: u32) -> Point<3>;
+    fn place(&self, node: u32) -> DVec3;
     /// Parameters of a node.
     fn parameters(&self, node: u32) -> [f64; 2];
     /// Whether a triangle is near enough to the surface.
@@ -69,8 +68,7 @@ fn exchanges(surface: &impl Surface, triangles: &[[u32; 3]]) -> Option<Vec<Excha
 
 /// The triangle turned so that its longest edge runs from its second to its third corner.
 fn longest_edge_last(surface: &impl Surface, mut triangle: [u32; 3]) -> [u32; 3] {
-    let length =
-        |i: usize| vector::distance(surface.place(triangle[i]), surface.place(triangle[(i + 1) % 3]));
+    let length = |i: usize| surface.place(triangle[i]).distance(surface.place(triangle[(i + 1) % 3]));
     let longest = (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j))).unwrap_or(0);
     triangle.rotate_left((longest + 2) % 3);
     triangle
@@ -82,13 +80,12 @@ fn is_needle(surface: &impl Surface, triangle: [u32; 3]) -> bool {
         // Coinciding corners: left out of the mesh altogether.
         return false;
     }
-    let longest = [vector::distance(a, b), vector::distance(b, c), vector::distance(c, a)]
-        .into_iter()
-        .fold(0.0, f64::max);
-    let area = vector::norm(vector::cross3(vector::sub(b, a), vector::sub(c, a)));
+    let longest = [a.distance(b), b.distance(c), c.distance(a)].into_iter().fold(0.0, f64::max);
+    let area = (b - a).cross(c - a).length();
     area <= FLATTEST * longest * longest
 }
 
-fn is_turning_left([a, b, c]: [[f64; 2]; 3]) -> bool {
-    vector::cross2(vector::sub(b, a), vector::sub(c, a)) > 0.0
+fn is_turning_left(corners: [[f64; 2]; 3]) -> bool {
+    let [a, b, c] = corners.map(DVec2::from);
+    (b - a).perp_dot(c - a) > 0.0
 }

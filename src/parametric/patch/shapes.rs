@@ -20,14 +20,15 @@ impl Patch {
     /// [`GeometryError::Degenerate`] if `a` and `b` are parallel or zero, [`GeometryError::NotFinite`].
     pub fn plane(origin: [f64; 3], a: [f64; 3], b: [f64; 3]) -> Result<Self> {
         check_points("plane", &[origin, a, b])?;
-        if vector::norm(vector::cross3(a, b)) <= 1e-12 * vector::norm(a) * vector::norm(b) {
+        let [corner, a, b] = [origin, a, b].map(DVec3::from);
+        if a.cross(b).length() <= 1e-12 * a.length() * b.length() {
             return Err(GeometryError::Degenerate {
                 what: "plane",
                 reason: "its sides are parallel or zero",
             });
         }
-        let far = vector::add(vector::add(origin, a), b);
-        Self::bezier(&[vec![origin, vector::add(origin, b)], vec![vector::add(origin, a), far]])
+        let row = |start: DVec3| vec![start.to_array(), (start + b).to_array()];
+        Self::bezier(&[row(corner), row(corner + a)])
     }
 
     /// The ruled surface between two curves: straight from `first` (v = 0) to `second` (v = 1); `u` runs along them

@@ -284,7 +284,8 @@ impl Patch {
                     for [y, wy] in &rules[1] {
                         let d =
                             self.derivatives(vector::mix(us[0], us[1], *x), vector::mix(vs[0], vs[1], *y), 1);
-                        let flux = vector::dot(d[0][0], vector::cross3(d[1][0], d[0][1]));
+                        let [place, along_u, along_v] = [d[0][0], d[1][0], d[0][1]].map(DVec3::from);
+                        let flux = place.dot(along_u.cross(along_v));
                         sum += flux * wx * wy * (us[1] - us[0]) * (vs[1] - vs[0]);
                     }
                 }
