@@ -11,8 +11,8 @@ use crate::parametric::json::{SOLID_TYPES, parse, region, solid};
 use crate::parametric::{CurveMeshing, Refinement};
 use crate::{Control, Error, Mesh};
 
-/// A part of the size of a description by which its curves and surfaces may be off where nobody says.
-const USUAL: f64 = 1e-3;
+/// Default tolerance, in units of the size of a description.
+const DEFAULT_TOLERANCE: f64 = 1e-3;
 
 /// A solid described by patches or by a moved region.
 #[derive(Clone, Debug)]
@@ -69,11 +69,11 @@ impl Parametric {
         Ok(Self { description })
     }
 
-    /// The closed mesh, within `tolerance`, or within its own if nobody says, or a thousandth of its size.
+    /// The closed mesh, within `tolerance`, or else its own, or else a thousandth of its size.
     pub(super) fn mesh(&self, tolerance: Option<f64>, control: &Control) -> Result<Mesh, Error> {
         let mut description = self.description.clone();
         let own = description["tolerance"].as_f64();
-        let tolerance = tolerance.or(own).unwrap_or_else(|| USUAL * size(&description));
+        let tolerance = tolerance.or(own).unwrap_or_else(|| DEFAULT_TOLERANCE * size(&description));
         description["tolerance"] = tolerance.into();
         solid(&description, control)
     }
@@ -101,7 +101,7 @@ impl Curves {
 
     /// The boundary as polygons, outer ones counter-clockwise.
     pub(super) fn contours(&self, tolerance: Option<f64>) -> Result<Contours, Error> {
-        let tolerance = tolerance.unwrap_or_else(|| USUAL * size(&self.description));
+        let tolerance = tolerance.unwrap_or_else(|| DEFAULT_TOLERANCE * size(&self.description));
         let mut meshing = CurveMeshing::new(tolerance);
         if let Some(nodes) = self.nodes {
             meshing = meshing.initial_nodes(nodes).refinement(Refinement::Halving);

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 #[cfg(feature = "parametric")]
-use super::contour::Outline;
+use super::contour::PlaneRegion;
 #[cfg(feature = "parametric")]
 use super::parametric::{self, Curves, Described, Parametric};
 use super::{Defaults, Kind, Mode, Model, Node, contour, fault, primitive, transform};
@@ -25,7 +25,7 @@ const PARAMETRIC: [&str; 4] = ["patches", "extrusion", "revolution", "sweep"];
 const KINDS: &str = "union, intersection, difference, xor, complement, mesh, box, sphere, cylinder, cone, torus, \
                      formula, contour, region, patches, extrusion, revolution, sweep, parametric";
 
-struct Reading<'a> {
+struct ModelReader<'a> {
     nodes: Vec<Node>,
     names: BTreeMap<String, usize>,
     folder: &'a Path,
@@ -49,7 +49,7 @@ pub(super) fn model(text: &str, folder: &Path) -> Result<Model, Error> {
     let Value::Object(mut object) = value else {
         return Err(fault("a model is an object: a node, or { \"nodes\": {...}, \"result\": ... }"));
     };
-    let mut reading = Reading { nodes: Vec::new(), names: BTreeMap::new(), folder };
+    let mut reading = ModelReader { nodes: Vec::new(), names: BTreeMap::new(), folder };
     let mut defaults = Defaults::default();
     let result = if object.contains_key("result") || object.contains_key("nodes") {
         defaults = defaults_of(&mut object)?;
@@ -157,7 +157,7 @@ enum Text {
     Lines(Vec<String>),
 }
 
-impl Reading<'_> {
+impl ModelReader<'_> {
     fn placeholder(&mut self, label: &str) -> usize {
         self.nodes.push(Node::new(label.to_owned(), Kind::Reference(String::new(), usize::MAX)));
         self.nodes.len() - 1
@@ -314,7 +314,7 @@ impl Reading<'_> {
     fn described(&self, file: &str) -> Result<Kind, Error> {
         Ok(match parametric::load(self.folder, file)? {
             Described::Solid(solid) => Kind::Parametric(solid),
-            Described::Region(curves) => Kind::Contour(Outline::Curves(curves)),
+            Described::Region(curves) => Kind::Contour(PlaneRegion::Curves(curves)),
         })
     }
 
@@ -395,7 +395,7 @@ fn solid_of(kind: &str, _: Map<String, Value>) -> Result<Kind, Error> {
 
 #[cfg(feature = "parametric")]
 fn region_of(description: Value) -> Result<Kind, Error> {
-    Ok(Kind::Contour(Outline::Curves(Curves::new(description))))
+    Ok(Kind::Contour(PlaneRegion::Curves(Curves::new(description))))
 }
 
 #[cfg(not(feature = "parametric"))]

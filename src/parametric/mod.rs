@@ -18,7 +18,7 @@
 //! Meshes deviate from their curve or patch by no more than the tolerance: that is decided by convex hulls of control
 //! points, not by samples. Patches whose boundaries run along each other share vertices bit for bit, and the mesh of
 //! patches without gaps is closed. Not guaranteed: that a mesh whose tolerance is as large as the solid's own features
-//! (thin walls, narrow gaps) does not cross itself; [`Solid`](crate::Solid) and the check of the program tell.
+//! (thin walls, narrow gaps) does not cross itself; [`Solid`](crate::Solid) and the program's `check` find that out.
 //!
 //! ```
 //! use trisect::parametric::{Patch, PatchMeshing};

@@ -213,7 +213,7 @@ impl Tape {
         self.branchings as usize
     }
 
-    /// Runs the instructions. `branch` is told every branching's number and its comparison (as of
+    /// Runs the instructions. `branch` is given every branching's number and its comparison (as of
     /// [`Field::compare`]) and says which branch counts.
     fn run<N: Field>(
         &self,

@@ -2,8 +2,8 @@
 //!
 //! # How
 //! Space is divided into cubes (an octree) until each is certainly empty, by interval arithmetic, or holds a piece of
-//! surface that one small patch follows to within the tolerance. On every face of the cubes the surface's cut is a
-//! line between crossings of lattice edges, with a kink where a crease passes; the lines round a cube form a loop, and
+//! surface that one small filling follows to within the tolerance. On every face of the cubes the surface's cut is a
+//! line between crossings of lattice edges, with a kink where a crease passes; the lines around a cube form a loop, and
 //! the loop is filled with triangles, from a point on the crease or corner inside the cube if there is one. This is
 //! cubical marching squares (Ho, Wu, Chen, Chuang, Ouhyoung 2005: features on faces and in cells, no cracks between
 //! cells of different size), with the positions of features from Newton's method on the branches of minima and maxima
@@ -14,7 +14,7 @@
 //! - **Closed and 2-manifold, always**: every face of a cube has one line, seen alike from both sides; every cube
 //!   fills its loop with a disc. Should bounds have been wrong and a cube held to be empty have a cut face, it is looked
 //!   at again.
-//! - **No self-crossings**, up to the rounding of coordinates: each patch stays in its cube, and patches in one cube do
+//! - **No self-crossings**, up to the rounding of coordinates: each filling stays in its cube, and fillings in one cube do
 //!   not cross.
 //! - Deterministic: the same bytes for any number of threads.
 //!
@@ -24,10 +24,10 @@
 mod boundaries;
 mod contour;
 mod faces;
+mod filling;
 mod lattice;
 mod loops;
 mod octree;
-mod patch;
 mod solve;
 mod surface;
 mod tables;
@@ -47,9 +47,9 @@ use lattice::{Cube, DEEPEST, Key, Lattice};
 use octree::{Leaf, Settings};
 use tables::Tables;
 
-/// How often cells are divided again after their neighbours are known.
+/// Rounds in which cells are divided again after their neighbours are known: each halves the cells that need it.
 const ROUNDS: usize = 6;
-/// How often cubes are looked at again that were held to be empty, but have a cut face.
+/// Rounds in which cubes are looked at again that were held to be empty but have a cut face.
 const OPENINGS: usize = 16;
 
 /// Settings of an extraction.
@@ -105,8 +105,8 @@ impl Extraction {
         self
     }
 
-    /// Side of the smallest cubes, which are reached where features meet and along edges that cannot be told by
-    /// branches. Default: the tolerance. Rounded down to a halving of the whole box.
+    /// Side of the smallest cubes, which are reached where features meet and along edges that branches
+    /// do not show. Default: the tolerance. Rounded down to a halving of the whole box.
     #[must_use]
     pub fn smallest(mut self, smallest: f64) -> Self {
         self.smallest = Some(smallest);

@@ -1,4 +1,4 @@
-//! Where to look: cubes divided until each is certainly empty, or holds a piece of surface that one patch follows
+//! Where to look: cubes divided until each is certainly empty, or holds a piece of surface that one filling follows
 //! to within the tolerance.
 
 use std::sync::Arc;
@@ -8,9 +8,9 @@ use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
 
 use super::faces::Face;
+use super::filling::{Cell, Corner};
 use super::lattice::{Cube, Key, Lattice, unkey};
-use super::loops::{Segment, chain, stretches};
-use super::patch::{Cell, Corner};
+use super::loops::{LoopLink, chain, stretches};
 use super::solve::{crossing, deviation, kink, sample};
 use crate::field::expression::{Choice, Scratch, Tape};
 use crate::field::interval::Interval;
@@ -36,8 +36,8 @@ pub(super) struct Settings<'a> {
     pub(super) control: &'a Control,
 }
 
-/// The resolution where nobody asks for one. Bounds of formulas find small parts by themselves; those of distances
-/// tell little where a thin part has faces both ways.
+/// The default resolution. Bounds of formulas find small parts by themselves; those of distances are wide where a thin
+/// part has faces both ways.
 pub(super) fn usual_resolution(tape: &Tape, extent: f64, tolerance: f64) -> f64 {
     let coarse = extent / 64.0;
     if tape.has_leaf() { coarse.min(4.0 * tolerance) } else { coarse }
@@ -88,7 +88,7 @@ pub(super) fn touching(leaves: &[Leaf], points: &[Key], lattice: &Lattice) -> Fx
     let mut found = FxHashSet::default();
     for &point in points {
         let point = unkey(point);
-        // The finest cubes round the point, and the cubes that hold them.
+        // The finest cubes around the point, and the cubes that hold them.
         for octant in 0..8 {
             let lower: [u32; 3] = std::array::from_fn(|axis| octant >> axis & 1);
             if (0..3).any(|axis| point[axis] < lower[axis] || point[axis] - lower[axis] >= lattice.count) {
@@ -327,13 +327,13 @@ fn outline(axis: usize, upper: bool) -> [usize; 4] {
     if upper { [0, u, u | v, v].map(|corner| corner | 1 << axis) } else { [0, v, u | v, u] }
 }
 
-/// The lines on the faces of a cell, as far as its own eight corners tell.
+/// The lines on the faces of a cell, as far as its own eight corners show.
 #[derive(Default)]
 struct CellLines {
     /// Crossings of the cell's edges, which are named by two corners, the lower first.
     crossings: SmallVec<[((usize, usize), DVec3); 12]>,
     /// The lines, with the axis of their face and whether it is the upper one.
-    lines: SmallVec<[(Segment, usize, bool); 6]>,
+    lines: SmallVec<[(LoopLink, usize, bool); 6]>,
 }
 
 impl CellLines {
@@ -353,11 +353,11 @@ impl CellLines {
                         let (a, b) = (corners[k], corners[(k + 1) % 4]);
                         found.crossing(cell, (a.min(b), a.max(b)), points, values, scratch)
                     });
-                    found.lines.push((Segment { from, to, kink: None }, axis, upper));
+                    found.lines.push((LoopLink { from, to, kink: None }, axis, upper));
                 }
             }
         }
-        let segments: Vec<Segment> = found.lines.iter().map(|line| line.0).collect();
+        let segments: Vec<LoopLink> = found.lines.iter().map(|line| line.0).collect();
         (chain(&segments).len() == 1).then_some(found)
     }
 
@@ -400,7 +400,7 @@ impl CellLines {
             let found = kink(cell.tape, ends, (low, high), axis, cell.tolerance, scratch);
             kinks.extend(found);
             let number = (self.crossings.len() + kinks.len() - 1) as u32;
-            segments.push(Segment { kink: found.map(|_| number), ..segment });
+            segments.push(LoopLink { kink: found.map(|_| number), ..segment });
         }
         chain(&segments).into_iter().next().map_or_else(Vec::new, |pieces| {
             corners_of(&pieces, |vertex| {
@@ -412,7 +412,7 @@ impl CellLines {
     }
 }
 
-/// Whether the surface in the cell, as far as its own eight corners tell, is one piece that a patch follows to within
+/// Whether the surface in the cell, as far as its own eight corners show, is one piece that a filling follows to within
 /// the tolerance.
 fn is_simple(
     cell: &Cell<'_>,
@@ -432,12 +432,12 @@ fn is_simple(
             return false;
         }
     }
-    let patch = cell.patch(&corners, scratch);
-    cell.error(&corners, &patch, scratch) <= cell.tolerance
+    let filling = cell.fill(&corners, scratch);
+    cell.error(&corners, &filling, scratch) <= cell.tolerance
 }
 
 /// The corners of a loop, kinks included.
-pub(super) fn corners_of(pieces: &[Segment], place: impl Fn(u32) -> DVec3) -> Vec<Corner> {
+pub(super) fn corners_of(pieces: &[LoopLink], place: impl Fn(u32) -> DVec3) -> Vec<Corner> {
     let mut corners = Vec::with_capacity(pieces.len());
     for piece in pieces {
         corners.push(Corner { place: place(piece.from), vertex: piece.from, kink: false });

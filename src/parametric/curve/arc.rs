@@ -21,7 +21,7 @@ pub struct EllipticArc<const D: usize> {
 }
 
 impl EllipticArc<2> {
-    /// A circle, against the clock from `centre + (radius, 0)`.
+    /// A circle, counter-clockwise from `centre + (radius, 0)`.
     ///
     /// # Errors
     /// [`GeometryError::OutOfRange`] if `radius` is not positive, [`GeometryError::NotFinite`].
@@ -48,7 +48,7 @@ impl EllipticArc<2> {
         )
     }
 
-    /// The arc of a circle from the angle `start` over `sweep` radians (negative: with the clock).
+    /// The arc of a circle from the angle `start` over `sweep` radians (negative: clockwise).
     ///
     /// # Errors
     /// As [`circle`](Self::circle), and for a zero sweep or one beyond a full turn.
@@ -115,7 +115,7 @@ impl<const D: usize> EllipticArc<D> {
         ((self.sweep.abs() / FRAC_PI_2 - 1e-12).ceil() as u32).clamp(1, 4)
     }
 
-    /// The third corner of the triangle round the arc between two parameters less than half a turn apart: where
+    /// The third corner of the triangle around the arc between two parameters less than half a turn apart: where
     /// its end tangents meet.
     fn corner(&self, t0: f64, t1: f64) -> Point<D> {
         let [cos, sin] = self.cos_sin(0.5 * (t0 + t1));

@@ -136,7 +136,8 @@ pub(crate) fn check_resolvable<const D: usize>(tolerance: f64, corners: &[Point<
     if tolerance < smallest { Err(GeometryError::ToleranceTooSmall { tolerance, smallest }) } else { Ok(()) }
 }
 
-/// How often a part is split before an undecided edge counts as too far.
+/// Halvings before an undecided edge counts as too far: each brings the control polygon four times closer to the curve,
+/// all of them 4096 times.
 const DECISION_DEPTH: u32 = 6;
 
 struct Refiner<'a, const D: usize> {
@@ -151,7 +152,7 @@ impl<const D: usize> Refiner<'_, D> {
     fn deviates(&self, a: f64, b: f64, tolerance: f64) -> bool {
         let edge = [self.curve.point(a), self.curve.point(b)];
         let mut polygon = Vec::new();
-        parts(&self.breaks, a, b)
+        split_at_breaks(&self.breaks, a, b)
             .any(|[s, t]| part_deviates(self.curve, [s, t], edge, tolerance, DECISION_DEPTH, &mut polygon))
     }
 
@@ -205,13 +206,13 @@ impl<const D: usize> Refiner<'_, D> {
             let total = worth[worth.len() - 1];
             let least = (total - 1e-9).ceil().max(2.0) as usize;
             let attempts = (least..=least + 2 + least / 16)
-                .map(|count| shares(&probe, &worth, count))
+                .map(|count| divide_equally(&probe, &worth, count))
                 .find(|inner| self.all_within(pair, inner));
             let inner = match attempts {
                 Some(inner) => inner,
                 // What the estimate does not see is left to halving.
                 None => {
-                    let mut start = shares(&probe, &worth, least);
+                    let mut start = divide_equally(&probe, &worth, least);
                     start.insert(0, pair[0]);
                     start.push(pair[1]);
                     let halved = self.halved(&start, self.tolerance)?;
@@ -248,7 +249,7 @@ impl<const D: usize> Refiner<'_, D> {
 }
 
 /// Parameters that cut the running sum `worth` over the `probe` into `count` equal shares.
-fn shares(probe: &[f64], worth: &[f64], count: usize) -> Vec<f64> {
+fn divide_equally(probe: &[f64], worth: &[f64], count: usize) -> Vec<f64> {
     let total = worth[worth.len() - 1];
     (1..count)
         .map(|k| {
@@ -262,7 +263,7 @@ fn shares(probe: &[f64], worth: &[f64], count: usize) -> Vec<f64> {
 }
 
 /// The parts of `a..b` between consecutive breaks.
-pub(crate) fn parts(breaks: &[f64], a: f64, b: f64) -> impl Iterator<Item = [f64; 2]> {
+pub(crate) fn split_at_breaks(breaks: &[f64], a: f64, b: f64) -> impl Iterator<Item = [f64; 2]> {
     let first = breaks.partition_point(|&t| t <= a).max(1) - 1;
     breaks[first..]
         .windows(2)

@@ -14,12 +14,12 @@ pub struct NurbsCurve<const D: usize> {
     points: Vec<Point<D>>,
     weights: Option<Vec<f64>>,
     /// The analytic pieces, in homogeneous form, for bounds.
-    pieces: Vec<Piece<D>>,
+    pieces: Vec<BezierPiece<D>>,
 }
 
 /// One Bezier piece: control points and, if rational, weights.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Piece<const D: usize> {
+pub(crate) struct BezierPiece<const D: usize> {
     pub(crate) domain: [f64; 2],
     /// Control points, multiplied by their weights if there are any.
     pub(crate) points: Vec<Point<D>>,
@@ -102,7 +102,7 @@ impl<const D: usize> NurbsCurve<D> {
         self.weights.as_deref()
     }
 
-    pub(crate) fn pieces(&self) -> &[Piece<D>] {
+    pub(crate) fn pieces(&self) -> &[BezierPiece<D>] {
         &self.pieces
     }
 
@@ -132,7 +132,7 @@ impl<const D: usize> NurbsCurve<D> {
             let reason = format!("{knot} cannot be inserted: outside the domain, or there already");
             return Err(GeometryError::BadKnots { index: place, reason });
         }
-        let (knots, homogeneous) = insert(self.degree, &self.knots, &self.homogeneous(), knot);
+        let (knots, homogeneous) = insert_knot(self.degree, &self.knots, &self.homogeneous(), knot);
         let (points, weights) = self.projected(&homogeneous);
         Ok(Self::trusted(self.degree, knots, points, weights))
     }
@@ -153,13 +153,13 @@ impl<const D: usize> NurbsCurve<D> {
     }
 
     /// The analytic pieces: every knot of the domain inserted until it is repeated `degree` times.
-    fn decompose(&self) -> Vec<Piece<D>> {
+    fn decompose(&self) -> Vec<BezierPiece<D>> {
         let p = self.degree;
         let breaks = knots::distinct(p, &self.knots);
         let (mut knots, mut control) = (self.knots.clone(), self.homogeneous());
         for &knot in &breaks {
             while knots::multiplicity(&knots, knot) < p {
-                (knots, control) = insert(p, &knots, &control, knot);
+                (knots, control) = insert_knot(p, &knots, &control, knot);
             }
         }
         breaks
@@ -169,14 +169,18 @@ impl<const D: usize> NurbsCurve<D> {
                 let last = knots.partition_point(|&k| k <= ends[0]) - 1;
                 let part = &control[last - p..=last];
                 let weights = self.weights.as_ref().map(|_| part.iter().map(|h| [h.1]).collect());
-                Piece { domain: [ends[0], ends[1]], points: part.iter().map(|h| h.0).collect(), weights }
+                BezierPiece {
+                    domain: [ends[0], ends[1]],
+                    points: part.iter().map(|h| h.0).collect(),
+                    weights,
+                }
             })
             .collect()
     }
 }
 
 /// One knot inserted into homogeneous control points.
-pub(crate) fn insert<const D: usize>(
+pub(crate) fn insert_knot<const D: usize>(
     p: usize,
     knots: &[f64],
     control: &[(Point<D>, f64)],
@@ -302,7 +306,7 @@ impl<const D: usize> NurbsCurve<D> {
     }
 }
 
-impl<const D: usize> Piece<D> {
+impl<const D: usize> BezierPiece<D> {
     /// Appends the control polygon of the part `a..b` of this piece.
     fn restrict(&self, a: f64, b: f64, polygon: &mut Vec<Point<D>>) {
         let [start, end] = self.domain;

@@ -1,13 +1,13 @@
 //! Rewriting NURBS curves: higher degree, finer knots, several with one basis, several end to end.
 
-use super::nurbs::{NurbsCurve, Piece};
+use super::nurbs::{BezierPiece, NurbsCurve};
 use super::param_curve::SharedCurve;
 use crate::parametric::numeric::bernstein;
 use crate::parametric::numeric::knots;
 use crate::parametric::numeric::vector::{self, Point};
 
 /// Control points of one Bezier piece, raised to `degree`.
-fn raised<const D: usize>(piece: &Piece<D>, degree: usize) -> (Vec<Point<D>>, Option<Vec<f64>>) {
+fn raised<const D: usize>(piece: &BezierPiece<D>, degree: usize) -> (Vec<Point<D>>, Option<Vec<f64>>) {
     let mut points = piece.points.clone();
     let mut weights = piece.weights.clone();
     while points.len() <= degree {
@@ -72,7 +72,7 @@ pub(crate) fn elevated<const D: usize>(curve: &NurbsCurve<D>, degree: usize) -> 
 }
 
 /// The same curve over 0..1, clamped: its ends are its first and last control point.
-pub(crate) fn over_unit<const D: usize>(curve: &NurbsCurve<D>) -> NurbsCurve<D> {
+pub(crate) fn rescaled_to_unit<const D: usize>(curve: &NurbsCurve<D>) -> NurbsCurve<D> {
     let [start, end] = curve.domain();
     let p = curve.degree();
     let unit = |knot: f64| ((knot - start) / (end - start)).clamp(0.0, 1.0);
@@ -89,7 +89,7 @@ pub(crate) fn over_unit<const D: usize>(curve: &NurbsCurve<D>) -> NurbsCurve<D> 
 /// Both curves over 0..1 with one degree, one knot vector and, if one is rational, weights for both.
 pub(crate) fn compatible<const D: usize>(a: &NurbsCurve<D>, b: &NurbsCurve<D>) -> [NurbsCurve<D>; 2] {
     let degree = a.degree().max(b.degree());
-    let [mut a, mut b] = [a, b].map(|curve| elevated(&over_unit(curve), degree));
+    let [mut a, mut b] = [a, b].map(|curve| elevated(&rescaled_to_unit(curve), degree));
     add_knots(&mut a, b.knots());
     add_knots(&mut b, a.knots());
     if a.weights().is_some() != b.weights().is_some() {

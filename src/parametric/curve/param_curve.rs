@@ -82,6 +82,6 @@ pub enum CurveForm<'a, const D: usize> {
         /// The signed angle (radians) from the start to the end.
         sweep: f64,
     },
-    /// Any other: what it is made of is not told.
+    /// Any other.
     General,
 }

@@ -18,7 +18,7 @@ use super::metric::{JoinMetric, basis_at, gram, root};
 use super::report::{JoinReport, largest_norm};
 use crate::parametric::curve::bezier::Bezier;
 use crate::parametric::curve::nurbs::NurbsCurve;
-use crate::parametric::curve::nurbs_tools::{elevated, over_unit};
+use crate::parametric::curve::nurbs_tools::{elevated, rescaled_to_unit};
 use crate::parametric::curve::param_curve::Curve;
 use crate::parametric::error::{GeometryError, Result};
 use crate::parametric::numeric::gauss::gauss_legendre;
@@ -196,7 +196,7 @@ impl CurveJoin {
         let degree = first.degree().max(second.degree()).max(self.degree);
         let lengths = [first.domain(), second.domain()].map(|[start, end]| end - start);
         let starts = [first.domain()[0], second.domain()[0]];
-        let inputs = [first, second].map(|curve| elevated(&over_unit(curve), degree));
+        let inputs = [first, second].map(|curve| elevated(&rescaled_to_unit(curve), degree));
         let problem = Problem { settings: self, inputs, starts, lengths };
         match self.joint {
             JointAt::Parameter(mu) => problem.solve(mu),
@@ -220,8 +220,9 @@ impl<const D: usize> Problem<'_, D> {
         if a + b > 0.0 { (a / (a + b)).clamp(1e-3, 1.0 - 1e-3) } else { 0.5 }
     }
 
-    /// The joint with the least metric: a scan, then golden sections round the best.
+    /// The joint with the least metric: a scan, then golden sections around the best.
     fn solve_best(&self) -> Result<JoinedSpline<D>> {
+        /// Joints tried over 0..1, evenly, before the golden sections.
         const SCAN: u32 = 48;
         let metric = |mu: f64| match self.solve(mu) {
             Ok(joined) => joined.report.metric(self.settings.metric),

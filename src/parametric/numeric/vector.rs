@@ -48,7 +48,7 @@ pub(crate) fn is_finite<const D: usize>(a: Point<D>) -> bool {
     a.iter().all(|x| x.is_finite())
 }
 
-/// `a` turned by 90 degrees against the clock.
+/// `a` turned by 90 degrees counter-clockwise.
 pub(crate) fn turned(a: Point<2>) -> Point<2> {
     [-a[1], a[0]]
 }
@@ -72,7 +72,7 @@ pub(crate) fn distance_to_segment<const D: usize>(p: Point<D>, a: Point<D>, b: P
     }
 }
 
-/// Lower and upper corners of the smallest box round the points; `None` for no points.
+/// Lower and upper corners of the smallest box around the points; `None` for no points.
 pub(crate) fn bounding_box<const D: usize>(
     points: impl IntoIterator<Item = Point<D>>,
 ) -> Option<[Point<D>; 2]> {

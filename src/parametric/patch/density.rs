@@ -29,9 +29,9 @@ pub(crate) struct Density {
 }
 
 /// Sampled points, row by row along u.
-struct Samples(Vec<DVec3>);
+struct PatchSamples(Vec<DVec3>);
 
-impl Samples {
+impl PatchSamples {
     fn new(patch: &Deviation) -> Self {
         let at = |i: usize| i as f64 / STEPS as f64;
         let grid = (0..=STEPS).flat_map(|i| (0..=STEPS).map(move |j| [at(i), at(j)]));
@@ -45,12 +45,12 @@ impl Samples {
 
 impl Density {
     pub(crate) fn new(patch: &Deviation, tolerance: f64) -> Self {
-        let samples = Samples::new(patch);
+        let samples = PatchSamples::new(patch);
         let mut worth = [vec![[0.0; STEPS]; STEPS], vec![[0.0; STEPS]; STEPS]];
         let mut lengths = [0.0; 2];
         for i in 0..STEPS {
             for j in 0..STEPS {
-                let need = twisted(bent(&samples, i, j, tolerance), &samples, i, j, tolerance);
+                let need = add_twist(edges_for_bending(&samples, i, j, tolerance), &samples, i, j, tolerance);
                 for k in 0..2 {
                     worth[k][i][j] = need[k];
                 }
@@ -59,13 +59,13 @@ impl Density {
             }
         }
         let mut density = Self { worth, lengths, edges: [0.0; 2] };
-        density.edges = density.edges_of(&Block::whole());
+        density.edges = density.edges_of(&ParameterBlock::whole());
         density
     }
 
     /// Along direction `k` of a block, for every interval the most edges that any of its lines needs.
-    fn profile(&self, block: &Block, k: usize) -> Vec<f64> {
-        let Block([us, vs]) = block;
+    fn profile(&self, block: &ParameterBlock, k: usize) -> Vec<f64> {
+        let ParameterBlock([us, vs]) = block;
         let worth = |i: usize, j: usize| self.worth[k][i][j];
         if k == 0 {
             us.clone().map(|i| vs.clone().map(|j| worth(i, j)).fold(0.0, f64::max)).collect()
@@ -74,7 +74,7 @@ impl Density {
         }
     }
 
-    fn edges_of(&self, block: &Block) -> [f64; 2] {
+    fn edges_of(&self, block: &ParameterBlock) -> [f64; 2] {
         [0, 1].map(|k| self.profile(block, k).iter().sum())
     }
 
@@ -98,13 +98,13 @@ impl Density {
     /// subdivision that follows the need.
     pub(crate) fn nodes(&self) -> Vec<[f64; 2]> {
         let mut nodes = Vec::new();
-        self.fill(&Block::whole(), &mut nodes);
+        self.fill(&ParameterBlock::whole(), &mut nodes);
         nodes
     }
 
-    fn fill(&self, block: &Block, nodes: &mut Vec<[f64; 2]>) {
-        let count = |block: &Block| self.lines(block).iter().product::<f64>();
-        let saves = |quarters: &[Block; 4]| {
+    fn fill(&self, block: &ParameterBlock, nodes: &mut Vec<[f64; 2]>) {
+        let count = |block: &ParameterBlock| self.lines(block).iter().product::<f64>();
+        let saves = |quarters: &[ParameterBlock; 4]| {
             let whole = count(block);
             whole > 4.0 && quarters.iter().map(count).sum::<f64>() < (1.0 - WORTHWHILE_SAVING) * whole
         };
@@ -119,7 +119,7 @@ impl Density {
     }
 
     /// Lines of the lattice across u and across v.
-    fn lines(&self, block: &Block) -> [f64; 2] {
+    fn lines(&self, block: &ParameterBlock) -> [f64; 2] {
         let [n, m] = self.edges_of(block);
         let row_height = 0.75_f64.sqrt();
         [n / LATTICE_SIDE, m / (LATTICE_SIDE * row_height)]
@@ -127,7 +127,7 @@ impl Density {
 
     /// Parameters of the lattice's lines across direction `k` of a block: one step away from the border of the patch,
     /// half a step from that of a neighbouring block; all moved by `shift` steps.
-    fn places(&self, block: &Block, k: usize, shift: f64) -> Vec<f64> {
+    fn places(&self, block: &ParameterBlock, k: usize, shift: f64) -> Vec<f64> {
         let range = &block.0[k];
         let margin = |on_border: bool| if on_border { 1.0 } else { 0.5 };
         let (first, last) = (margin(range.start == 0), margin(range.end == STEPS));
@@ -156,14 +156,14 @@ impl Density {
 ///
 /// A triangle's deviation is the sum of what both directions give where they bend alike (each gets half the
 /// tolerance), and the greater of the two where they bend against each other, as on a saddle.
-fn bent(samples: &Samples, i: usize, j: usize, tolerance: f64) -> [f64; 2] {
+fn edges_for_bending(samples: &PatchSamples, i: usize, j: usize, tolerance: f64) -> [f64; 2] {
     let mut sums = [0.0; 2];
     for [p, q] in [[i, j], [i + 1, j], [i, j + 1], [i + 1, j + 1]] {
         // Second differences at the border are those of the next inner sample.
         let (inner_p, inner_q) = (p.clamp(1, STEPS - 1), q.clamp(1, STEPS - 1));
         let along_u = [inner_p - 1, inner_p, inner_p + 1].map(|p| samples.at(p, q));
         let along_v = [inner_q - 1, inner_q, inner_q + 1].map(|q| samples.at(p, q));
-        let bends = [along_u, along_v].map(bend);
+        let bends = [along_u, along_v].map(bend_vector);
         let sizes = bends.map(DVec3::length);
         let product = sizes[0] * sizes[1];
         let cosine = if product > 0.0 { bends[0].dot(bends[1]) / product } else { -1.0 };
@@ -177,7 +177,7 @@ fn bent(samples: &Samples, i: usize, j: usize, tolerance: f64) -> [f64; 2] {
 
 /// The same with the twist: a cell that is straight along both directions deviates by a quarter of its mixed second
 /// difference. Where that asks for more cells than the bending does, the direction that needs fewer edges gets more.
-fn twisted([n, m]: [f64; 2], samples: &Samples, i: usize, j: usize, tolerance: f64) -> [f64; 2] {
+fn add_twist([n, m]: [f64; 2], samples: &PatchSamples, i: usize, j: usize, tolerance: f64) -> [f64; 2] {
     let [a, b, c, d] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|[i, j]| samples.at(i, j));
     let mixed = (a - b) + (c - d);
     // Only the twist out of the surface counts; within it, lines merely spread.
@@ -199,7 +199,7 @@ fn twisted([n, m]: [f64; 2], samples: &Samples, i: usize, j: usize, tolerance: f
 }
 
 /// How far the middle point is from the segment between the others, as a vector.
-fn bend([a, b, c]: [DVec3; 3]) -> DVec3 {
+fn bend_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     let edge = c - a;
     let square = edge.length_squared();
     let along = if square > 0.0 { (b - a).dot(edge) / square } else { 0.0 };
@@ -208,9 +208,9 @@ fn bend([a, b, c]: [DVec3; 3]) -> DVec3 {
 
 /// A rectangle of sampling intervals.
 #[derive(Clone, Debug)]
-struct Block([Range<usize>; 2]);
+struct ParameterBlock([Range<usize>; 2]);
 
-impl Block {
+impl ParameterBlock {
     fn whole() -> Self {
         Self([0..STEPS, 0..STEPS])
     }

@@ -9,20 +9,21 @@
 use smallvec::SmallVec;
 
 use super::flat_triangle::FlatTriangle;
-use super::pieces::Pieces;
+use super::pieces::PatchPieces;
 use crate::parametric::numeric::bernstein::binomial;
 use crate::parametric::numeric::vector::{self, Point};
 
 /// A triangle of the parameter domain.
-pub(crate) type Parameters = [[f64; 2]; 3];
+pub(crate) type ParameterTriangle = [[f64; 2]; 3];
 
-/// How often a part is split before an undecided triangle counts as too far.
+/// Halvings before an undecided triangle counts as too far. Each brings the hulls four times closer to the patch; a
+/// triangle wrongly divided costs a node, one more level four hulls for every undecided triangle.
 const DECISION_DEPTH: u32 = 3;
 
 /// Decides about triangles of one patch.
 #[derive(Clone, Debug)]
 pub(crate) struct Deviation {
-    pieces: Pieces,
+    pieces: PatchPieces,
     /// Exponent triples of the blossoms along u and along v.
     splits: [Vec<[usize; 3]>; 2],
     /// For every pair of them the index of the control point it adds to, and its share.
@@ -31,11 +32,11 @@ pub(crate) struct Deviation {
 }
 
 impl Deviation {
-    pub(crate) fn new(pieces: Pieces) -> Self {
+    pub(crate) fn new(pieces: PatchPieces) -> Self {
         let [p, q] = pieces.degrees;
-        let splits = [triples(p), triples(q)];
+        let splits = [exponent_triples(p), exponent_triples(q)];
         let total = p + q;
-        let targets = triples(total);
+        let targets = exponent_triples(total);
         let multinomial = |n: usize, t: &[usize; 3]| binomial(n, t[0]) * binomial(n - t[0], t[1]);
         let mut shares = Vec::new();
         for a in &splits[0] {
@@ -54,12 +55,23 @@ impl Deviation {
     }
 
     /// Whether the patch over the parameter triangle may leave `flat` by more than `tolerance`.
-    pub(crate) fn exceeds(&self, parameters: &Parameters, flat: &FlatTriangle, tolerance: f64) -> bool {
-        self.clipped(parameters, flat, tolerance, DECISION_DEPTH)
+    pub(crate) fn exceeds(
+        &self,
+        parameters: &ParameterTriangle,
+        flat: &FlatTriangle,
+        tolerance: f64,
+    ) -> bool {
+        self.exceeds_across_knots(parameters, flat, tolerance, DECISION_DEPTH)
     }
 
     /// Cuts the parameter triangle along the first knot line that runs through it, until its parts lie in one piece.
-    fn clipped(&self, parameters: &Parameters, flat: &FlatTriangle, tolerance: f64, depth: u32) -> bool {
+    fn exceeds_across_knots(
+        &self,
+        parameters: &ParameterTriangle,
+        flat: &FlatTriangle,
+        tolerance: f64,
+        depth: u32,
+    ) -> bool {
         let mut cell = [0; 2];
         for k in 0..2 {
             let low = parameters.iter().map(|p| p[k]).fold(f64::INFINITY, f64::min);
@@ -67,9 +79,9 @@ impl Deviation {
             cell[k] = self.pieces.interval(k, low);
             let line = self.pieces.breaks[k][cell[k] + 1];
             if line < high && low < high {
-                return cut(parameters, k, line)
+                return cut_triangle(parameters, k, line)
                     .iter()
-                    .any(|part| self.clipped(part, flat, tolerance, depth));
+                    .any(|part| self.exceeds_across_knots(part, flat, tolerance, depth));
             }
         }
         self.piece_exceeds(cell, parameters, flat, tolerance, depth)
@@ -78,7 +90,7 @@ impl Deviation {
     fn piece_exceeds(
         &self,
         cell: [usize; 2],
-        parameters: &Parameters,
+        parameters: &ParameterTriangle,
         flat: &FlatTriangle,
         tolerance: f64,
         depth: u32,
@@ -103,12 +115,12 @@ impl Deviation {
     }
 
     /// Control points of the triangular patch over `parameters`, which lie in one cell.
-    fn control_points(&self, cell: [usize; 2], parameters: &Parameters) -> SmallVec<[Point<3>; 32]> {
+    fn control_points(&self, cell: [usize; 2], parameters: &ParameterTriangle) -> SmallVec<[Point<3>; 32]> {
         let (net, map) = self.pieces.piece(cell);
         let columns = self.pieces.degrees[1] + 1;
         let local = |k: usize| parameters.map(|p| ((p[k] - map[k][0]) * map[k][1]).clamp(0.0, 1.0));
         let (blossoms_u, blossoms_v) =
-            (blossoms(&self.splits[0], local(0)), blossoms(&self.splits[1], local(1)));
+            (blossom_weights(&self.splits[0], local(0)), blossom_weights(&self.splits[1], local(1)));
         let mut sums: SmallVec<[[f64; 4]; 32]> = smallvec::smallvec![[0.0; 4]; self.control_points];
         let mut share = self.shares.iter();
         for bu in &blossoms_u {
@@ -131,12 +143,13 @@ impl Deviation {
 
 /// All `[i, j, k]` with `i + j + k = n`, `i` falling, then `j` falling: the corners come first, at the start of the
 /// last row, and last.
-fn triples(n: usize) -> Vec<[usize; 3]> {
+fn exponent_triples(n: usize) -> Vec<[usize; 3]> {
     (0..=n).rev().flat_map(|i| (0..=n - i).rev().map(move |j| [i, j, n - i - j])).collect()
 }
 
-/// For every triple the weights of the Bernstein coefficients in the blossom that takes the three arguments so often.
-fn blossoms(splits: &[[usize; 3]], arguments: [f64; 3]) -> Vec<SmallVec<[f64; 12]>> {
+/// For every triple, the weights of the Bernstein coefficients in the blossom that takes each of the three arguments as
+/// often as its exponent says.
+fn blossom_weights(splits: &[[usize; 3]], arguments: [f64; 3]) -> Vec<SmallVec<[f64; 12]>> {
     splits
         .iter()
         .map(|split| {
@@ -156,7 +169,7 @@ fn blossoms(splits: &[[usize; 3]], arguments: [f64; 3]) -> Vec<SmallVec<[f64; 12
 }
 
 /// The parts of a parameter triangle on both sides of the line where coordinate `k` is `at`.
-fn cut(parameters: &Parameters, k: usize, at: f64) -> SmallVec<[Parameters; 4]> {
+fn cut_triangle(parameters: &ParameterTriangle, k: usize, at: f64) -> SmallVec<[ParameterTriangle; 4]> {
     let mut parts = SmallVec::new();
     for sign in [1.0, -1.0] {
         let mut polygon: SmallVec<[[f64; 2]; 4]> = SmallVec::new();

@@ -8,7 +8,7 @@ use spade::handles::FixedVertexHandle;
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 use super::density::Density;
-use super::deviation::{Deviation, Parameters};
+use super::deviation::{Deviation, ParameterTriangle};
 use super::flat_triangle::FlatTriangle;
 use super::joints::{Course, FaceSide};
 use super::needles;
@@ -35,7 +35,7 @@ impl HasPosition for Site {
 
 /// A node of the face.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Node {
+pub(crate) struct FaceNode {
     /// Parameters in the unit square.
     pub(crate) at: [f64; 2],
     /// The face's own point there.
@@ -87,7 +87,7 @@ pub(crate) struct FaceMesh {
     /// Nodes that thinning leaves: corners and, if the caller gave one, the grid.
     kept: usize,
     triangulation: DelaunayTriangulation<Site>,
-    nodes: Vec<Node>,
+    nodes: Vec<FaceNode>,
     accepted: FxHashSet<[u32; 3]>,
 }
 
@@ -99,7 +99,8 @@ pub(crate) struct Start {
     pub(crate) refinement: Refinement,
 }
 
-/// Nodes nearer than this in the unit square cannot be told apart safely.
+/// Least distance of nodes, in units of the unit square: some 10^5 roundings of a parameter, so that points and
+/// triangles between them keep digits.
 const SHORTEST: f64 = 1e-11;
 
 impl FaceMesh {
@@ -157,7 +158,7 @@ impl FaceMesh {
         if inserted.is_err() || self.triangulation.num_vertices() == before {
             return Err(exhausted());
         }
-        self.nodes.push(Node { at, point: self.deviation.point(at), vertex, edge_parameter });
+        self.nodes.push(FaceNode { at, point: self.deviation.point(at), vertex, edge_parameter });
         Ok(())
     }
 
@@ -202,7 +203,7 @@ impl FaceMesh {
     fn exceeds(&self, ids: [u32; 3], tolerance: f64) -> bool {
         let nodes = ids.map(|i| &self.nodes[i as usize]);
         let flat = FlatTriangle::new(nodes.map(|n| n.point));
-        let parameters: Parameters = nodes.map(|n| n.at);
+        let parameters: ParameterTriangle = nodes.map(|n| n.at);
         let [a, b, c] = parameters;
         // Most triangles that are too far are so at the middle of an edge.
         let probes = [middle(a, b), middle(b, c), middle(c, a)];
@@ -357,7 +358,7 @@ impl FaceMesh {
     }
 
     /// The nodes, and the triangles as node numbers, each starting with its least, sorted.
-    pub(crate) fn triangles(&self, tolerance: f64) -> (&[Node], Vec<[u32; 3]>) {
+    pub(crate) fn triangles(&self, tolerance: f64) -> (&[FaceNode], Vec<[u32; 3]>) {
         let faces = self.triangulation.inner_faces();
         let mut triangles: Vec<[u32; 3]> = faces.map(|face| face.vertices().map(|v| v.data().node)).collect();
         for triangle in &mut triangles {
@@ -381,7 +382,7 @@ struct FaceSurface<'a> {
     tolerance: f64,
 }
 
-impl needles::Surface for FaceSurface<'_> {
+impl needles::MeshedSurface for FaceSurface<'_> {
     fn place(&self, node: u32) -> DVec3 {
         self.face.place(node as usize).into()
     }
@@ -396,7 +397,7 @@ impl needles::Surface for FaceSurface<'_> {
 }
 
 /// Parameter on the shared edge of a node of a side, at `r` along the side.
-fn edge_parameter(node: &Node, r: f64, course: Course) -> f64 {
+fn edge_parameter(node: &FaceNode, r: f64, course: Course) -> f64 {
     if r == 0.0 || r == 1.0 { if course.is_reversed() { 1.0 - r } else { r } } else { node.edge_parameter }
 }
 

@@ -2,7 +2,7 @@
 
 use super::surface::{Patch, PatchSide};
 use crate::parametric::curve::nurbs::NurbsCurve;
-use crate::parametric::curve::nurbs_tools::over_unit;
+use crate::parametric::curve::nurbs_tools::rescaled_to_unit;
 use crate::parametric::curve::param_curve::Curve;
 use crate::parametric::error::{GeometryError, Result};
 use crate::parametric::numeric::vector::{self, Point};
@@ -61,7 +61,7 @@ pub(crate) enum FaceSide {
 
 /// A curve along which one or two faces lie.
 #[derive(Clone, Debug)]
-pub(crate) struct Edge {
+pub(crate) struct SharedEdge {
     pub(crate) curve: NurbsCurve<3>,
     /// Faces and the numbers of their sides.
     pub(crate) uses: Vec<(usize, usize)>,
@@ -72,7 +72,7 @@ pub(crate) struct Edge {
 pub(crate) struct Joints {
     /// Sides of every face in the order of [`PatchSide::ALL`].
     pub(crate) sides: Vec<[FaceSide; 4]>,
-    pub(crate) edges: Vec<Edge>,
+    pub(crate) edges: Vec<SharedEdge>,
     /// For every face, the corner number of its corners (0,0), (1,0), (1,1), (0,1) of the unit square.
     pub(crate) corners: Vec<[usize; 4]>,
     /// Places of the corners.
@@ -109,7 +109,7 @@ fn collect_boundaries(faces: &[Patch], tolerance: f64) -> Vec<Boundary> {
     let mut boundaries = Vec::new();
     for (face, patch) in faces.iter().enumerate() {
         for (side, which) in PatchSide::ALL.into_iter().enumerate() {
-            let curve = over_unit(&patch.boundary(which));
+            let curve = rescaled_to_unit(&patch.boundary(which));
             let control = curve.control();
             if control.iter().any(|p| vector::distance(*p, control[0]) > tolerance) {
                 let ends = [control[0], control[control.len() - 1]];
@@ -125,8 +125,8 @@ fn match_boundaries(
     boundaries: &[Boundary],
     owner: &[usize],
     tolerance: f64,
-) -> Result<(Vec<Edge>, Vec<(usize, Course)>)> {
-    let mut edges: Vec<Edge> = Vec::new();
+) -> Result<(Vec<SharedEdge>, Vec<(usize, Course)>)> {
+    let mut edges: Vec<SharedEdge> = Vec::new();
     let mut edge_of: Vec<Option<(usize, Course)>> = vec![None; boundaries.len()];
     // Boundaries that run along each other have near ends, whatever their direction: candidates are those whose lesser
     // end in x is within the tolerance.
@@ -143,7 +143,7 @@ fn match_boundaries(
         }
         let mut mates: Vec<(usize, Course)> = near_by(least(first))
             .filter(|&j| j > i && edge_of[j].is_none())
-            .filter_map(|j| course(first, &boundaries[j], tolerance).map(|course| (j, course)))
+            .filter_map(|j| find_course(first, &boundaries[j], tolerance).map(|course| (j, course)))
             .collect();
         mates.sort_by_key(|mate| mate.0);
         if mates.len() > 1 {
@@ -161,13 +161,13 @@ fn match_boundaries(
             edge_of[j] = Some((edge, course));
             uses.push((boundaries[j].face, boundaries[j].side));
         }
-        edges.push(Edge { curve: first.curve.clone(), uses });
+        edges.push(SharedEdge { curve: first.curve.clone(), uses });
     }
     Ok((edges, edge_of.into_iter().flatten().collect()))
 }
 
 /// How `other` runs along `edge`, if it does.
-fn course(edge: &Boundary, other: &Boundary, tolerance: f64) -> Option<Course> {
+fn find_course(edge: &Boundary, other: &Boundary, tolerance: f64) -> Option<Course> {
     let near = |a: Point<3>, b: Point<3>| vector::distance(a, b) <= tolerance;
     let [start, end] = edge.ends;
     let forward = near(start, other.ends[0]) && near(end, other.ends[1]);
@@ -175,7 +175,7 @@ fn course(edge: &Boundary, other: &Boundary, tolerance: f64) -> Option<Course> {
     if !(forward || backward) {
         return None;
     }
-    let samples = samples(&edge.curve, &other.curve);
+    let samples = comparison_parameters(&edge.curve, &other.curve);
     let runs = |reversed: bool| {
         samples.iter().all(|&t| {
             let mirrored = if reversed { 1.0 - t } else { t };
@@ -201,9 +201,9 @@ fn course(edge: &Boundary, other: &Boundary, tolerance: f64) -> Option<Course> {
     None
 }
 
-/// Parameters at which two curves are compared: enough in each of their pieces to tell polynomials of their degrees
-/// apart.
-fn samples(a: &NurbsCurve<3>, b: &NurbsCurve<3>) -> Vec<f64> {
+/// Parameters at which two curves are compared: enough in each of their pieces to distinguish polynomials of their
+/// degrees.
+fn comparison_parameters(a: &NurbsCurve<3>, b: &NurbsCurve<3>) -> Vec<f64> {
     let mut breaks: Vec<f64> = a.breaks();
     breaks.extend(b.breaks());
     breaks.extend(b.breaks().iter().map(|t| 1.0 - t));
@@ -224,7 +224,7 @@ pub(crate) fn nearest_parameter(curve: &NurbsCurve<3>, p: Point<3>) -> f64 {
         .unwrap_or(0.0);
     let step = 1.0 / f64::from(SAMPLES);
     let (mut low, mut high) = ((nearest - step).max(0.0), (nearest + step).min(1.0));
-    // The foot of the perpendicular: the sign of (C - p) C' tells the side.
+    // The foot of the perpendicular: the sign of (C - p) C' says on which side it lies.
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         let d = curve.derivatives(middle, 1);
@@ -242,7 +242,7 @@ pub(crate) fn nearest_parameter(curve: &NurbsCurve<3>, p: Point<3>) -> f64 {
 fn identify_corners(
     faces: &[Patch],
     sides: &[[FaceSide; 4]],
-    edges: &[Edge],
+    edges: &[SharedEdge],
 ) -> (Vec<[usize; 4]>, Vec<Point<3>>) {
     let mut parent: Vec<usize> = (0..4 * faces.len()).collect();
     for (face, sides) in sides.iter().enumerate() {
@@ -291,9 +291,9 @@ fn unite(parent: &mut [usize], a: usize, b: usize) {
 }
 
 /// The boundaries that met no other, with their distance to the nearest other such boundary.
-fn find_gaps(edges: &[Edge], boundaries: &[Boundary], owner: &[usize]) -> Vec<Gap> {
+fn find_gaps(edges: &[SharedEdge], boundaries: &[Boundary], owner: &[usize]) -> Vec<Gap> {
     const SAMPLES: u32 = 32;
-    let open: Vec<&Edge> = edges.iter().filter(|edge| edge.uses.len() == 1).collect();
+    let open: Vec<&SharedEdge> = edges.iter().filter(|edge| edge.uses.len() == 1).collect();
     let polylines: Vec<Vec<Point<3>>> = open
         .iter()
         .map(|edge| (0..=SAMPLES).map(|k| edge.curve.point(f64::from(k) / f64::from(SAMPLES))).collect())

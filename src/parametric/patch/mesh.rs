@@ -85,7 +85,7 @@ impl PatchMeshing {
         }
     }
 
-    /// Takes boundaries up to `distance` apart for one (else 1e-9 of the patches' size). The mesh is closed over such
+    /// Takes boundaries up to `distance` apart for one (by default 1e-9 of the patches' size). The mesh is closed over such
     /// gaps; it may leave the patches by the width of the gap in addition.
     #[must_use]
     pub fn join_tolerance(mut self, distance: f64) -> Self {
@@ -181,7 +181,7 @@ impl PatchMeshing {
         let reversed = if self.keep_sides {
             vec![false; faces.parts.len()]
         } else {
-            orientation::agreeing_sides(&faces.parts, &faces.owner, joints)?
+            orientation::find_turned_faces(&faces.parts, &faces.owner, joints)?
         };
         Ok(builder.assemble(patches.len(), &reversed))
     }
@@ -269,7 +269,7 @@ impl<'a> Builder<'a> {
                 Course::Same => t,
                 Course::Opposite => 1.0 - t,
                 Course::Nearest(_) => {
-                    let curve = crate::parametric::curve::nurbs_tools::over_unit(
+                    let curve = crate::parametric::curve::nurbs_tools::rescaled_to_unit(
                         &self.faces.parts[face].boundary(PatchSide::ALL[side]),
                     );
                     nearest_parameter(&curve, place)

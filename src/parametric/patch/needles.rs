@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 const FLATTEST: f64 = 1e-10;
 
 /// What decides about an exchange, by node numbers.
-pub(crate) trait Surface {
+pub(crate) trait MeshedSurface {
     /// Place of a node in space.
     fn place(&self, node: u32) -> DVec3;
     /// Parameters of a node.
@@ -21,7 +21,7 @@ pub(crate) trait Surface {
 }
 
 /// Exchanges edges until no triangle without area is left that an exchange can remove.
-pub(crate) fn remove(surface: &impl Surface, triangles: &mut [[u32; 3]]) {
+pub(crate) fn remove(surface: &impl MeshedSurface, triangles: &mut [[u32; 3]]) {
     // Every exchange removes a needle, so that the number of rounds is bounded by their number.
     while let Some(pairs) = exchanges(surface, triangles) {
         for (needle, neighbour, replacement) in pairs {
@@ -34,7 +34,7 @@ pub(crate) fn remove(surface: &impl Surface, triangles: &mut [[u32; 3]]) {
 type Exchange = (usize, usize, [[u32; 3]; 2]);
 
 /// Exchanges that do not touch one another; `None` if there are none.
-fn exchanges(surface: &impl Surface, triangles: &[[u32; 3]]) -> Option<Vec<Exchange>> {
+fn exchanges(surface: &impl MeshedSurface, triangles: &[[u32; 3]]) -> Option<Vec<Exchange>> {
     let needles: Vec<usize> = (0..triangles.len()).filter(|&i| is_needle(surface, triangles[i])).collect();
     if needles.is_empty() {
         return None;
@@ -67,14 +67,14 @@ fn exchanges(surface: &impl Surface, triangles: &[[u32; 3]]) -> Option<Vec<Excha
 }
 
 /// The triangle turned so that its longest edge runs from its second to its third corner.
-fn longest_edge_last(surface: &impl Surface, mut triangle: [u32; 3]) -> [u32; 3] {
+fn longest_edge_last(surface: &impl MeshedSurface, mut triangle: [u32; 3]) -> [u32; 3] {
     let length = |i: usize| surface.place(triangle[i]).distance(surface.place(triangle[(i + 1) % 3]));
     let longest = (0..3).max_by(|&i, &j| length(i).total_cmp(&length(j))).unwrap_or(0);
     triangle.rotate_left((longest + 2) % 3);
     triangle
 }
 
-fn is_needle(surface: &impl Surface, triangle: [u32; 3]) -> bool {
+fn is_needle(surface: &impl MeshedSurface, triangle: [u32; 3]) -> bool {
     let [a, b, c] = triangle.map(|v| surface.place(v));
     if a == b || b == c || c == a {
         // Coinciding corners: left out of the mesh altogether.

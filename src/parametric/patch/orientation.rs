@@ -5,7 +5,7 @@ use super::surface::{Patch, PatchSide};
 use crate::parametric::error::{GeometryError, Result};
 
 /// For every face, whether it must be turned. Neighbours must run along their shared edge in opposite directions.
-pub(crate) fn agreeing_sides(parts: &[Patch], owner: &[usize], joints: &Joints) -> Result<Vec<bool>> {
+pub(crate) fn find_turned_faces(parts: &[Patch], owner: &[usize], joints: &Joints) -> Result<Vec<bool>> {
     let mut neighbours: Vec<Vec<(usize, bool)>> = vec![Vec::new(); parts.len()];
     for edge in &joints.edges {
         if let [(face_a, side_a), (face_b, side_b)] = edge.uses[..] {
@@ -53,7 +53,7 @@ pub(crate) fn agreeing_sides(parts: &[Patch], owner: &[usize], joints: &Joints) 
     Ok(turned.into_iter().map(|t| t.unwrap_or(false)).collect())
 }
 
-/// Whether a face's boundary, taken against the clock, runs along the shared edge of the given side.
+/// Whether a face's boundary, taken counter-clockwise, runs along the shared edge of the given side.
 fn runs_along(joints: &Joints, face: usize, side: usize) -> bool {
     match &joints.sides[face][side] {
         FaceSide::Edge { course, .. } => PatchSide::ALL[side].is_forward() != course.is_reversed(),

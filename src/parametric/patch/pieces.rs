@@ -1,7 +1,7 @@
 //! Patches taken apart: into parts without creases, and into Bezier pieces.
 
 use super::surface::Patch;
-use crate::parametric::curve::nurbs::insert;
+use crate::parametric::curve::nurbs::insert_knot;
 use crate::parametric::numeric::domain::interval;
 use crate::parametric::numeric::knots;
 use crate::parametric::numeric::vector::{self, Point};
@@ -35,7 +35,7 @@ impl Patch {
                 while knots::multiplicity(&knots[along], knot) < p {
                     let mut finer = Vec::new();
                     for line in &mut lines {
-                        (finer, *line) = insert(p, &knots[along], line, knot);
+                        (finer, *line) = insert_knot(p, &knots[along], line, knot);
                     }
                     knots[along] = finer;
                 }
@@ -59,7 +59,8 @@ impl Patch {
         let mut parts = Vec::new();
         for us in cuts[0].windows(2) {
             for vs in cuts[1].windows(2) {
-                let range = |k: usize, ends: &[f64]| part_of(self.degrees[k], &knots[k], ends[0], ends[1]);
+                let range =
+                    |k: usize, ends: &[f64]| extract_part(self.degrees[k], &knots[k], ends[0], ends[1]);
                 let ((u_range, u_knots), (v_range, v_knots)) = (range(0, us), range(1, vs));
                 let control: Vec<Homogeneous> =
                     rows[u_range.clone()].iter().flat_map(|row| row[v_range.clone()].to_vec()).collect();
@@ -80,14 +81,14 @@ impl Patch {
     }
 
     /// The Bezier pieces between all knots.
-    pub(crate) fn pieces(&self) -> Pieces {
+    pub(crate) fn pieces(&self) -> PatchPieces {
         let breaks = [0, 1].map(|k| knots::distinct(self.degrees[k], &self.knots[k]));
         let (rows, knots) = self.with_full_knots([&breaks[0], &breaks[1]]);
         let mut nets = Vec::new();
         for us in breaks[0].windows(2) {
             for vs in breaks[1].windows(2) {
-                let (u_range, _) = part_of(self.degrees[0], &knots[0], us[0], us[1]);
-                let (v_range, _) = part_of(self.degrees[1], &knots[1], vs[0], vs[1]);
+                let (u_range, _) = extract_part(self.degrees[0], &knots[0], us[0], us[1]);
+                let (v_range, _) = extract_part(self.degrees[1], &knots[1], vs[0], vs[1]);
                 let control = rows[u_range].iter().flat_map(|row| row[v_range.clone()].to_vec());
                 nets.push(control.map(|(p, w)| [p[0], p[1], p[2], w]).collect());
             }
@@ -97,7 +98,7 @@ impl Patch {
             let [start, end] = domain[k];
             breaks[k].iter().map(|t| (t - start) / (end - start)).collect()
         });
-        Pieces { degrees: self.degrees, breaks: unit, nets }
+        PatchPieces { degrees: self.degrees, breaks: unit, nets }
     }
 }
 
@@ -106,7 +107,7 @@ fn transposed(rows: &[Vec<Homogeneous>]) -> Vec<Vec<Homogeneous>> {
 }
 
 /// Indices of the control points and the clamped knots of the part between two full knots.
-fn part_of(p: usize, knots: &[f64], start: f64, end: f64) -> (std::ops::Range<usize>, Vec<f64>) {
+fn extract_part(p: usize, knots: &[f64], start: f64, end: f64) -> (std::ops::Range<usize>, Vec<f64>) {
     let last_of_start = knots.partition_point(|&k| k <= start) - 1;
     let first_of_end = knots.partition_point(|&k| k < end);
     let mut part = vec![start; p + 1];
@@ -117,7 +118,7 @@ fn part_of(p: usize, knots: &[f64], start: f64, end: f64) -> (std::ops::Range<us
 
 /// The Bezier pieces of a patch, over the unit square.
 #[derive(Clone, Debug)]
-pub(crate) struct Pieces {
+pub(crate) struct PatchPieces {
     pub(crate) degrees: [usize; 2],
     /// Ascending parameters from 0 to 1 between the pieces, along u and v.
     pub(crate) breaks: [Vec<f64>; 2],
@@ -125,7 +126,7 @@ pub(crate) struct Pieces {
     nets: Vec<Vec<[f64; 4]>>,
 }
 
-impl Pieces {
+impl PatchPieces {
     /// Number of the interval of `breaks[k]` that holds `t`.
     pub(crate) fn interval(&self, k: usize, t: f64) -> usize {
         interval(&self.breaks[k], t)

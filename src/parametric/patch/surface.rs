@@ -39,10 +39,10 @@ pub enum PatchSide {
 }
 
 impl PatchSide {
-    /// All four, against the clock round the parameter rectangle (the last two traversed backwards).
+    /// All four, counter-clockwise around the parameter rectangle (the last two traversed backwards).
     pub const ALL: [Self; 4] = [Self::VLow, Self::UHigh, Self::VHigh, Self::ULow];
 
-    /// Whether the side's own direction is against the clock round the parameter rectangle.
+    /// Whether the side's own direction is counter-clockwise around the parameter rectangle.
     pub(crate) fn is_forward(self) -> bool {
         matches!(self, Self::VLow | Self::UHigh)
     }

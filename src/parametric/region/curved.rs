@@ -9,7 +9,7 @@ use crate::parametric::curve::param_curve::{Curve, SharedCurve};
 use crate::parametric::error::Result;
 use crate::parametric::numeric::gauss::gauss_legendre;
 
-/// A bounded plane region: the points round which closed curves wind an odd number of times (parity rule), so that
+/// A bounded plane region: the points around which closed curves wind an odd number of times (parity rule), so that
 /// contours inside others are holes, whatever their direction.
 #[derive(Clone, Debug)]
 pub struct Region {
@@ -37,7 +37,7 @@ impl Region {
     #[must_use]
     pub fn membership(&self, point: [f64; 2]) -> Membership {
         let curves: Vec<&dyn Curve<2>> = self.contours.iter().map(|c| c as &dyn Curve<2>).collect();
-        membership::by_parity(&curves, point)
+        membership::classify_by_parity(&curves, point)
     }
 
     /// The area by Green's theorem along the curves: exact for polynomial pieces up to degree 16, to rounding for
@@ -51,7 +51,7 @@ impl Region {
             let others = self.contours.iter().enumerate().filter(|(j, _)| *j != i);
             others
                 .filter(|(_, other)| {
-                    membership::by_parity(&[*other as &dyn Curve<2>], start) == Membership::Inside
+                    membership::classify_by_parity(&[*other as &dyn Curve<2>], start) == Membership::Inside
                 })
                 .count()
         };
@@ -74,7 +74,7 @@ impl Region {
     }
 }
 
-/// Signed area inside a closed curve, positive against the clock.
+/// Signed area inside a closed curve, positive counter-clockwise.
 fn enclosed_area(curve: &dyn Curve<2>, rule: &[[f64; 2]]) -> f64 {
     // Areas are taken from a point of the curve, so that a far origin costs no digits.
     let origin = curve.point(curve.domain()[0]);

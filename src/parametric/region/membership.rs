@@ -8,28 +8,29 @@ use crate::parametric::numeric::vector::{self, Point};
 pub enum Membership {
     /// In the interior.
     Inside,
-    /// On the boundary, or nearer to it than rounding can tell.
+    /// On the boundary, or nearer to it than rounding can resolve.
     Boundary,
     /// Outside.
     Outside,
 }
 
-/// Radians by which a ray that touches the curve is turned.
+/// Angle (radians) by which a ray that touches the curve is turned. The inverse of the plastic number: no simple
+/// part of a turn, so that rays avoid the directions of drawn edges.
 const TURN: f64 = 0.754_877_666;
-/// Rays tried before the point counts as being on the curve.
+/// Rays tried before the point counts as being on the curve. From a point off the curve only finitely many rays touch.
 const MOST_TURNS: u32 = 24;
-/// Splits of an analytic piece before a crossing that cannot be told counts as a touch.
+/// Halvings of an analytic piece before an undecided crossing counts as a touch: what is left is 2^-40 of the piece.
 const MOST_SPLITS: u32 = 40;
 
 /// Number of crossings of a ray from `point` with `curves` modulo 2, as membership. A ray that touches a curve
 /// (is tangent to it, or meets it in a joint) is turned and counted anew; a point from which every ray touches
 /// lies on a curve.
-pub(crate) fn by_parity(curves: &[&dyn Curve<2>], point: Point<2>) -> Membership {
+pub(crate) fn classify_by_parity(curves: &[&dyn Curve<2>], point: Point<2>) -> Membership {
     'turn: for turn in 0..MOST_TURNS {
         let (sin, cos) = (TURN * f64::from(turn)).sin_cos();
         let mut crossings = 0;
         for curve in curves {
-            match crossings_of_ray(*curve, point, [cos, sin]) {
+            match count_crossings(*curve, point, [cos, sin]) {
                 Some(count) => crossings += count,
                 None => continue 'turn,
             }
@@ -40,10 +41,10 @@ pub(crate) fn by_parity(curves: &[&dyn Curve<2>], point: Point<2>) -> Membership
 }
 
 /// How often the ray crosses the curve; `None` if it touches it or starts on it.
-fn crossings_of_ray(curve: &dyn Curve<2>, origin: Point<2>, direction: Point<2>) -> Option<usize> {
+fn count_crossings(curve: &dyn Curve<2>, origin: Point<2>, direction: Point<2>) -> Option<usize> {
     let breaks = curve.breaks();
     let ray = Ray { curve, origin, direction };
-    breaks.windows(2).try_fold(0, |sum, piece| Some(sum + ray.crossings(piece[0], piece[1], MOST_SPLITS)?))
+    breaks.windows(2).try_fold(0, |sum, piece| Some(sum + ray.count(piece[0], piece[1], MOST_SPLITS)?))
 }
 
 struct Ray<'a> {
@@ -55,7 +56,7 @@ struct Ray<'a> {
 impl Ray<'_> {
     /// Crossings within one analytic piece. A line meets the piece no more often than its control polygon: no
     /// change of side means no crossing, one change means one, more changes are split up.
-    fn crossings(&self, a: f64, b: f64, splits: u32) -> Option<usize> {
+    fn count(&self, a: f64, b: f64, splits: u32) -> Option<usize> {
         let mut polygon = Vec::new();
         self.curve.control_polygon(a, b, &mut polygon);
         let relative: Vec<Point<2>> = polygon.iter().map(|p| vector::sub(*p, self.origin)).collect();
@@ -77,7 +78,7 @@ impl Ray<'_> {
         }
         let middle = 0.5 * (a + b);
         if splits == 0 || !(a < middle && middle < b) {
-            // Too small to tell apart from a touch or from the start of the ray.
+            // Too small to distinguish from a touch or from the start of the ray.
             return None;
         }
         // A joint on the line through the ray matters only where the ray is.
@@ -85,7 +86,7 @@ impl Ray<'_> {
         if joint_on_ray(0) || joint_on_ray(side.len() - 1) {
             return None;
         }
-        Some(self.crossings(a, middle, splits - 1)? + self.crossings(middle, b, splits - 1)?)
+        Some(self.count(a, middle, splits - 1)? + self.count(middle, b, splits - 1)?)
     }
 }
 

@@ -45,7 +45,7 @@ pub enum RegionOperation {
 }
 
 type Shapes = Vec<Vec<Vec<Point<2>>>>;
-type Contours<'a> = Vec<&'a [Point<2>]>;
+type ContourSlices<'a> = Vec<&'a [Point<2>]>;
 
 impl Polygons {
     /// The region that `contours` describe by `rule`, whatever their direction and crossings.
@@ -100,8 +100,8 @@ fn normalised(contours: &[Vec<Point<2>>], rule: FillRule) -> Shapes {
         FillRule::EvenOdd => EngineRule::EvenOdd,
         FillRule::NonZero => EngineRule::NonZero,
     };
-    let contours: Contours<'_> = contours.iter().map(Vec::as_slice).collect();
-    run(&contours, &Vec::new(), OverlayRule::Subject, rule)
+    let contours: ContourSlices<'_> = contours.iter().map(Vec::as_slice).collect();
+    overlay(&contours, &Vec::new(), OverlayRule::Subject, rule)
 }
 
 /// Two regions combined.
@@ -112,7 +112,7 @@ fn combined(operation: RegionOperation, a: &Polygons, b: &Polygons) -> Shapes {
         RegionOperation::Difference => OverlayRule::Difference,
         RegionOperation::SymmetricDifference => OverlayRule::Xor,
     };
-    run(&a.contours().collect(), &b.contours().collect(), rule, EngineRule::EvenOdd)
+    overlay(&a.contours().collect(), &b.contours().collect(), rule, EngineRule::EvenOdd)
 }
 
 /// Bits of the fine grid; the engine takes 62.
@@ -120,23 +120,28 @@ const FINE_BITS: i32 = 60;
 /// Bits of the coarse grid, all of whose points are `f64` numbers.
 const COARSE_BITS: i32 = 52;
 
-fn run(subject: &Contours<'_>, clip: &Contours<'_>, operation: OverlayRule, rule: EngineRule) -> Shapes {
-    let fine = Grid::new(subject, clip, FINE_BITS).overlay(subject, clip, operation, rule);
+fn overlay(
+    subject: &ContourSlices<'_>,
+    clip: &ContourSlices<'_>,
+    operation: OverlayRule,
+    rule: EngineRule,
+) -> Shapes {
+    let fine = IntegerGrid::new(subject, clip, FINE_BITS).combine(subject, clip, operation, rule);
     if triangulate::crossing(&Polygons::trusted(fine.clone())).is_none() {
         return fine;
     }
-    Grid::new(subject, clip, COARSE_BITS).overlay(subject, clip, operation, rule)
+    IntegerGrid::new(subject, clip, COARSE_BITS).combine(subject, clip, operation, rule)
 }
 
-struct Grid {
+struct IntegerGrid {
     /// Powers of two whose product scales coordinates to integers; two, so that neither overflows.
     scale: [f64; 2],
     /// Whether grid points are `f64` numbers.
     coarse: bool,
 }
 
-impl Grid {
-    fn new(subject: &Contours<'_>, clip: &Contours<'_>, bits: i32) -> Self {
+impl IntegerGrid {
+    fn new(subject: &ContourSlices<'_>, clip: &ContourSlices<'_>, bits: i32) -> Self {
         let coordinates = subject.iter().chain(clip).flat_map(|c| c.iter()).flatten();
         let largest = coordinates.fold(0.0_f64, |m, x| m.max(x.abs()));
         // 2^exponent > largest.
@@ -146,24 +151,24 @@ impl Grid {
         Self { scale: [power_of_two(half), power_of_two(shift - half)], coarse: bits == COARSE_BITS }
     }
 
-    fn down(&self, p: Point<2>) -> IntPoint<i64> {
+    fn to_grid(&self, p: Point<2>) -> IntPoint<i64> {
         let [x, y] = p.map(|x| (x * self.scale[0] * self.scale[1]).round() as i64);
         IntPoint::new(x, y)
     }
 
-    fn up(&self, p: IntPoint<i64>) -> Point<2> {
+    fn to_plane(&self, p: IntPoint<i64>) -> Point<2> {
         [p.x, p.y].map(|x| x as f64 / self.scale[0] / self.scale[1])
     }
 
-    fn overlay(
+    fn combine(
         &self,
-        subject: &Contours<'_>,
-        clip: &Contours<'_>,
+        subject: &ContourSlices<'_>,
+        clip: &ContourSlices<'_>,
         operation: OverlayRule,
         rule: EngineRule,
     ) -> Shapes {
-        let grid = |contours: &Contours<'_>| -> Vec<Vec<IntPoint<i64>>> {
-            contours.iter().map(|c| c.iter().map(|p| self.down(*p)).collect()).collect()
+        let grid = |contours: &ContourSlices<'_>| -> Vec<Vec<IntPoint<i64>>> {
+            contours.iter().map(|c| c.iter().map(|p| self.to_grid(*p)).collect()).collect()
         };
         let (grid_subject, grid_clip) = (grid(subject), grid(clip));
         let mut originals: FxHashMap<[i64; 2], Point<2>> = FxHashMap::default();
@@ -182,7 +187,8 @@ impl Grid {
             i_overlay::core::solver::Solver::default(),
         )
         .overlay(operation, rule);
-        let back = |p: &IntPoint<i64>| originals.get(&[p.x, p.y]).copied().unwrap_or_else(|| self.up(*p));
+        let back =
+            |p: &IntPoint<i64>| originals.get(&[p.x, p.y]).copied().unwrap_or_else(|| self.to_plane(*p));
         shapes
             .iter()
             .map(|shape| shape.iter().map(|contour| contour.iter().map(back).collect()).collect())

@@ -7,7 +7,7 @@ use crate::parametric::error::{GeometryError, Result, check_points};
 use crate::parametric::numeric::vector::{self, Point};
 
 /// A bounded plane region with straight edges: polygons with holes that neither cross nor overlap. Outer contours
-/// run against the clock, holes with it; no contour repeats its first point at the end.
+/// run counter-clockwise, holes with it; no contour repeats its first point at the end.
 ///
 /// How regions are made of contours and combined is in `overlay`, how they are filled in `triangulate`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -106,7 +106,7 @@ impl Polygons {
     }
 }
 
-/// Area inside a closed polygon, positive against the clock.
+/// Area inside a closed polygon, positive counter-clockwise.
 pub(crate) fn signed_area(contour: &[Point<2>]) -> f64 {
     let origin = contour[0];
     let twice: f64 = contour

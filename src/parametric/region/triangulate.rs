@@ -8,12 +8,12 @@ use super::polygons::Polygons;
 use crate::parametric::error::{GeometryError, Result};
 use crate::parametric::numeric::vector::Point;
 
-/// A plane mesh: points and triangles against the clock.
+/// A plane mesh: points and triangles counter-clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PlaneMesh {
     /// The points, each once.
     pub points: Vec<[f64; 2]>,
-    /// Indices of the corners, against the clock.
+    /// Indices of the corners, counter-clockwise.
     pub triangles: Vec<[u32; 3]>,
 }
 

@@ -33,7 +33,7 @@ impl Extrusion {
         Self { height, twist: 0.0, top_scale: 1.0, centre: [0.0; 2], tolerance: 0.0 }
     }
 
-    /// Turns the region evenly on the way, by `angle` radians in all (against the clock seen from above). The mesh
+    /// Turns the region evenly on the way, by `angle` radians in all (counter-clockwise seen from above). The mesh
     /// deviates from the exact twisted surface by no more than `tolerance`.
     #[must_use]
     pub fn twist(mut self, angle: f64, tolerance: f64) -> Self {
@@ -49,7 +49,7 @@ impl Extrusion {
         self
     }
 
-    /// The point of the plane about which the region turns and towards which it shrinks (else the origin).
+    /// The point of the plane about which the region turns and towards which it shrinks (by default the origin).
     #[must_use]
     pub fn about(mut self, centre: [f64; 2]) -> Self {
         self.centre = centre;
@@ -126,7 +126,7 @@ pub(crate) enum Closing {
 }
 
 /// The closed mesh between rings of the same plane mesh: `rings[k][i]` is the place of its point `i` on ring `k`.
-/// Seen against the direction of travel the section's triangles turn against the clock. Points of consecutive
+/// Seen against the direction of travel the section's triangles turn counter-clockwise. Points of consecutive
 /// rings that coincide bit for bit become one vertex.
 pub(crate) fn loft(section: &PlaneMesh, rings: &[Vec<Point<3>>], closing: Closing) -> Mesh {
     let count = section.points.len();

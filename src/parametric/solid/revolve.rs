@@ -42,7 +42,7 @@ impl Revolution {
         self
     }
 
-    /// Makes at least this many steps for a full turn (else 4); a multiple of 4 keeps the quarter turns exact.
+    /// Makes at least this many steps for a full turn (by default 4); a multiple of 4 keeps the quarter turns exact.
     #[must_use]
     pub fn least_steps(mut self, steps: usize) -> Self {
         self.least_steps = steps;

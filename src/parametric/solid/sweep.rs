@@ -86,6 +86,7 @@ impl Sweep {
 
     /// Places on the path near enough to one another for the tolerance.
     fn stations(&self, path: &dyn Curve<3>, radius: f64, initial_nodes: usize) -> Result<Vec<Station>> {
+        /// Most places on a path: more are taken for a mistake in the tolerance.
         const MOST: usize = 1_000_000;
         let half = 0.5 * self.tolerance;
         // The angle whose sagitta at the section's radius is half the tolerance.

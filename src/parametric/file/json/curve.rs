@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Node, point, points};
+use super::{JsonNode, point, points};
 use crate::parametric::error::Result;
 use crate::parametric::file::svg::curves_of_path;
 use crate::parametric::{
@@ -28,22 +28,22 @@ pub enum AnyCurve {
 /// [`GeometryError::Json`](crate::parametric::GeometryError::Json) with the place, or the fault of the construction
 /// with it ([`GeometryError::At`](crate::parametric::GeometryError::At)).
 pub fn curve(value: &Value) -> Result<AnyCurve> {
-    any(&Node::root(value))
+    read_any(&JsonNode::root(value))
 }
 
-pub(crate) fn any(node: &Node<'_>) -> Result<AnyCurve> {
+pub(crate) fn read_any(node: &JsonNode<'_>) -> Result<AnyCurve> {
     match dimension(node.value) {
-        3 => space(node).map(AnyCurve::Space),
-        _ => plane(node).map(AnyCurve::Plane),
+        3 => read_space(node).map(AnyCurve::Space),
+        _ => read_plane(node).map(AnyCurve::Plane),
     }
 }
 
-pub(crate) fn space(node: &Node<'_>) -> Result<SharedCurve<3>> {
-    read::<3>(node)
+pub(crate) fn read_space(node: &JsonNode<'_>) -> Result<SharedCurve<3>> {
+    read_common::<3>(node)
 }
 
 /// Curves of the plane have kinds of their own besides those of any dimension.
-pub(crate) fn plane(node: &Node<'_>) -> Result<SharedCurve<2>> {
+pub(crate) fn read_plane(node: &JsonNode<'_>) -> Result<SharedCurve<2>> {
     match node.type_name()? {
         "circle" => {
             let spec: CircleSpec = node.members()?;
@@ -68,7 +68,7 @@ pub(crate) fn plane(node: &Node<'_>) -> Result<SharedCurve<2>> {
                 }
             }
         }
-        _ => read::<2>(node),
+        _ => read_common::<2>(node),
     }
 }
 
@@ -262,7 +262,7 @@ const TYPES: [&str; 13] = [
 ];
 
 /// A part of another curve: plane curves may be of the kinds that only the plane has.
-fn inner<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>>
+fn read_inner<const D: usize>(node: &JsonNode<'_>) -> Result<SharedCurve<D>>
 where
     SharedCurve<D>: FromAny,
 {
@@ -271,23 +271,23 @@ where
 
 /// Curves that can be read where the dimension is known.
 trait FromAny: Sized {
-    fn from_node(node: &Node<'_>) -> Result<Self>;
+    fn from_node(node: &JsonNode<'_>) -> Result<Self>;
 }
 
 impl FromAny for SharedCurve<2> {
-    fn from_node(node: &Node<'_>) -> Result<Self> {
-        plane(node)
+    fn from_node(node: &JsonNode<'_>) -> Result<Self> {
+        read_plane(node)
     }
 }
 
 impl FromAny for SharedCurve<3> {
-    fn from_node(node: &Node<'_>) -> Result<Self> {
-        space(node)
+    fn from_node(node: &JsonNode<'_>) -> Result<Self> {
+        read_space(node)
     }
 }
 
 /// Curves whose description is the same in the plane and in space.
-fn read<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>>
+fn read_common<const D: usize>(node: &JsonNode<'_>) -> Result<SharedCurve<D>>
 where
     SharedCurve<D>: FromAny,
 {
@@ -299,15 +299,15 @@ where
             let [start, end] = ends[..] else { return Err(node.fault("a segment has two points")) };
             Arc::new(node.place(Segment::new(start, end))?)
         }
-        "line" => line::<D>(node)?,
-        "arc" => Arc::new(arc::<D>(node)?),
+        "line" => read_line::<D>(node)?,
+        "arc" => Arc::new(read_arc::<D>(node)?),
         "polyline" => {
             let spec: PolylineSpec = node.members()?;
             let through = points::<D>(node, "points", &spec.points)?;
             Arc::new(node.place(Polyline::new(&through, &spacing(spec.spacing), spec.closed))?)
         }
-        "hermite" => hermite::<D>(node)?,
-        "cubic_spline" => cubic_spline::<D>(node)?,
+        "hermite" => read_hermite::<D>(node)?,
+        "cubic_spline" => read_cubic_spline::<D>(node)?,
         "lagrange" => {
             let spec: LagrangeSpec = node.members()?;
             let through = points::<D>(node, "points", &spec.points)?;
@@ -317,11 +317,11 @@ where
             let spec: PointsSpec = node.members()?;
             Arc::new(node.place(Bezier::new(&points::<D>(node, "points", &spec.points)?))?)
         }
-        "bspline" => bspline::<D>(node)?,
-        "composite" => composite::<D>(node)?,
+        "bspline" => read_bspline::<D>(node)?,
+        "composite" => read_composite::<D>(node)?,
         "reversed" => {
             let spec: ReversedSpec = node.members()?;
-            Arc::new(Reversed::new(inner::<D>(&Node::child(&spec.curve, &node.pointer, "curve"))?))
+            Arc::new(Reversed::new(read_inner::<D>(&JsonNode::child(&spec.curve, &node.pointer, "curve"))?))
         }
         "circle" | "ellipse" | "svg_path" => {
             return Err(
@@ -332,14 +332,14 @@ where
     })
 }
 
-fn line<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>> {
+fn read_line<const D: usize>(node: &JsonNode<'_>) -> Result<SharedCurve<D>> {
     let spec: LineSpec = node.members()?;
     let (at, direction) =
         (point::<D>(node, "point", &spec.point)?, point(node, "direction", &spec.direction)?);
     Ok(Arc::new(node.place(Segment::on_line(at, direction, spec.domain))?))
 }
 
-fn cubic_spline<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>> {
+fn read_cubic_spline<const D: usize>(node: &JsonNode<'_>) -> Result<SharedCurve<D>> {
     let spec: CubicSpec = node.members()?;
     let through = points::<D>(node, "points", &spec.points)?;
     let ends = match spec.ends {
@@ -353,7 +353,7 @@ fn cubic_spline<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>> {
     Ok(Arc::new(node.place(CubicSpline::new(&through, &ends, &spacing(spec.spacing)))?))
 }
 
-fn bspline<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>> {
+fn read_bspline<const D: usize>(node: &JsonNode<'_>) -> Result<SharedCurve<D>> {
     let spec: BsplineSpec = node.members()?;
     let control = points::<D>(node, "points", &spec.points)?;
     let knots = match spec.knots {
@@ -366,20 +366,21 @@ fn bspline<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>> {
     })?))
 }
 
-fn composite<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>>
+fn read_composite<const D: usize>(node: &JsonNode<'_>) -> Result<SharedCurve<D>>
 where
     SharedCurve<D>: FromAny,
 {
     let spec: CompositeSpec = node.members()?;
     let pointer = format!("{}/segments", node.pointer);
     let parts = spec.segments.iter().enumerate();
-    let parts =
-        parts.map(|(i, part)| inner::<D>(&Node::child(part, &pointer, i))).collect::<Result<Vec<_>>>()?;
+    let parts = parts
+        .map(|(i, part)| read_inner::<D>(&JsonNode::child(part, &pointer, i)))
+        .collect::<Result<Vec<_>>>()?;
     let made = if spec.closed { Composite::closed(&parts) } else { Composite::new(&parts) };
     Ok(Arc::new(node.place(made)?))
 }
 
-fn arc<const D: usize>(node: &Node<'_>) -> Result<EllipticArc<D>> {
+fn read_arc<const D: usize>(node: &JsonNode<'_>) -> Result<EllipticArc<D>> {
     let spec: ArcSpec = node.members()?;
     let centre = point::<D>(node, "center", &spec.center)?;
     let (a, b) = match (spec.radius, spec.a, spec.b) {
@@ -393,7 +394,7 @@ fn arc<const D: usize>(node: &Node<'_>) -> Result<EllipticArc<D>> {
     node.place(EllipticArc::new(centre, a, b, spec.start.to_radians(), spec.sweep.to_radians()))
 }
 
-fn hermite<const D: usize>(node: &Node<'_>) -> Result<SharedCurve<D>> {
+fn read_hermite<const D: usize>(node: &JsonNode<'_>) -> Result<SharedCurve<D>> {
     let spec: HermiteSpec = node.members()?;
     let through = points::<D>(node, "points", &spec.points)?;
     let spacing = spacing(spec.spacing);

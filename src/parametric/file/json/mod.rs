@@ -31,19 +31,19 @@ pub fn parse(text: &str) -> Result<Value> {
     })
 }
 
-/// The message without the position, which is told apart.
+/// The message without the position, which is given separately.
 fn syntax(error: &serde_json::Error) -> String {
     let text = error.to_string();
     text.split(" at line ").next().unwrap_or(&text).to_owned()
 }
 
 /// A JSON object under examination, with the pointer to it.
-pub(crate) struct Node<'a> {
+pub(crate) struct JsonNode<'a> {
     pub(crate) value: &'a Value,
     pub(crate) pointer: String,
 }
 
-impl<'a> Node<'a> {
+impl<'a> JsonNode<'a> {
     pub(crate) fn root(value: &'a Value) -> Self {
         Self { value, pointer: String::new() }
     }
@@ -122,7 +122,7 @@ fn kind(value: &Value) -> &'static str {
 
 /// Lists of numbers as points of one dimension.
 pub(crate) fn points<const D: usize>(
-    node: &Node<'_>,
+    node: &JsonNode<'_>,
     name: &str,
     lists: &[Vec<f64>],
 ) -> Result<Vec<[f64; D]>> {
@@ -130,7 +130,7 @@ pub(crate) fn points<const D: usize>(
 }
 
 /// A list of numbers as a point.
-pub(crate) fn point<const D: usize>(node: &Node<'_>, name: &str, list: &[f64]) -> Result<[f64; D]> {
+pub(crate) fn point<const D: usize>(node: &JsonNode<'_>, name: &str, list: &[f64]) -> Result<[f64; D]> {
     <[f64; D]>::try_from(list).map_err(|_| GeometryError::Json {
         place: format!("{}/{name}", node.pointer),
         what: format!("expected {D} numbers, found {}", list.len()),

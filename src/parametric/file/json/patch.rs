@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Node, curve};
+use super::{JsonNode, curve};
 use crate::parametric::Patch;
 use crate::parametric::error::Result;
 
@@ -104,7 +104,7 @@ const TYPES: [&str; 11] = [
 /// # Errors
 /// As [`curve`](super::curve()).
 pub fn patch(value: &Value) -> Result<Patch> {
-    read(&Node::root(value))
+    read(&JsonNode::root(value))
 }
 
 /// Reads the patches of an object with a member `"patches"`, each with its `"name"` (or its number).
@@ -112,7 +112,7 @@ pub fn patch(value: &Value) -> Result<Patch> {
 /// # Errors
 /// As [`curve`](super::curve()).
 pub fn named_patches(value: &Value) -> Result<Vec<(String, Patch)>> {
-    let root = Node::root(value);
+    let root = JsonNode::root(value);
     let listed: Listed = root.members()?;
     list(&listed.patches, "/patches")
 }
@@ -121,13 +121,13 @@ pub(crate) fn list(patches: &[Value], pointer: &str) -> Result<Vec<(String, Patc
     let named = |(i, value): (usize, &Value)| {
         let name =
             value.get("name").and_then(Value::as_str).map_or_else(|| format!("patch {i}"), str::to_owned);
-        Ok((name, read(&Node::child(value, pointer, i))?))
+        Ok((name, read(&JsonNode::child(value, pointer, i))?))
     };
     patches.iter().enumerate().map(named).collect()
 }
 
-fn read(node: &Node<'_>) -> Result<Patch> {
-    let inner = |value: &Value, name: &str| curve::space(&Node::child(value, &node.pointer, name));
+fn read(node: &JsonNode<'_>) -> Result<Patch> {
+    let inner = |value: &Value, name: &str| curve::read_space(&JsonNode::child(value, &node.pointer, name));
     match node.type_name()? {
         "bezier" => {
             let spec: BezierSpec = node.members()?;

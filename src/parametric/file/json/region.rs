@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Node, curve};
+use super::{JsonNode, curve};
 use crate::parametric::error::{GeometryError, Result};
 use crate::parametric::file::svg::curves_of_path;
 use crate::parametric::{Curve, CurveMeshing, FillRule, Polygons, Region, RegionOperation, SharedCurve};
@@ -52,10 +52,10 @@ const TYPES: [&str; 7] = ["region", "rectangle", "svg_path", "union", "intersect
 /// # Errors
 /// As [`curve`](super::curve()); [`GeometryError::NotClosed`] for an open contour.
 pub fn region(value: &Value, meshing: &CurveMeshing) -> Result<Polygons> {
-    read(&Node::root(value), meshing)
+    read(&JsonNode::root(value), meshing)
 }
 
-pub(crate) fn read(node: &Node<'_>, meshing: &CurveMeshing) -> Result<Polygons> {
+pub(crate) fn read(node: &JsonNode<'_>, meshing: &CurveMeshing) -> Result<Polygons> {
     let name = node.type_name()?;
     let operation = match name {
         "region" => {
@@ -63,7 +63,7 @@ pub(crate) fn read(node: &Node<'_>, meshing: &CurveMeshing) -> Result<Polygons> 
             let pointer = format!("{}/contours", node.pointer);
             let contours = spec.contours.iter().enumerate();
             let contours = contours
-                .map(|(i, c)| curve::plane(&Node::child(c, &pointer, i)))
+                .map(|(i, c)| curve::read_plane(&JsonNode::child(c, &pointer, i)))
                 .collect::<Result<Vec<_>>>()?;
             return node.place(Region::new(&contours).and_then(|region| region.polygons(meshing)));
         }
@@ -80,9 +80,9 @@ pub(crate) fn read(node: &Node<'_>, meshing: &CurveMeshing) -> Result<Polygons> 
         "difference" => RegionOperation::Difference,
         "xor" => RegionOperation::SymmetricDifference,
         // A closed curve is the region inside it.
-        other if curve::plane(node).is_ok_and(|curve| curve.is_closed()) => {
+        other if curve::read_plane(node).is_ok_and(|curve| curve.is_closed()) => {
             let _ = other;
-            let contour: SharedCurve<2> = curve::plane(node)?;
+            let contour: SharedCurve<2> = curve::read_plane(node)?;
             return node.place(Region::new(&[contour]).and_then(|region| region.polygons(meshing)));
         }
         other => return Err(node.unknown_type(other, "region", &TYPES)),
@@ -91,7 +91,7 @@ pub(crate) fn read(node: &Node<'_>, meshing: &CurveMeshing) -> Result<Polygons> 
     let pointer = format!("{}/regions", node.pointer);
     let mut operands = Vec::new();
     for (i, operand) in spec.regions.iter().enumerate() {
-        operands.push(read(&Node::child(operand, &pointer, i), meshing)?);
+        operands.push(read(&JsonNode::child(operand, &pointer, i), meshing)?);
     }
     let first =
         if operands.is_empty() { return Err(node.fault("\"regions\" is empty")) } else { operands.remove(0) };

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::{Node, curve, patch, region};
+use super::{JsonNode, curve, patch, region};
 use crate::parametric::{CurveMeshing, Extrusion, PatchMeshing, Revolution, Sweep};
 use crate::{Control, Error, Mesh};
 
@@ -63,8 +63,8 @@ struct PatchesSpec {
 /// # Errors
 /// As [`curve`](super::curve()), and those of the construction; limits of `control`.
 pub fn solid(value: &Value, control: &Control) -> Result<Mesh, Error> {
-    let node = Node::root(value);
-    let child = |value, name| Node { value, pointer: format!("/{name}") };
+    let node = JsonNode::root(value);
+    let child = |value, name| JsonNode { value, pointer: format!("/{name}") };
     Ok(match node.type_name()? {
         "extrusion" => {
             let spec: ExtrusionSpec = node.members()?;
@@ -83,7 +83,7 @@ pub fn solid(value: &Value, control: &Control) -> Result<Mesh, Error> {
         "sweep" => {
             let spec: SweepSpec = node.members()?;
             let section = region::read(&child(&spec.region, "region"), &CurveMeshing::new(spec.tolerance))?;
-            let path = curve::space(&child(&spec.path, "path"))?;
+            let path = curve::read_space(&child(&spec.path, "path"))?;
             let sweep = Sweep::new(spec.tolerance);
             let sweep = if let Some(up) = spec.up { sweep.up(up) } else { sweep };
             node.place(sweep.mesh(&section, path.as_ref()))?

@@ -22,12 +22,12 @@ pub(super) struct Corner {
 
 /// Triangles over a loop: corners are positions in the loop, and the loop's length stands for the apex.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Patch {
+pub(super) struct Filling {
     pub(super) apex: Option<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
 }
 
-/// The cell a patch is for.
+/// The cell a filling is for.
 #[derive(Clone, Copy)]
 pub(super) struct Cell<'a> {
     pub(super) tape: &'a Tape,
@@ -38,10 +38,10 @@ pub(super) struct Cell<'a> {
 
 impl Cell<'_> {
     /// Triangles over the loop, facing the field's negative side.
-    pub(super) fn patch(&self, corners: &[Corner], scratch: &mut Scratch) -> Patch {
+    pub(super) fn fill(&self, corners: &[Corner], scratch: &mut Scratch) -> Filling {
         let flat = !corners.iter().any(|corner| corner.kink) && !self.share_face(corners);
         if flat && corners.len() == 3 {
-            return Patch { apex: None, triangles: vec![[0, 1, 2]] };
+            return Filling { apex: None, triangles: vec![[0, 1, 2]] };
         }
         if flat && corners.len() == 4 {
             let allowed = |a: usize, b: usize| !self.share_face(&[corners[a], corners[b]]);
@@ -53,13 +53,13 @@ impl Cell<'_> {
                 .map(|([a, b], triangles)| (deviation(self.tape, middle(a, b), scratch), triangles))
                 .min_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((_, triangles)) = best {
-                return Patch { apex: None, triangles: triangles.to_vec() };
+                return Filling { apex: None, triangles: triangles.to_vec() };
             }
         }
         let apex = self.apex(corners, scratch);
         let count = corners.len() as u32;
         let triangles = (0..count).map(|k| [k, (k + 1) % count, count]).collect();
-        Patch { apex: Some(apex), triangles }
+        Filling { apex: Some(apex), triangles }
     }
 
     /// Whether all the corners lie in one face of the cell.
@@ -132,14 +132,14 @@ impl Cell<'_> {
         worst
     }
 
-    /// The largest deviation found at the middles of the patch's triangles and edges.
-    pub(super) fn error(&self, corners: &[Corner], patch: &Patch, scratch: &mut Scratch) -> f64 {
+    /// The largest deviation found at the middles of the filling's triangles and edges.
+    pub(super) fn error(&self, corners: &[Corner], filling: &Filling, scratch: &mut Scratch) -> f64 {
         let place = |k: u32| match corners.get(k as usize) {
             Some(corner) => corner.place,
-            None => patch.apex.unwrap_or(corners[0].place),
+            None => filling.apex.unwrap_or(corners[0].place),
         };
         let mut worst = 0f64;
-        for triangle in &patch.triangles {
+        for triangle in &filling.triangles {
             let [a, b, c] = triangle.map(place);
             for point in [(a + b + c) / 3.0, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5] {
                 worst = worst.max(deviation(self.tape, point, scratch));
