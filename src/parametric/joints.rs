@@ -6,6 +6,7 @@ use super::nurbs::NurbsCurve;
 use super::nurbs_tools::over_unit;
 use super::patch::{Patch, Side};
 use super::vector::{self, Point};
+use crate::mesh::UnionFind;
 
 /// A boundary of a patch that meets no boundary of another (or of its own).
 #[derive(Clone, Debug, PartialEq)]
@@ -232,28 +233,28 @@ fn identify_corners(
     sides: &[[FaceSide; 4]],
     edges: &[Edge],
 ) -> (Vec<[usize; 4]>, Vec<Point<3>>) {
-    let mut parent: Vec<usize> = (0..4 * faces.len()).collect();
+    let mut sets = UnionFind::new(4 * faces.len());
     for (face, sides) in sides.iter().enumerate() {
         for (side, what) in sides.iter().enumerate() {
-            let [start, end] = SIDE_CORNERS[side].map(|c| 4 * face + c);
+            let [start, end] = SIDE_CORNERS[side].map(|c| (4 * face + c) as u32);
             match what {
-                FaceSide::Collapsed => unite(&mut parent, start, end),
+                FaceSide::Collapsed => sets.join(start, end),
                 FaceSide::Edge { edge, course } => {
                     let (face0, side0) = edges[*edge].uses[0];
-                    let [start0, end0] = SIDE_CORNERS[side0].map(|c| 4 * face0 + c);
+                    let [start0, end0] = SIDE_CORNERS[side0].map(|c| (4 * face0 + c) as u32);
                     let [start, end] = if course.is_reversed() { [end, start] } else { [start, end] };
-                    unite(&mut parent, start0, start);
-                    unite(&mut parent, end0, end);
+                    sets.join(start0, start);
+                    sets.join(end0, end);
                 }
             }
         }
     }
-    let mut number: Vec<Option<usize>> = vec![None; parent.len()];
+    let mut number: Vec<Option<usize>> = vec![None; 4 * faces.len()];
     let mut places = Vec::new();
     let mut corners = Vec::new();
     for (face, patch) in faces.iter().enumerate() {
         corners.push(std::array::from_fn(|corner| {
-            let root = find(&mut parent, 4 * face + corner);
+            let root = sets.root((4 * face + corner) as u32) as usize;
             *number[root].get_or_insert_with(|| {
                 let [i, j] = [[0, 0], [1, 0], [1, 1], [0, 1]][corner];
                 let [rows, columns] = patch.counts;
@@ -263,19 +264,6 @@ fn identify_corners(
         }));
     }
     (corners, places)
-}
-
-pub(crate) fn find(parent: &mut [usize], mut i: usize) -> usize {
-    while parent[i] != i {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    i
-}
-
-fn unite(parent: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (find(parent, a), find(parent, b));
-    parent[a.max(b)] = a.min(b);
 }
 
 /// The boundaries that met no other, with their distance to the nearest other such boundary.
