@@ -11,15 +11,16 @@ use crate::boolean::arrangement::cut_edges::CutEdges;
 use crate::boolean::arrangement::cut_faces::{CutFace, CutFaces, UNCUT};
 use crate::boolean::arrangement::plane_faces::PlaneFaces;
 use crate::boolean::complex::operands::Operands;
-use crate::mesh::BitSet;
+use crate::mesh::{BitSet, SparseUnionFind};
 use crate::parallel::Runner;
 
 /// Up to this many points are compared pair by pair.
 const FEW: usize = 12;
 
-/// Union-find over vertices and nodes; only those that coincide with another are stored.
+/// The classes of vertices and nodes that are one; only those that coincide with another are stored.
 #[derive(Debug, Default)]
 pub(crate) struct Identification {
+    /// For every point that is not the lowest of its class, the lowest.
     parent: FxHashMap<u32, u32>,
     /// The points that are stored: most are told from them by this alone.
     stored: BitSet,
@@ -36,7 +37,7 @@ impl Identification {
         sheets: &[Vec<(usize, u32)>],
         runner: Runner<'_>,
     ) -> Result<Self, Error> {
-        let mut result = Self::default();
+        let mut classes = SparseUnionFind::default();
         let collect = |side: usize, face: &CutFace, points: &mut Vec<Point>| {
             collect_points(operands, side, face, &faces[side], crossings, edges, plane_faces, points);
         };
@@ -64,7 +65,7 @@ impl Identification {
                 );
             })?;
             for [u, v] in pairs {
-                result.join(u, v);
+                classes.join(u, v);
             }
         }
         for sheet in sheets {
@@ -76,15 +77,16 @@ impl Identification {
             }
             coincidences(&mut points, &mut pairs);
             for [u, v] in pairs {
-                result.join(u, v);
+                classes.join(u, v);
             }
         }
-        result.flatten();
-        if !result.is_empty() {
-            result.stored = BitSet::new(operands.vertex_count() as usize + edges.positions.len());
-            result.parent.keys().for_each(|&point| result.stored.insert(point));
+        if classes.is_empty() {
+            return Ok(Self::default());
         }
-        Ok(result)
+        let parent = classes.into_roots();
+        let mut stored = BitSet::new(operands.vertex_count() as usize + edges.positions.len());
+        parent.keys().for_each(|&point| stored.insert(point));
+        Ok(Self { parent, stored })
     }
 
     /// Whether every point is its own.
@@ -112,25 +114,6 @@ impl Identification {
         all.sort_unstable();
         all.dedup();
         all
-    }
-
-    fn root(&self, mut point: u32) -> u32 {
-        while let Some(&parent) = self.parent.get(&point) {
-            point = parent;
-        }
-        point
-    }
-
-    fn join(&mut self, u: u32, v: u32) {
-        let (u, v) = (self.root(u), self.root(v));
-        if u != v {
-            self.parent.insert(u.max(v), u.min(v));
-        }
-    }
-
-    fn flatten(&mut self) {
-        let roots: Vec<(u32, u32)> = self.parent.keys().map(|&point| (point, self.root(point))).collect();
-        self.parent.extend(roots);
     }
 }
 

@@ -26,6 +26,7 @@ use crate::boolean::result::assemble::NewTriangle;
 use crate::boolean::result::outcome::Origin;
 use crate::exact::perturbed::PerturbedPoint;
 use crate::exact::{Projection, Sign, collinear, orient2d, orient3d, position};
+use crate::mesh::SparseUnionFind;
 use crate::parallel::Runner;
 use crate::polygon;
 use crate::spatial::{BoxTree, Frame};
@@ -67,36 +68,11 @@ pub(crate) fn touching_sheets(
             found.push([s, t]);
         }
     })?;
-    let mut parent: FxHashMap<(usize, u32), (usize, u32)> = FxHashMap::default();
+    let mut sheets = SparseUnionFind::default();
     for [s, t] in touching {
-        let (x, y) = (find(&mut parent, (0, s)), find(&mut parent, (1, t)));
-        if x != y {
-            parent.insert(x.max(y), x.min(y));
-        }
+        sheets.join((0, s), (1, t));
     }
-    let mut members: Vec<(usize, u32)> = parent.keys().copied().collect();
-    members.sort_unstable();
-    let mut sheets: FxHashMap<(usize, u32), Sheet> = FxHashMap::default();
-    for member in members {
-        let root = find(&mut parent, member);
-        sheets.entry(root).or_default().push(member);
-    }
-    let mut sheets: Vec<Sheet> = sheets.into_values().collect();
-    sheets.sort_unstable();
-    Ok(sheets)
-}
-
-fn find(parent: &mut FxHashMap<(usize, u32), (usize, u32)>, mut face: (usize, u32)) -> (usize, u32) {
-    loop {
-        let next = *parent.entry(face).or_insert(face);
-        if next == face {
-            return face;
-        }
-        // Path halving.
-        let above = *parent.entry(next).or_insert(next);
-        parent.insert(face, above);
-        face = above;
-    }
+    Ok(sheets.into_sets())
 }
 
 /// For triangles of A and of B in exactly the same plane whether they look opposite ways; `None` for others.
