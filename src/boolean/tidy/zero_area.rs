@@ -9,6 +9,7 @@ use smallvec::SmallVec;
 use super::patch::{Face, Patch};
 use super::source::Source;
 use crate::exact::collinear;
+use crate::mesh::SparseUnionFind;
 
 /// A flip: the two triangles that share the longest side from `c` to `a` of the flat triangle `a, b, c`.
 struct Flip {
@@ -218,21 +219,12 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
 
 /// Makes one point of each pair.
 pub(super) fn identify(patch: &mut Patch<'_>, pairs: &[(u32, u32)]) {
-    let mut stands_for: FxHashMap<u32, u32> = FxHashMap::default();
-    let root = |stands_for: &FxHashMap<u32, u32>, mut point: u32| {
-        while let Some(&other) = stands_for.get(&point) {
-            point = other;
-        }
-        point
-    };
+    let mut points = SparseUnionFind::default();
     for &(x, y) in pairs {
-        let (x, y) = (root(&stands_for, x), root(&stands_for, y));
-        if x != y {
-            stands_for.insert(x.max(y), x.min(y));
-        }
+        points.join(x, y);
     }
     for face in patch.faces.iter_mut().filter(|face| face.alive) {
-        let corners = face.corners.map(|point| root(&stands_for, point));
+        let corners = face.corners.map(|point| points.root(point));
         if corners != face.corners {
             face.corners = corners;
             face.untouched = false;
