@@ -160,15 +160,14 @@ fn body(
     }
     let tidy_settings = tidy::Settings {
         remove_vertices: settings.remove_vertices,
-        rounding: cutter.rounding,
         glue: settings.glue,
         always: has_slivers,
     };
     let planes = Planes { operands: cutter.operands, groups: settings.groups };
     let tidied = tidy::tidy(cutter, &planes, parts, &pieces, &tidy_settings, runner)?;
-    let (new, replaced, copies) = match tidied {
-        Some(tidied) => (tidied.new, Some(tidied.replaced), tidied.copies),
-        None => (pieces, None, Vec::new()),
+    let (new, replaced, copies, clean_up_stopped) = match tidied {
+        Some(tidied) => (tidied.new, Some(tidied.replaced), tidied.copies, tidied.stopped),
+        None => (pieces, None, Vec::new(), 0),
     };
     runner.control.check()?;
     let ingredients = Ingredients {
@@ -182,7 +181,7 @@ fn body(
         replaced: replaced.as_ref(),
         copies: &copies,
     };
-    Ok(Assembled { has_inverted, ..ingredients.assemble(runner)? })
+    Ok(Assembled { has_inverted, clean_up_stopped, ..ingredients.assemble(runner)? })
 }
 
 /// Whether A swells by an infinitesimal (+1) or shrinks (-1).
