@@ -27,8 +27,9 @@ mod pair;
 mod result;
 mod tidy;
 
+pub use complex::origin::Origin;
 pub use result::certificate::{Certificate, OperandState};
-pub use result::outcome::{Origin, Outcome};
+pub use result::outcome::Outcome;
 
 use crate::control::Control;
 use crate::parallel::Runner;

@@ -5,11 +5,10 @@
 //! smallest operands; a symmetric difference goes from left to right.
 
 mod merge_order;
-mod sheets;
 
 use std::borrow::Cow;
 
-use crate::boolean::pair::{self, Settings};
+use crate::boolean::pair::{self, Combined, Settings};
 use crate::boolean::result::certificate::{Notes, OperandState};
 use crate::boolean::result::origins::Origins;
 use crate::boolean::{Contact, Operation, Options, Origin, Outcome};
@@ -28,7 +27,8 @@ struct Partial<'a> {
     origins: Origins,
     /// The result's group of each triangle; empty if no operand has groups.
     groups: Vec<u32>,
-    ties: u64,
+    /// How many decisions on the way plain coordinates left open.
+    contacts: u64,
     /// Whether rounding turned over some triangle on the way.
     may_be_inverted: bool,
     /// How often a step of the clean-up stopped at its bound on the way.
@@ -37,7 +37,7 @@ struct Partial<'a> {
 
 impl<'a> Partial<'a> {
     fn new(solid: Cow<'a, Solid>, origins: Origins, groups: Vec<u32>) -> Self {
-        Self { solid, origins, groups, ties: 0, may_be_inverted: false, clean_up_stopped: 0 }
+        Self { solid, origins, groups, contacts: 0, may_be_inverted: false, clean_up_stopped: 0 }
     }
 
     /// The middle of its box.
@@ -63,9 +63,11 @@ pub(crate) fn run(
                 let origins = Origins::of_operand(i as u32, solid.mesh().triangles.len());
                 return Partial::new(Cow::Borrowed(*solid), origins, groups);
             }
+            // The perturbation moves vertices: surfaces that touch in one need a vertex each.
             let (solid, source) = solid.separated();
             let groups = groups.of_operand(i, &solid);
-            Partial::new(Cow::Owned(solid), sheets::origins(i as u32, &source), groups)
+            let origin = |&triangle: &u32| Origin { operand: i as u32, triangle, reversed: false };
+            Partial::new(Cow::Owned(solid), source.iter().map(origin).collect(), groups)
         })
         .collect();
     let engine = Engine { options, runner };
@@ -87,7 +89,7 @@ pub(crate) fn run(
         Operation::SymmetricDifference => engine.fold(Operation::SymmetricDifference, partials)?,
     };
     let notes = Notes {
-        contacts: result.ties,
+        contacts: result.contacts,
         inverted: if result.may_be_inverted { count_inverted(&result, operands) } else { 0 },
         clean_up_stopped: result.clean_up_stopped,
         operands: operands.iter().map(|solid| OperandState::of(solid)).collect(),
@@ -149,7 +151,8 @@ impl Engine<'_> {
         };
         let triangles = a.solid.mesh().triangles.len() + b.solid.mesh().triangles.len();
         let runner = if triangles < PARALLEL_FROM { self.runner.serial() } else { self.runner };
-        let made = pair::combine(operation, &a.solid, &b.solid, settings, runner)?;
+        let Combined { arrays: made, contacts } =
+            pair::combine(operation, &a.solid, &b.solid, settings, runner)?;
         let sources = [a, b];
         let groups = if a.groups.is_empty() {
             Vec::new()
@@ -159,12 +162,12 @@ impl Engine<'_> {
                 .map(|origin| sources[origin.operand as usize].groups[origin.triangle as usize])
                 .collect()
         };
-        let origins = made.origins.through([&a.origins, &b.origins]);
+        let origins = made.origins.compose([&a.origins, &b.origins]);
         Ok(Partial {
             solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(made.positions, made.triangles))),
             origins,
             groups,
-            ties: a.ties + b.ties + made.ties,
+            contacts: a.contacts + b.contacts + contacts,
             may_be_inverted: a.may_be_inverted || b.may_be_inverted || made.has_inverted,
             clean_up_stopped: a.clean_up_stopped + b.clean_up_stopped + made.clean_up_stopped,
         })

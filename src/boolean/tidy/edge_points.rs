@@ -196,7 +196,7 @@ fn lies_between(patch: &Patch<'_>, u: LocalPoint, x: LocalPoint, v: LocalPoint) 
         return false;
     }
     // 2. Further from the line than rounding can move it.
-    let rounding = patch.source().rounding();
+    let rounding = patch.source().rounding;
     let [start, middle, end] = [p, at, q].map(|position| DVec3::from_array(*position));
     let length_squared = start.distance_squared(end);
     let twice_area_squared = (end - start).cross(middle - start).length_squared();

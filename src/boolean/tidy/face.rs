@@ -1,6 +1,6 @@
 //! The faces of a patch, and the numbers by which a patch knows its points and faces.
 
-use crate::boolean::result::outcome::Origin;
+use crate::boolean::complex::origin::Origin;
 
 /// The number of a point within a patch: first the vertices and nodes the patch has, in their own order, then the copies
 /// made by the clean-up.

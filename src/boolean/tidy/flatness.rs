@@ -47,7 +47,7 @@ pub(super) fn longest_side_squared(patch: &Patch<'_>, face: LocalFace) -> u64 {
 pub(super) fn mark_flat(patch: &mut Patch<'_>) {
     let source = patch.source();
     for face in patch.face_numbers() {
-        let is_low = is_lower(patch, face, source.rounding()) && !is_exactly_flat(patch, face);
+        let is_low = is_lower(patch, face, source.rounding) && !is_exactly_flat(patch, face);
         if is_low && source.were_collinear(patch[face].corners.map(|point| patch.source_point(point))) {
             patch.mark_flat(face);
         }

@@ -5,18 +5,19 @@ use rustc_hash::FxHashSet;
 use super::face::{Face, LocalPoint};
 use super::patch::{Contents, Patch};
 use super::source::Source;
-use crate::boolean::result::assemble::NewTriangle;
+use crate::boolean::complex::ids::PointId;
+use crate::boolean::cut::piece::Piece;
 use crate::mesh::BitSet;
 
 /// A patch of the pieces and of all kept triangles around their points, around points that became one, and around the `extra`
 /// points. O(triangles of the operands).
-pub(super) fn gather<'a>(source: Source<'a>, pieces: &[NewTriangle], extra: &[u32]) -> Patch<'a> {
+pub(super) fn gather<'a>(source: Source<'a>, pieces: &[Piece], extra: &[PointId]) -> Patch<'a> {
     // 1. The points that are to have all their triangles in the patch. Kept triangles of both operands may share a point
     //    where all that was cut cancelled, so points that became one are among them.
     let mut complete = BitSet::new(source.point_count());
     let of_pieces = pieces.iter().flat_map(|piece| piece.corners);
     for point in of_pieces.chain(source.representatives()).chain(extra.iter().copied()) {
-        complete.insert(point);
+        complete.insert(point.number());
     }
     // 2. Their kept triangles, then the pieces, still by the numbers of the source.
     let (mut triangles, taken) = kept_triangles(source, &complete);
@@ -27,7 +28,7 @@ pub(super) fn gather<'a>(source: Source<'a>, pieces: &[NewTriangle], extra: &[u3
     let numbers = numbering.source_points();
     let mut locally_complete = BitSet::new(numbers.len());
     for (local, &point) in (0..).zip(&numbers) {
-        if complete.contains(point) {
+        if complete.contains(point.number()) {
             locally_complete.insert(local);
         }
     }
@@ -52,7 +53,7 @@ pub(super) fn gather<'a>(source: Source<'a>, pieces: &[NewTriangle], extra: &[u3
 
 /// A triangle of the patch to be, by the numbers of the source.
 struct GatheredTriangle {
-    new: NewTriangle,
+    new: Piece,
     untouched: bool,
 }
 
@@ -61,13 +62,13 @@ fn kept_triangles(source: Source<'_>, complete: &BitSet) -> (Vec<GatheredTriangl
     let mut triangles = Vec::new();
     let mut taken = [Vec::new(), Vec::new()];
     source.for_each_kept(|kept| {
-        if !kept.points.iter().any(|&point| complete.contains(point)) {
+        if !kept.points.iter().any(|point| complete.contains(point.number())) {
             return;
         }
         taken[kept.origin.operand as usize].push(kept.origin.triangle);
         let [a, b, c] = kept.points;
         let corners = if kept.origin.reversed { [a, c, b] } else { [a, b, c] };
-        let new = NewTriangle { corners, origin: kept.origin, flat: false };
+        let new = Piece { corners, origin: kept.origin, flat: false };
         for _ in 0..kept.copies {
             triangles.push(GatheredTriangle { new, untouched: kept.is_simple });
         }
@@ -83,7 +84,7 @@ fn outer_edges(
 ) -> FxHashSet<(LocalPoint, LocalPoint)> {
     let mut edges = FxHashSet::default();
     source.for_each_kept(|kept| {
-        if kept.points.iter().any(|&point| complete.contains(point)) {
+        if kept.points.iter().any(|point| complete.contains(point.number())) {
             return;
         }
         for k in 0..3 {
@@ -106,9 +107,9 @@ struct Numbering {
 
 impl Numbering {
     /// Numbers for the given ones of `count` points.
-    fn of(count: usize, points: impl IntoIterator<Item = u32>) -> Self {
+    fn of(count: usize, points: impl IntoIterator<Item = PointId>) -> Self {
         let mut chosen = BitSet::new(count);
-        points.into_iter().for_each(|point| chosen.insert(point));
+        points.into_iter().for_each(|point| chosen.insert(point.number()));
         let mut sum = 0;
         let mut before = Vec::with_capacity(chosen.words().len());
         for word in chosen.words() {
@@ -118,24 +119,25 @@ impl Numbering {
         Self { chosen, before }
     }
 
-    fn contains(&self, point: u32) -> bool {
-        self.chosen.contains(point)
+    fn contains(&self, point: PointId) -> bool {
+        self.chosen.contains(point.number())
     }
 
     /// The patch's number of a chosen point.
     #[inline]
-    fn local(&self, point: u32) -> LocalPoint {
+    fn local(&self, point: PointId) -> LocalPoint {
+        let point = point.number();
         let (word, bit) = (point as usize / 64, point % 64);
         LocalPoint(self.before[word] + (self.chosen.words()[word] & ((1 << bit) - 1)).count_ones())
     }
 
     /// The chosen points, ascending: the one numbered i by the patch at place i.
-    fn source_points(&self) -> Vec<u32> {
+    fn source_points(&self) -> Vec<PointId> {
         let mut all = Vec::new();
         for (word, first) in self.chosen.words().iter().zip((0..).step_by(64)) {
             let mut left = *word;
             while left != 0 {
-                all.push(first + left.trailing_zeros());
+                all.push(PointId::new(first + left.trailing_zeros()));
                 left &= left - 1;
             }
         }

@@ -26,10 +26,9 @@ mod source;
 mod split_faces;
 mod splits;
 
-use crate::boolean::classify::multiplicity::Part;
-use crate::boolean::complex::planes::Planes;
-use crate::boolean::cut::Cutter;
-use crate::boolean::result::assemble::NewTriangle;
+use crate::boolean::classify::body::Body;
+use crate::boolean::complex::ids::PointId;
+use crate::boolean::cut::piece::Piece;
 use crate::parallel::Runner;
 use crate::{Control, Error};
 use face::LocalPoint;
@@ -46,8 +45,12 @@ const MOST_ROUNDS: usize = 3;
 pub(super) struct Settings {
     /// Whether needless vertices are removed, and faces of one plane triangulated together.
     pub(super) remove_vertices: bool,
+    /// What a rounded point can be off, in units of the coordinates: edges and heights up to this are not worth a triangle.
+    pub(super) rounding: f64,
     /// Whether points at the same place are snapped to one where operands touch.
     pub(super) glue: bool,
+    /// How many decisions plain coordinates left open: without any, nothing touches.
+    pub(super) contacts: u64,
     /// Whether to clean up even where nothing points to work.
     pub(super) always: bool,
 }
@@ -58,25 +61,23 @@ pub(super) struct Settings {
 /// # Errors
 /// Those of the limits.
 pub(super) fn tidy(
-    cutter: &Cutter<'_>,
-    planes: &Planes<'_>,
-    parts: &[Part],
-    pieces: &[NewTriangle],
+    body: Body<'_>,
+    pieces: &[Piece],
     settings: &Settings,
     runner: Runner<'_>,
 ) -> Result<Option<Tidied>, Error> {
-    let source = Source { cutter, planes, parts };
+    let source = Source { body, rounding: settings.rounding, has_contacts: settings.contacts > 0 };
     if !settings.always && !source.needs_clean_up() {
         return Ok(None);
     }
     runner.control.check()?;
-    let mut candidates = source.nodes_in_plane_faces();
+    let mut candidates = source.points_on_coplanar_edges();
     if settings.remove_vertices {
         candidates.extend(source.representatives());
     }
     // Where an operand touches itself, triangles may come apart at points that are not wholly in the patch. Then all starts
     // again with those; each is taken in but once.
-    let mut extra: Vec<u32> = Vec::new();
+    let mut extra: Vec<PointId> = Vec::new();
     loop {
         let patch = gather::gather(source, pieces, &extra);
         // Candidates that are not in the patch need no look.
@@ -92,7 +93,7 @@ pub(super) fn tidy(
 enum Attempt {
     Done(Tidied),
     /// The patch was too small: it must have all triangles at these vertices or nodes too.
-    Widen(Vec<u32>),
+    Widen(Vec<PointId>),
 }
 
 /// Runs all steps on a patch. The candidates are the points that may turn out to be needless.
@@ -102,7 +103,7 @@ fn attempt(
     settings: &Settings,
     control: &Control,
 ) -> Result<Attempt, Error> {
-    let has_contacts = patch.source().has_contacts();
+    let has_contacts = patch.source().has_contacts;
     let merge = settings.remove_vertices;
     if has_contacts {
         flatness::mark_flat(&mut patch);
@@ -133,7 +134,7 @@ fn attempt(
             remove_vertices::remove_vertices(&mut patch, candidates.clone(), control)?;
         }
         // 6. Edges within rounding are collapsed, and slivers within rounding flipped.
-        let rounding = patch.source().rounding();
+        let rounding = patch.source().rounding;
         short_edges::collapse(&mut patch, rounding);
         flip::flip_low(&mut patch, rounding);
         // 7. Again, if that has left triangles without area.

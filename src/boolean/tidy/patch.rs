@@ -9,18 +9,19 @@ use super::adjacency::Adjacency;
 use super::face::{Edge, edge_between};
 use super::face::{Face, LocalFace, LocalPoint};
 use super::source::Source;
-use crate::boolean::result::assemble::NewTriangle;
-use crate::boolean::result::outcome::Origin;
+use crate::boolean::complex::ids::PointId;
+use crate::boolean::complex::origin::Origin;
+use crate::boolean::cut::piece::Piece;
 use crate::exact::{Sign, orient2d};
 use crate::mesh::{BitSet, Buckets};
 
 /// What the clean-up made of the pieces.
 pub(crate) struct Tidied {
     /// The triangles of the patch that were cut or changed.
-    pub(crate) new: Vec<NewTriangle>,
+    pub(crate) new: Vec<Piece>,
     /// Uncut triangles that are replaced, by side.
     pub(crate) replaced: [BitSet; 2],
-    /// Positions of points made here; they are numbered after the nodes.
+    /// Positions of points made here; they are numbered after all others.
     pub(crate) copies: Vec<[f64; 3]>,
     /// How often a step stopped at its bound with work left.
     pub(crate) stopped: u64,
@@ -30,7 +31,7 @@ pub(crate) struct Tidied {
 pub(super) struct Contents {
     pub(super) faces: Vec<Face>,
     /// For each point which vertex or node of the source it is, ascending.
-    pub(super) numbers: Vec<u32>,
+    pub(super) numbers: Vec<PointId>,
     /// Points all of whose triangles are among the faces.
     pub(super) complete: BitSet,
     /// Directed edges of the result outside the patch between points of the patch.
@@ -48,7 +49,7 @@ pub(super) struct Patch<'a> {
     source: Source<'a>,
     faces: Vec<Face>,
     /// For each point which vertex or node of the source it is, ascending; copies are not among them.
-    numbers: Vec<u32>,
+    numbers: Vec<PointId>,
     /// How many of the points are vertices; they come first.
     vertex_count: u32,
     /// Where each point is, the copies last.
@@ -80,7 +81,7 @@ impl<'a> Patch<'a> {
         Self {
             source,
             faces,
-            vertex_count: numbers.partition_point(|&point| point < source.vertex_count()) as u32,
+            vertex_count: numbers.partition_point(|point| point.number() < source.vertex_count()) as u32,
             positions: numbers.iter().map(|&point| source.position(point)).collect(),
             numbers,
             complete,
@@ -97,15 +98,15 @@ impl<'a> Patch<'a> {
     }
 
     /// The patch's number of a vertex or node; `None` if it is not in the patch.
-    pub(super) fn find_point(&self, point: u32) -> Option<LocalPoint> {
+    pub(super) fn find_point(&self, point: PointId) -> Option<LocalPoint> {
         self.numbers.binary_search(&point).ok().map(|local| LocalPoint(local as u32))
     }
 
     /// The number of a point outside the patch: copies come after the nodes.
-    pub(super) fn source_point(&self, point: LocalPoint) -> u32 {
+    pub(super) fn source_point(&self, point: LocalPoint) -> PointId {
         match self.numbers.get(point.index()) {
             Some(&number) => number,
-            None => self.source.point_count() as u32 + (point.0 - self.numbers.len() as u32),
+            None => PointId::new((self.source.point_count() + point.index() - self.numbers.len()) as u32),
         }
     }
 
@@ -328,7 +329,7 @@ impl<'a> Patch<'a> {
                 replaced[face.origin.operand as usize].remove(face.origin.triangle);
             } else {
                 let corners = face.corners.map(|point| self.source_point(point));
-                new.push(NewTriangle { corners, origin: face.origin, flat: face.flat });
+                new.push(Piece { corners, origin: face.origin, flat: face.flat });
             }
         }
         new.sort_by_key(|triangle| (triangle.origin.operand, triangle.origin.triangle));

@@ -6,7 +6,7 @@
 
 use super::face::{LocalFace, LocalPoint, sides};
 use super::patch::Patch;
-use crate::boolean::result::outcome::Origin;
+use crate::boolean::complex::origin::Origin;
 use crate::exact::collinear;
 use crate::polygon::{Shape, Triangulator};
 use crate::{Control, Error};
