@@ -148,3 +148,62 @@ fn attempt(
     }
     Ok(Attempt::Done(patch.collect()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boolean::Operation;
+    use crate::boolean::arrangement::Arrangement;
+    use crate::boolean::arrangement::crossings::Crossings;
+    use crate::boolean::arrangement::curve::Curve;
+    use crate::boolean::candidates::Candidates;
+    use crate::boolean::candidates::overlap::Overlap;
+    use crate::boolean::classify::multiplicity;
+    use crate::boolean::classify::winding::Windings;
+    use crate::boolean::complex::origin::Origin;
+    use crate::boolean::complex::{Complex, Motion, Operand};
+    use crate::mesh::Bounds;
+
+    /// Cleans up pieces with the vertices of the first of two tetrahedra that are apart, of which nothing else is kept.
+    fn tidy_pieces(pieces: &[Piece]) -> Tidied {
+        let (control, triangles) = (Control::default(), [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
+        let runner = Runner::new(&control, false);
+        let corners = |x: f64| [[x, 0.0, 0.0], [x + 1.0, 0.0, 0.0], [x, 1.0, 0.0], [x, 0.0, 1.0]];
+        let positions = [corners(0.0), corners(5.0)];
+        let operands = positions.each_ref().map(|positions| Operand { positions, triangles: &triangles });
+        let bounds = [0.0, 5.0].map(|x| Bounds { low: [x, 0.0, 0.0], high: [x + 1.0, 1.0, 1.0] });
+        let mut overlap = Overlap::new(&operands, &bounds, runner).unwrap();
+        let near = std::mem::take(&mut overlap.near);
+        let complex = Complex::new(operands, [&[]; 2], Motion::Shrink, 6.0, near);
+        let candidates = Candidates::new(&complex, &overlap, runner).unwrap();
+        let crossings = Crossings::find(&complex, &candidates, runner).unwrap();
+        let curve = Curve::new(&complex, crossings, &[], runner).unwrap();
+        let windings = Windings::new(&curve, &overlap, &bounds, runner).unwrap();
+        let arrangement = Arrangement::new(curve, Vec::new(), true, runner).unwrap();
+        let parts = multiplicity::parts(Operation::Intersection);
+        let body = Body { arrangement: &arrangement, windings: &windings, parts };
+        let settings =
+            Settings { remove_vertices: true, rounding: 1e-15, glue: false, contacts: 0, always: true };
+        tidy(body, pieces, &settings, runner).unwrap().expect("it was asked for")
+    }
+
+    fn piece(corners: [u32; 3], flat: bool) -> Piece {
+        let origin = Origin { operand: 0, triangle: 0, reversed: false };
+        Piece { corners: corners.map(PointId::new), origin, flat }
+    }
+
+    #[test]
+    fn a_clean_up_that_stops_with_work_left_is_counted() {
+        // Nothing lies beside the triangle that it could be flipped or split with.
+        let tidied = tidy_pieces(&[piece([0, 2, 1], true)]);
+        assert_eq!((tidied.new.len(), tidied.stopped), (1, 1));
+    }
+
+    #[test]
+    fn a_clean_up_that_comes_to_an_end_is_not_counted() {
+        let tidied = tidy_pieces(&[piece([0, 2, 1], false)]);
+        assert_eq!((tidied.new.len(), tidied.stopped), (1, 0));
+        let opposite = tidy_pieces(&[piece([0, 2, 1], false), piece([0, 1, 2], false)]);
+        assert_eq!((opposite.new.len(), opposite.stopped), (0, 0));
+    }
+}
