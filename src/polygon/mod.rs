@@ -7,11 +7,13 @@
 
 mod delaunay;
 mod ears;
+mod face;
 mod holes;
 mod loops;
 mod winding;
 
 pub(crate) use delaunay::{Conflict, fill_region};
+pub(crate) use face::{FaceTriangulator, Tiling};
 pub(crate) use winding::{Edge, Found, by_winding, cross_properly};
 
 /// From this many vertices a constrained Delaunay triangulation replaces ear clipping.
