@@ -5,7 +5,11 @@
 //! polygon (or one whose boundary touches itself, as with bridges to holes) the triangles do not overlap and none has
 //! zero area in the projection. A polygon that crosses itself is triangulated all the same, and reported.
 
-use super::{DELAUNAY_FROM, Shape, delaunay, ears, holes};
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::{Shape, delaunay, ears, holes};
 use crate::exact::{Sign, orient2d};
 
 /// How far the triangles can be trusted to tile the polygon.
@@ -21,6 +25,8 @@ pub(crate) enum Tiling {
 /// quadratic: some milliseconds. Larger polygons that cross or touch themselves become fans, so that a file of such polygons
 /// is read in linear time.
 const MOST_EARS: usize = 1000;
+/// From this many corners a Delaunay triangulation takes the place of ear clipping.
+const DELAUNAY_FROM: usize = 100;
 
 /// Working memory for the triangulation of polygons, to be used for many.
 #[derive(Debug, Default)]
@@ -80,7 +86,7 @@ impl FaceTriangulator {
     /// Fills `points` with the corners in the plane, turned so that the polygon runs counter-clockwise.
     fn project(&mut self, positions: &[[f64; 3]], corners: &[u32]) {
         let normal = normal(positions, corners);
-        let [x, y, z] = normal.map(f64::abs);
+        let [x, y, z] = normal.abs().to_array();
         let axis = if x > y && x > z {
             0
         } else if y > z {
@@ -88,12 +94,14 @@ impl FaceTriangulator {
         } else {
             2
         };
-        let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
         self.points.clear();
         self.points.extend(corners.iter().map(|&corner| {
-            let position = &positions[corner as usize];
-            // Adding zero makes one of the two zeros.
-            [position[first] + 0.0, position[second] + 0.0]
+            let [x, y, z] = positions[corner as usize];
+            match axis {
+                0 => [y, z],
+                1 => [z, x],
+                _ => [x, y],
+            }
         }));
         if self.runs_clockwise(normal[axis]) {
             self.points.iter_mut().for_each(|point| point.swap(0, 1));
@@ -104,7 +112,13 @@ impl FaceTriangulator {
     /// else by the sign of its area.
     fn runs_clockwise(&self, area: f64) -> bool {
         let n = self.points.len();
-        let lowest = (0..n).min_by(|&i, &j| compare(self.points[i], self.points[j])).unwrap_or(0);
+        let mut lowest = 0;
+        for (i, p) in self.points.iter().enumerate() {
+            let q = self.points[lowest];
+            if p[0] < q[0] || p[0] == q[0] && p[1] < q[1] {
+                lowest = i;
+            }
+        }
         match self.turn((lowest + n - 1) % n, lowest, (lowest + 1) % n) {
             Sign::Zero => area < 0.0,
             turn => turn == Sign::Negative,
@@ -219,30 +233,26 @@ impl FaceTriangulator {
     }
 }
 
-/// The order of places along the first axis, then the second.
-fn compare(p: [f64; 2], q: [f64; 2]) -> std::cmp::Ordering {
-    p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
+/// The order of places along the first axis, then the second; zero and minus zero are equal.
+fn compare(p: [f64; 2], q: [f64; 2]) -> Ordering {
+    p.partial_cmp(&q).unwrap_or(Ordering::Equal)
 }
 
-/// The direction of a polygon's normal (Newell's sum over a fan), of no particular length.
-fn normal(positions: &[[f64; 3]], corners: &[u32]) -> [f64; 3] {
+/// The direction of a polygon's normal (the sum over a fan of triangles), of no particular length.
+#[inline]
+fn normal(positions: &[[f64; 3]], corners: &[u32]) -> DVec3 {
     /// Between these sizes products of two coordinates neither overflow nor vanish.
     const ORDINARY: std::ops::Range<f64> = 1e-60..1e60;
-    let corner = |i: usize| &positions[corners[i] as usize];
-    let size = (0..corners.len()).flat_map(corner).fold(0.0_f64, |size, x| size.max(x.abs()));
-    let is_ordinary = size == 0.0 || ORDINARY.contains(&size);
+    let corner = |i: usize| DVec3::from_array(positions[corners[i] as usize]);
+    let size = (0..corners.len()).fold(0.0_f64, |size, i| size.max(corner(i).abs().max_element()));
     // Halved, so that differences do not overflow either.
-    let factor = if is_ordinary { 1.0 } else { 0.5 / size.max(f64::MIN_POSITIVE) };
-    let from_first =
-        |i: usize| -> [f64; 3] { std::array::from_fn(|k| corner(i)[k] * factor - corner(0)[k] * factor) };
-    let mut normal = [0.0; 3];
-    let mut edge = [0.0; 3];
+    let factor =
+        if size == 0.0 || ORDINARY.contains(&size) { 1.0 } else { 0.5 / size.max(f64::MIN_POSITIVE) };
+    let origin = corner(0) * factor;
+    let (mut normal, mut edge) = (DVec3::ZERO, DVec3::ZERO);
     for i in 1..corners.len() {
-        let following = from_first(i);
-        for k in 0..3 {
-            let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-            normal[k] += edge[l] * following[m] - edge[m] * following[l];
-        }
+        let following = corner(i) * factor - origin;
+        normal += edge.cross(following);
         edge = following;
     }
     normal
