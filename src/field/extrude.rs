@@ -1,105 +1,43 @@
 //! Solids from contours.
 
-use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
-
 use super::Contours;
+use crate::polygon::{Conflict, fill_region};
+use crate::primitives::{boundary_edges, loft};
 use crate::{Error, Mesh};
 
-/// A contour point in the triangulation, with its number.
-#[derive(Clone, Copy)]
-struct Numbered {
-    place: Point2<f64>,
-    number: u32,
-}
-
-impl HasPosition for Numbered {
-    type Scalar = f64;
-    fn position(&self) -> Point2<f64> {
-        self.place
-    }
-}
-
-/// The closed prism over the region enclosed by `contours` (by parity), from `z = low` to `z = high`.
+/// The closed prism over the region enclosed by `contours` (by parity), from `z = low` to `z = high`. Vertices: the points
+/// of the contours in order at the lower height, then at the upper. O(n log n) for ordinary contours.
 ///
 /// # Errors
-/// [`Error::InvalidArgument`] if `low` is not below `high`, or if polygons cross or touch, or a coordinate is not
-/// finite.
+/// [`Error::InvalidArgument`] if `low` is not below `high`, or if polygons cross or have a point in common, or a
+/// coordinate is not finite.
 pub fn extrude(contours: &Contours, low: f64, high: f64) -> Result<Mesh, Error> {
     if !(low < high && low.is_finite() && high.is_finite()) {
         return Err(Error::InvalidArgument(format!("cannot extrude from {low} to {high}")));
     }
     let points: Vec<[f64; 2]> = contours.loops.concat();
-    let count = points.len() as u32;
-    let mut mesh = Mesh::default();
-    for height in [low, high] {
-        mesh.positions.extend(points.iter().map(|&[x, y]| [x, y, height]));
+    let fault = |what: &str, [x, y]: [f64; 2]| Error::InvalidArgument(format!("{what} at ({x}, {y})"));
+    if let Some(&point) = points.iter().find(|point| point.iter().any(|x| !x.is_finite())) {
+        return Err(fault("a contour has a coordinate that is not finite", point));
     }
-    let caps = triangulate(contours, &points)?;
-    // Which way the region's boundary runs, edge by edge, is what the caps say, not the input's order.
-    let mut sides: Vec<[u32; 2]> = caps.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-    sides.sort_unstable();
-    let boundary: Vec<[u32; 2]> =
-        sides.iter().copied().filter(|&[a, b]| sides.binary_search(&[b, a]).is_err()).collect();
-    for [a, b, c] in caps {
-        mesh.triangles.push([a, c, b]);
-        mesh.triangles.push([a, b, c].map(|vertex| vertex + count));
-    }
-    for [a, b] in boundary {
-        mesh.triangles.push([a, b, b + count]);
-        mesh.triangles.push([a, b + count, a + count]);
-    }
-    Ok(mesh)
+    let triangles = fill_region(&points, sides(contours)).map_err(|conflict| match conflict {
+        Conflict::Place(vertex) => fault("contours touch", points[vertex as usize]),
+        Conflict::Crossing(vertex) => fault("contours cross", points[vertex as usize]),
+    })?;
+    // Which way the region's boundary runs, edge by edge, is what the triangles say, not the input's order.
+    let boundary = boundary_edges(&triangles);
+    let level = |z: f64| points.iter().map(|&[x, y]| [x, y, z]).collect();
+    Ok(loft(&triangles, &boundary, &[level(low), level(high)], false))
 }
 
-/// The region's triangles, counter-clockwise.
-fn triangulate(contours: &Contours, points: &[[f64; 2]]) -> Result<Vec<[u32; 3]>, Error> {
-    let fault = |what: &str, [x, y]: [f64; 2]| Error::InvalidArgument(format!("{what} at ({x}, {y})"));
-    let mut triangulation = ConstrainedDelaunayTriangulation::<Numbered>::new();
-    let mut handles = Vec::with_capacity(points.len());
-    for (number, &[x, y]) in points.iter().enumerate() {
-        // Smaller numbers than the triangulation can tell from zero are zero.
-        let place = spade::mitigate_underflow(Point2::new(x, y));
-        let handle = triangulation
-            .insert(Numbered { place, number: number as u32 })
-            .map_err(|_| fault("a contour has a coordinate that is not usable", [x, y]))?;
-        if handle.index() != number {
-            return Err(fault("contours touch", [x, y]));
-        }
-        handles.push(handle);
-    }
+/// The sides of all polygons, as places in the points of all counted through.
+fn sides(contours: &Contours) -> impl Iterator<Item = [u32; 2]> {
     let mut first = 0;
-    for polygon in &contours.loops {
-        for k in 0..polygon.len() {
-            let (a, b) = (handles[first + k], handles[first + (k + 1) % polygon.len()]);
-            if triangulation.can_add_constraint(a, b) {
-                triangulation.add_constraint(a, b);
-            } else {
-                return Err(fault("contours cross", polygon[k]));
-            }
-        }
-        first += polygon.len();
-    }
-    // From outside inward: every constraint passed changes the side.
-    let mut inside: Vec<Option<bool>> = vec![None; triangulation.num_all_faces()];
-    inside[triangulation.outer_face().fix().index()] = Some(false);
-    let mut stack: Vec<_> =
-        triangulation.convex_hull().map(|edge| (edge.rev(), edge.is_constraint_edge())).collect();
-    while let Some((edge, side)) = stack.pop() {
-        let Some(face) = edge.face().as_inner() else { continue };
-        let known = &mut inside[face.fix().index()];
-        if known.is_some() {
-            continue;
-        }
-        *known = Some(side);
-        for edge in face.adjacent_edges() {
-            stack.push((edge.rev(), side != edge.is_constraint_edge()));
-        }
-    }
-    Ok(triangulation
-        .inner_faces()
-        .filter(|face| inside[face.fix().index()] == Some(true))
-        .map(|face| face.vertices().map(|vertex| vertex.data().number))
-        .collect())
+    contours.loops.iter().flat_map(move |points| {
+        let (start, count) = (first, points.len() as u32);
+        first += count;
+        (0..count).map(move |step| [start + step, start + (step + 1) % count])
+    })
 }
 
 #[cfg(test)]
@@ -125,11 +63,22 @@ mod tests {
     }
 
     #[test]
+    fn any_magnitude_will_do() {
+        for scale in [1e-300, 1e-60, 1e60, 1e300] {
+            let loops = [2.0, 1.0].map(|half| square(half * scale)).to_vec();
+            let mesh = extrude(&Contours { loops }, 0.0, scale).expect("a frame");
+            assert_eq!((mesh.positions.len(), mesh.triangles.len()), (16, 32), "{scale}");
+        }
+    }
+
+    #[test]
     fn crossing_and_touching_contours_are_refused() {
         let bow = vec![[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]];
         assert!(extrude(&Contours { loops: vec![bow] }, 0.0, 1.0).is_err());
         let twice = Contours { loops: vec![square(1.0), square(1.0)] };
         assert!(extrude(&twice, 0.0, 1.0).is_err());
         assert!(extrude(&Contours { loops: vec![square(1.0)] }, 1.0, 1.0).is_err());
+        let unbounded = vec![[0.0, 0.0], [f64::INFINITY, 0.0], [0.0, 1.0]];
+        assert!(extrude(&Contours { loops: vec![unbounded] }, 0.0, 1.0).is_err());
     }
 }

@@ -1,8 +1,8 @@
 //! The faces of a file in order, and the triangles they become.
 
 use super::notes::Notes;
-use super::polygon::{Tiling, Triangulator};
 use super::{Format, malformed};
+use crate::polygon::{FaceTriangulator, Tiling};
 use crate::{Control, Error};
 
 /// Faces as the file gives them: triangles at once, larger polygons kept aside until all positions are known.
@@ -147,7 +147,7 @@ impl FaceList {
         let count = self.triangles.len() + self.corners.len() - 2 * self.polygons.len();
         let mut triangles = Vec::with_capacity(count);
         let mut offsets = Vec::with_capacity(places.len());
-        let mut triangulator = Triangulator::default();
+        let mut triangulator = FaceTriangulator::default();
         let (mut taken, mut improper) = (0, 0);
         let mut places = places.iter().peekable();
         let end = self.end();

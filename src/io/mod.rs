@@ -34,7 +34,6 @@ mod obj;
 mod off;
 mod options;
 mod ply;
-mod polygon;
 mod precision;
 mod scan;
 mod stl;

@@ -1,10 +1,23 @@
-//! Constrained Delaunay triangulation: of big polygons, and between edges by winding number.
+//! Constrained Delaunay triangulation: of large polygons, of regions, and between edges by winding number. Everything that
+//! is set up for `spade` is set up here.
 
 use rustc_hash::FxHashMap;
-use spade::handles::FixedVertexHandle;
-use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
+use spade::handles::{DirectedEdgeHandle, FixedVertexHandle};
+use spade::{CdtEdge, ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 use super::winding::{CountedEdge, CountedTriangle};
+
+/// Why edges are not all edges of one triangulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Conflict {
+    /// The vertex is where another one is, or differs from it by less than 2^-78 of the largest coordinate; or a coordinate
+    /// is not finite.
+    Place(u32),
+    /// An edge that starts at the vertex crosses another edge.
+    Crossing(u32),
+}
+
+type Result<T> = std::result::Result<T, Conflict>;
 
 /// A vertex that remembers its index.
 struct Vertex {
@@ -19,114 +32,200 @@ impl HasPosition for Vertex {
     }
 }
 
-/// Appends a triangulation of the region to the left of the rings and returns true; or returns false and appends nothing
-/// where the shape does not allow one (coincident projections, crossing edges, a coordinate out of range).
-pub(super) fn triangulate(points: &[[f64; 2]], rings: &[&[u32]], triangles: &mut Vec<[u32; 3]>) -> bool {
-    attempt(points, rings).is_some_and(|found| {
-        triangles.extend(found);
-        true
-    })
+type Delaunay = ConstrainedDelaunayTriangulation<Vertex>;
+type Edge<'a> = DirectedEdgeHandle<'a, Vertex, (), CdtEdge<()>, ()>;
+
+/// The power of two by which coordinates are multiplied, the largest of which is `largest`: `spade` takes none above 2^201 and
+/// none but zero below 2^-142, since it multiplies four of them. Between 2^-64 and 2^200 they are left as they are; others
+/// are brought near 1.
+fn scale_to_range(largest: f64) -> f64 {
+    const LOW: f64 = f64::from_bits((1023 - 64) << 52);
+    const HIGH: f64 = f64::from_bits((1023 + 200) << 52);
+    const EXPONENT_BITS: u64 = 0x7ff << 52;
+    if largest == 0.0 || (LOW..=HIGH).contains(&largest) {
+        return 1.0;
+    }
+    f64::from_bits((1.0 / largest).clamp(f64::MIN_POSITIVE, f64::MAX).to_bits() & EXPONENT_BITS)
 }
 
-fn attempt(points: &[[f64; 2]], rings: &[&[u32]]) -> Option<Vec<[u32; 3]>> {
+/// Vertices within the range of `spade`. What is too small for it becomes zero: less than 2^-78 of the largest coordinate,
+/// whose unit in the last place is 2^-53 of it or more.
+fn vertices_in_range(points: &[[f64; 2]], indices: impl Iterator<Item = u32> + Clone) -> Vec<Vertex> {
+    let coordinates = indices.clone().flat_map(|index| points[index as usize]);
+    let scale = scale_to_range(coordinates.fold(0.0f64, |largest, x| largest.max(x.abs())));
+    let coordinate = |x: f64| {
+        let scaled = x * scale;
+        if scaled.abs() < spade::MIN_ALLOWED_VALUE { 0.0 } else { scaled }
+    };
+    indices
+        .map(|index| {
+            let [x, y] = points[index as usize].map(coordinate);
+            Vertex { position: Point2::new(x, y), index }
+        })
+        .collect()
+}
+
+/// Triangles over the region that closed contours enclose by parity, in no particular order, each counter-clockwise.
+/// Contours may touch in a vertex that lies on an edge, but not cross. O(n log n) for ordinary contours.
+///
+/// Where points lie on one circle the choice of diagonals depends on the order of points and edges.
+pub(crate) fn fill_region(
+    points: &[[f64; 2]],
+    edges: impl Iterator<Item = [u32; 2]>,
+) -> Result<Vec<[u32; 3]>> {
+    let edges = edges.map(|edge| edge.map(|end| end as usize)).collect();
+    let mut crossing = None;
+    let loaded =
+        Delaunay::try_bulk_load_cdt(vertices_in_range(points, 0..points.len() as u32), edges, |edge| {
+            crossing = crossing.or(Some(edge[0] as u32));
+        });
+    let triangulation = loaded.map_err(|_| Conflict::Place(0))?;
+    if triangulation.num_vertices() != points.len() {
+        return Err(Conflict::Place(missing_vertex(&triangulation, points.len())));
+    }
+    if let Some(vertex) = crossing {
+        return Err(Conflict::Crossing(vertex));
+    }
+    let is_inside = flood(&triangulation, false, |side, edge| side != edge.is_constraint_edge());
+    // Not every vertex has an even number of edges: two contours have one in common.
+    let is_inside = is_inside.ok_or(Conflict::Crossing(0))?;
+    let inside = triangulation.inner_faces().filter(|face| is_inside[face.fix().index()]);
+    Ok(inside.map(|face| face.vertices().map(|vertex| vertex.data().index)).collect())
+}
+
+/// The first of `count` vertices that a triangulation does not have.
+fn missing_vertex(triangulation: &Delaunay, count: usize) -> u32 {
+    let mut is_there = vec![false; count];
+    triangulation.vertices().for_each(|vertex| is_there[vertex.data().index as usize] = true);
+    is_there.iter().position(|&there| !there).unwrap_or(0) as u32
+}
+
+/// Appends a triangulation of the region to the left of the rings and returns true; or returns false and appends nothing
+/// where the shape does not allow one (coincident projections, crossing edges, a coordinate out of range).
+pub(super) fn triangulate_rings(
+    points: &[[f64; 2]],
+    rings: &[&[u32]],
+    triangles: &mut Vec<[u32; 3]>,
+) -> bool {
     let mut corners = 0;
     let mut edges = Vec::new();
     for ring in rings {
         corners += ring.len();
         edges.extend((0..ring.len()).map(|i| ([ring[i], ring[(i + 1) % ring.len()]], 1)));
     }
-    let found = between(points, &edges)?;
+    let Ok(found) = triangulate_between(points, &edges) else { return false };
     // Complete: the count of Euler's formula for one outline (vertices visited twice count twice).
-    (found.len() + 4 == corners + 2 * rings.len() && found.iter().all(|&(_, winding)| winding == 1))
-        .then(|| found.into_iter().map(|(triangle, _)| triangle).collect())
+    let is_complete = found.len() + 4 == corners + 2 * rings.len();
+    let is_whole = is_complete && found.iter().all(|&(_, winding)| winding == 1);
+    if is_whole {
+        triangles.extend(found.into_iter().map(|(triangle, _)| triangle));
+    }
+    is_whole
 }
 
+/// How often edges count from their lower vertex to their higher one, if not 0 times.
+type Counts = FxHashMap<(u32, u32), i32>;
+
 /// Triangulates the plane between edges that each count a number of times, and returns the counter-clockwise triangles
-/// round which they wind, with the winding number. `None` where the triangulation does not hold every edge as it is.
-pub(super) fn between(points: &[[f64; 2]], edges: &[CountedEdge]) -> Option<Vec<CountedTriangle>> {
-    // How often an edge counts from its lower vertex to its higher one.
-    let mut counts: FxHashMap<(u32, u32), i32> = FxHashMap::default();
+/// round which they wind, with the winding number. The triangulation holds every edge as it is, or there is a conflict.
+pub(super) fn triangulate_between(
+    points: &[[f64; 2]],
+    edges: &[CountedEdge],
+) -> Result<Vec<CountedTriangle>> {
+    // 1. What each edge counts in sum.
+    let counts = sum_counts(edges)?;
+    let mut constraints: Vec<(u32, u32)> = counts.keys().copied().collect();
+    constraints.sort_unstable();
+    // 2. Their ends first: loading vertices and edges at once would depend on the order of a hash set where points lie on
+    // one circle.
+    let (mut triangulation, handles) = load_ends(points, &constraints)?;
+    // 3. Then the edges, in order.
+    for &(u, v) in &constraints {
+        if triangulation.try_add_constraint(handles[&u], handles[&v]).is_empty() {
+            return Err(Conflict::Crossing(u));
+        }
+    }
+    // 4. From outside, where the winding number is 0; an edge passed from its right to its left adds its count.
+    let mut seen = 0;
+    let windings = flood(&triangulation, 0, |winding, edge| {
+        let (from, to) = (edge.from().data().index, edge.to().data().index);
+        let count = counts.get(&(from.min(to), from.max(to))).copied().unwrap_or(0);
+        seen += usize::from(count != 0);
+        // What lies to the left of an edge winds once more than what lies to its right.
+        winding - if from < to { count } else { -count }
+    });
+    // Every edge is passed from both sides, unless it runs through a vertex that is not its end.
+    let windings = windings.filter(|_| seen == 2 * counts.len()).ok_or(Conflict::Crossing(0))?;
+    let wound = triangulation.inner_faces().filter(|face| windings[face.fix().index()] != 0);
+    Ok(wound
+        .map(|face| (face.vertices().map(|vertex| vertex.data().index), windings[face.fix().index()]))
+        .collect())
+}
+
+fn sum_counts(edges: &[CountedEdge]) -> Result<Counts> {
+    let mut counts = Counts::default();
     for &([u, v], count) in edges {
         if u == v {
-            return None;
+            return Err(Conflict::Place(u));
         }
         *counts.entry((u.min(v), u.max(v))).or_default() += if u < v { count } else { -count };
     }
     counts.retain(|_, count| *count != 0);
-    let mut constraints: Vec<(u32, u32)> = counts.keys().copied().collect();
-    constraints.sort_unstable();
-    let mut indices: Vec<u32> = constraints.iter().flat_map(|&(u, v)| [u, v]).collect();
-    indices.sort_unstable();
-    indices.dedup();
-    let place = |v: u32| indices.binary_search(&v).expect("collected above");
-    // Spade takes nothing but zero below 2^-142; such a difference is far below an ulp of the polygon's size.
-    let vertices: Vec<Vertex> = indices
-        .iter()
-        .map(|&index| {
-            let [x, y] = points[index as usize].map(|x| if x.abs() < 1e-42 { 0.0 } else { x });
-            Vertex { position: Point2::new(x, y), index }
-        })
-        .collect();
-    let count = vertices.len();
-    // Loading vertices and edges at once would depend on the order of a hash set where points lie on one circle.
-    let mut triangulation = ConstrainedDelaunayTriangulation::<Vertex>::bulk_load(vertices).ok()?;
-    if triangulation.num_vertices() != count {
-        return None;
+    Ok(counts)
+}
+
+/// The triangulation of the ends of some edges, and their handles in it.
+fn load_ends(
+    points: &[[f64; 2]],
+    edges: &[(u32, u32)],
+) -> Result<(Delaunay, FxHashMap<u32, FixedVertexHandle>)> {
+    let mut ends: Vec<u32> = edges.iter().flat_map(|&(u, v)| [u, v]).collect();
+    ends.sort_unstable();
+    ends.dedup();
+    let vertices = vertices_in_range(points, ends.iter().copied());
+    let first = ends.first().copied().unwrap_or(0);
+    let triangulation = Delaunay::bulk_load(vertices).map_err(|_| Conflict::Place(first))?;
+    if triangulation.num_vertices() != ends.len() {
+        return Err(Conflict::Place(first));
     }
-    let mut handles: Vec<Option<FixedVertexHandle>> = vec![None; count];
-    for vertex in triangulation.vertices() {
-        handles[place(vertex.data().index)] = Some(vertex.fix());
-    }
-    for &(u, v) in &constraints {
-        let (from, to) = handles[place(u)].zip(handles[place(v)])?;
-        if triangulation.try_add_constraint(from, to).is_empty() {
-            return None;
-        }
-    }
-    // Flood from outside, where the winding number is 0; an edge passed from its right to its left adds its count.
-    let mut winding: Vec<Option<i32>> = vec![None; triangulation.num_all_faces()];
+    let handles = triangulation.vertices().map(|vertex| (vertex.data().index, vertex.fix())).collect();
+    Ok((triangulation, handles))
+}
+
+/// A value for every face by index, from that of the outer one inwards: `pass` gives the value beyond an edge of a face, which
+/// is directed so that the face is to its left. `None` where two ways lead to different values.
+fn flood<T: Copy + PartialEq>(
+    triangulation: &Delaunay,
+    outside: T,
+    mut pass: impl FnMut(T, Edge<'_>) -> T,
+) -> Option<Vec<T>> {
+    let mut values: Vec<Option<T>> = vec![None; triangulation.num_all_faces()];
     let outer = triangulation.outer_face();
-    winding[outer.index()] = Some(0);
+    values[outer.fix().index()] = Some(outside);
     let mut stack = vec![outer.fix()];
-    let mut seen = 0;
     while let Some(face) = stack.pop() {
-        let here = winding[face.index()]?;
-        // Every edge once from each side, with its face to the left.
-        let around: Vec<_> = match triangulation.face(face).as_inner() {
+        let here = values[face.index()]?;
+        // Every edge once from each side.
+        let around: Vec<Edge<'_>> = match triangulation.face(face).as_inner() {
             Some(inner) => inner.adjacent_edges().to_vec(),
-            None => triangulation.convex_hull().map(|edge| edge.rev()).collect(),
+            None => triangulation.convex_hull().collect(),
         };
         for edge in around {
             let edge = if edge.face().fix() == face { edge } else { edge.rev() };
-            let (from, to) = (edge.from().data().index, edge.to().data().index);
-            let count = counts.get(&(from.min(to), from.max(to))).copied().unwrap_or(0);
-            seen += usize::from(count != 0);
-            // What lies to the left of an edge winds once more than what lies to its right.
-            let there = here - if from < to { count } else { -count };
+            let beyond = pass(here, edge);
             let other = edge.rev().face().fix();
-            match winding[other.index()] {
+            match values[other.index()] {
                 None => {
-                    winding[other.index()] = Some(there);
+                    values[other.index()] = Some(beyond);
                     stack.push(other);
                 }
-                Some(known) if known != there => return None,
+                Some(known) if known != beyond => return None,
                 Some(_) => {}
             }
         }
     }
-    if seen != 2 * counts.len() {
-        // Some edge runs through a vertex that is not its end.
-        return None;
-    }
-    Some(
-        triangulation
-            .inner_faces()
-            .filter_map(|face| {
-                let winding = winding[face.fix().index()].filter(|&winding| winding != 0)?;
-                Some((face.vertices().map(|vertex| vertex.data().index), winding))
-            })
-            .collect(),
-    )
+    // Every face is reached.
+    values.into_iter().collect()
 }
 
 #[cfg(test)]
@@ -158,10 +257,10 @@ mod tests {
                     edges.extend([[a, b], [b, c], [c, d], [d, a]].map(|edge| (edge, 1)));
                 }
             }
-            let first = between(&points, &edges);
-            assert!(edges.is_empty() || first.is_some(), "no edges cross");
+            let first = triangulate_between(&points, &edges);
+            assert!(edges.is_empty() || first.is_ok(), "no edges cross");
             for _ in 0..3 {
-                assert_eq!(between(&points, &edges), first);
+                assert_eq!(triangulate_between(&points, &edges), first);
             }
         }
     }

@@ -50,62 +50,88 @@ pub(super) struct EarClipper {
 }
 
 impl EarClipper {
-    /// Triangulates a closed loop into `n - 2` triangles that use each of its edges once. Where no ear is left, a corner
-    /// without area is cut off (the shape stays what it is), and only then the least bad one.
+    /// Triangulates a closed loop into triangles that use each of its edges once: `n - 2`, less those that name a vertex
+    /// twice. Where no ear is left, a corner without area is cut off (the shape stays what it is), and only then the least
+    /// bad one. At least quadratic in the number of corners.
     pub(super) fn clip(
         &mut self,
         points: &[[f64; 2]],
         polygon: &[u32],
         triangles: &mut Vec<[u32; 3]>,
     ) -> Shape {
+        self.clip_places(points, polygon, |places| {
+            let [a, b, c] = places.map(|place| polygon[place as usize]);
+            // Cutting off a spike, or a vertex between two equal ones, leaves nothing behind.
+            if a != b && b != c && c != a {
+                triangles.push([a, b, c]);
+            }
+        })
+    }
+
+    /// The same with all `n - 2` triangles, given to `emit` as places in `polygon`.
+    pub(super) fn clip_places(
+        &mut self,
+        points: &[[f64; 2]],
+        polygon: &[u32],
+        mut emit: impl FnMut([u32; 3]),
+    ) -> Shape {
         let n = polygon.len();
         if n < 3 {
             return Shape::Sound;
         }
-        if n == 4 && quadrilateral(points, polygon, triangles) {
+        if n == 4
+            && let Some(pair) = split_quadrilateral(points, polygon)
+        {
+            pair.into_iter().for_each(emit);
             return Shape::Sound;
         }
         self.start(points, polygon);
         let mut shape = Shape::Sound;
         let mut some = 0;
         for left in (3..=n).rev() {
-            let ear = if left == 3 {
-                shape = shape.max(shape_of(points, self.corners(some)));
-                some
-            } else if let Some(ear) = self.spike(points, some, left) {
-                shape = shape.max(Shape::Flat);
-                ear
-            } else if let Some(ear) = self.best_ear(points, some, left) {
-                ear
-            } else if let Some(ear) = self.flat_corner(points, some, left) {
-                shape = shape.max(Shape::Flat);
-                ear
-            } else {
-                shape = Shape::Folded;
-                self.least_bad(points, some, left)
-            };
-            let Link { vertex, previous, next, .. } = self.links[ear as usize];
-            let (before, after) = (self.links[previous as usize].vertex, self.links[next as usize].vertex);
-            // Cutting off a spike, or a vertex between two equal ones, leaves nothing behind.
-            if before != vertex && vertex != after && after != before {
-                triangles.push([before, vertex, after]);
-            }
+            let (ear, shape_of_ear) = self.choose(points, some, left);
+            shape = shape.max(shape_of_ear);
+            let Link { previous, next, .. } = self.links[ear as usize];
+            emit([previous, ear, next]);
             self.links[previous as usize].next = next;
             self.links[next as usize].previous = previous;
             some = next;
             if left > 3 {
-                for link in [previous, next] {
-                    self.links[link as usize].quality = self.quality(points, link);
-                    self.links[link as usize].blocked_by = NOTHING;
-                }
-                for link in &mut self.links {
-                    if [ear, SOMETHING].contains(&link.blocked_by) {
-                        link.blocked_by = NOTHING;
-                    }
-                }
+                self.update_around(points, ear);
             }
         }
         shape
+    }
+
+    /// The corner to clip of the `left` from `some` on, and how sound that is.
+    fn choose(&mut self, points: &[[f64; 2]], some: u32, left: usize) -> (u32, Shape) {
+        if left == 3 {
+            return (some, shape_of(points, self.corners(some)));
+        }
+        if let Some(spike) = self.spike(points, some, left) {
+            return (spike, Shape::Flat);
+        }
+        if let Some(ear) = self.best_ear(points, some, left) {
+            return (ear, Shape::Sound);
+        }
+        if let Some(flat) = self.flat_corner(points, some, left) {
+            return (flat, Shape::Flat);
+        }
+        (self.least_bad(points, some, left), Shape::Folded)
+    }
+
+    /// Brings what is known of the corners up to date after `ear` was clipped.
+    fn update_around(&mut self, points: &[[f64; 2]], ear: u32) {
+        let Link { previous, next, .. } = self.links[ear as usize];
+        for link in [previous, next] {
+            self.links[link as usize].quality = self.quality(points, link);
+            self.links[link as usize].blocked_by = NOTHING;
+        }
+        for link in &mut self.links {
+            if [ear, SOMETHING].contains(&link.blocked_by) {
+                link.blocked_by = NOTHING;
+            }
+        }
     }
 
     fn start(&mut self, points: &[[f64; 2]], polygon: &[u32]) {
@@ -254,24 +280,22 @@ impl EarClipper {
     }
 }
 
-/// A quadrilateral by its better diagonal, if one works.
-fn quadrilateral(points: &[[f64; 2]], polygon: &[u32], triangles: &mut Vec<[u32; 3]>) -> bool {
-    let [a, b, c, d] = [polygon[0], polygon[1], polygon[2], polygon[3]];
-    if a == c || b == d {
-        return false;
+/// The places of the two triangles that the better diagonal of a quadrilateral makes, if one works.
+fn split_quadrilateral(points: &[[f64; 2]], polygon: &[u32]) -> Option<[[u32; 3]; 2]> {
+    if polygon[0] == polygon[2] || polygon[1] == polygon[3] {
+        return None;
     }
     let worst = |pair: [[u32; 3]; 2]| {
-        let quality = pair.map(|t| {
-            let [p, q, r] = t.map(|v| points[v as usize]);
+        let quality = pair.map(|places| {
+            let [p, q, r] = places.map(|place| points[polygon[place as usize] as usize]);
             if orient2d(p, q, r) == Sign::Positive { triangle_quality(p, q, r).max(0.0) } else { -1.0 }
         });
         quality[0].min(quality[1])
     };
-    let (first, second) = ([[a, b, c], [a, c, d]], [[a, b, d], [b, c, d]]);
+    let (first, second) = ([[0, 1, 2], [0, 2, 3]], [[0, 1, 3], [1, 2, 3]]);
     let (quality_first, quality_second) = (worst(first), worst(second));
     if quality_first.max(quality_second) < 0.0 {
-        return false;
+        return None;
     }
-    triangles.extend(if quality_first >= quality_second { first } else { second });
-    true
+    Some(if quality_first >= quality_second { first } else { second })
 }

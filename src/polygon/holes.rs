@@ -155,7 +155,7 @@ fn sight_line(
 }
 
 /// Whether the way from `here` to `target` starts strictly inside, to the left of `before -> here -> after`.
-fn in_cone(before: [f64; 2], here: [f64; 2], after: [f64; 2], target: [f64; 2]) -> bool {
+pub(super) fn in_cone(before: [f64; 2], here: [f64; 2], after: [f64; 2], target: [f64; 2]) -> bool {
     let left_of_out = orient2d(here, after, target) == Sign::Positive;
     let left_of_in = orient2d(before, here, target) == Sign::Positive;
     if orient2d(before, here, after) == Sign::Positive {

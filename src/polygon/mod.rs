@@ -7,10 +7,13 @@
 
 mod delaunay;
 mod ears;
+mod face;
 mod holes;
 mod loops;
 mod winding;
 
+pub(crate) use delaunay::{Conflict, fill_region};
+pub(crate) use face::{FaceTriangulator, Tiling};
 pub(crate) use winding::{Edge, Found, by_winding, cross_properly};
 
 /// From this many vertices a constrained Delaunay triangulation replaces ear clipping.
@@ -87,7 +90,7 @@ impl Triangulator {
         let boundary = self.tracer.trace(points, edges);
         let is_sound = holes::group(points, boundary).iter().all(|polygon| {
             if polygon.len() >= DELAUNAY_FROM {
-                return delaunay::triangulate(points, &polygon.rings(), triangles);
+                return delaunay::triangulate_rings(points, &polygon.rings(), triangles);
             }
             self.with_holes(points, polygon, triangles) == Shape::Sound
         });
@@ -104,7 +107,7 @@ impl Triangulator {
         polygon: &[u32],
         triangles: &mut Vec<[u32; 3]>,
     ) -> Shape {
-        if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate(points, &[polygon], triangles) {
+        if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate_rings(points, &[polygon], triangles) {
             return Shape::Sound;
         }
         self.ears.clip(points, polygon, triangles)
@@ -119,7 +122,8 @@ impl Triangulator {
         if polygon.holes.is_empty() {
             return self.simple(points, &polygon.outer, triangles);
         }
-        if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate(points, &polygon.rings(), triangles) {
+        if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate_rings(points, &polygon.rings(), triangles)
+        {
             return Shape::Sound;
         }
         match holes::bridge(points, polygon) {

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::delaunay::between;
+use super::delaunay::triangulate_between;
 use crate::exact::{Sign, orient2d};
 
 /// A directed edge, or a counter-clockwise triangle, and how often it counts.
@@ -54,7 +54,7 @@ pub(crate) fn by_winding(
     let mut edges = summed(&edges);
     for _ in 0..ROUNDS {
         let counted: Vec<CountedEdge> = edges.iter().map(|edge| (edge.ends, edge.count)).collect();
-        if let Some(triangles) = between(points, &counted) {
+        if let Ok(triangles) = triangulate_between(points, &counted) {
             return Some(Found { triangles, slivers });
         }
         let before = slivers.len();

@@ -1,7 +1,7 @@
 //! Prisms over plane polygons.
 
 use super::polygon::Polygon;
-use super::{check_length, invalid};
+use super::{check_length, invalid, loft};
 use crate::{Error, Mesh};
 
 /// The prism over a plane polygon, from z = 0 to `height`. The polygon may be concave and have holes.
@@ -30,21 +30,15 @@ pub fn extrusion(outer: &[[f64; 2]], holes: &[&[[f64; 2]]], height: f64) -> Resu
     super::check_size("extrusion", 4 * points as u128)?;
     let polygon = Polygon::new(outer, holes).or_else(|what| invalid(format!("extrusion: {what}")))?;
     let faces = polygon.triangles().or_else(|what| invalid(format!("extrusion: {what}")))?;
-    let level = |z: f64| polygon.rings().iter().flatten().map(move |&[x, y]| [x, y, z]);
-    let positions: Vec<[f64; 3]> = level(0.0).chain(level(height)).collect();
-    let up = positions.len() as u32 / 2;
-    let mut triangles: Vec<[u32; 3]> = faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
-    triangles.extend(faces.iter().map(|face| face.map(|corner| corner + up)));
-    let mut first = 0;
-    for ring in polygon.rings() {
-        let count = ring.len() as u32;
-        for step in 0..count {
-            let (a, b) = (first + step, first + (step + 1) % count);
-            triangles.extend([[a, b, b + up], [a, b + up, a + up]]);
-        }
-        first += count;
+    let level = |z: f64| polygon.rings().iter().flatten().map(move |&[x, y]| [x, y, z]).collect();
+    let mut mesh = loft(&faces, &polygon.sides(), &[level(0.0), level(height)], false);
+    // The bottom first, then the top.
+    let (bottom, top): (Vec<_>, Vec<_>) =
+        mesh.triangles[..2 * faces.len()].chunks_exact(2).map(|pair| (pair[0], pair[1])).unzip();
+    for (place, triangle) in mesh.triangles.iter_mut().zip(bottom.into_iter().chain(top)) {
+        *place = triangle;
     }
-    Ok(Mesh::new(positions, triangles))
+    Ok(mesh)
 }
 
 #[cfg(test)]

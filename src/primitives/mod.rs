@@ -14,12 +14,14 @@
 //! ```
 
 mod extrusion;
+mod loft;
 mod polygon;
 mod polyhedra;
 mod round;
 mod sphere;
 
 pub use extrusion::extrusion;
+pub(crate) use loft::{boundary_edges, loft};
 pub use polyhedra::{cuboid, octahedron, tetrahedron};
 pub use round::{cone, cylinder, frustum, torus};
 pub use sphere::{geodesic_sphere, icosphere, uv_sphere};

@@ -1,10 +1,7 @@
 //! Plane polygons with holes: whether they are simple, and triangles over them.
 
-use robust::{Coord, orient2d};
-use rustc_hash::{FxHashMap, FxHashSet};
-use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
-
-use crate::mesh::scale;
+use crate::exact::{Sign, orient2d};
+use crate::polygon;
 
 /// The rings of a polygon: the outer one counter-clockwise, then the holes, clockwise. They neither cross nor touch
 /// themselves or each other, and the holes lie in the outer ring and not in each other.
@@ -57,91 +54,33 @@ impl Polygon {
         &self.rings
     }
 
+    /// The sides of all rings, as places in the points of all rings counted through.
+    pub(super) fn sides(&self) -> Vec<[u32; 2]> {
+        let mut sides = Vec::new();
+        for ring in &self.rings {
+            let (first, count) = (sides.len() as u32, ring.len() as u32);
+            sides.extend((0..count).map(|step| [first + step, first + (step + 1) % count]));
+        }
+        sides
+    }
+
     /// A constrained Delaunay triangulation without further points: counter-clockwise triangles over the points of
     /// all rings counted through. v points and h holes make v + 2h - 2 triangles.
     ///
     /// # Errors
-    /// If coordinates differ so much in magnitude (2^140) that the predicates lose exactness.
+    /// If coordinates differ so much in magnitude (2^78) that some cannot be told apart.
     pub(super) fn triangles(&self) -> Result<Vec<[u32; 3]>, String> {
-        let largest = self.rings.iter().flatten().flatten().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        // A power of two changes no sign and keeps within the magnitudes the triangulation takes.
-        let factor = scale::power_of_two(-scale::exponent(largest).clamp(-1000, 1000));
-        let points = self
-            .rings
-            .iter()
-            .flatten()
-            .zip(0..)
-            .map(|(&[x, y], index)| Numbered { place: Point2::new(x * factor, y * factor), index });
-        let points: Vec<Numbered> = points.collect();
-        let mut sides = Vec::new();
-        let mut first = 0;
-        for ring in &self.rings {
-            let next = |step: usize| first + (step + 1) % ring.len();
-            sides.extend((0..ring.len()).map(|step| [first + step, next(step)]));
-            first += ring.len();
-        }
-        let inner_boundary: FxHashSet<[u32; 2]> =
-            sides.iter().map(|side| side.map(|end| end as u32)).collect();
-        let count = points.len();
-        let mut conflicts = 0;
-        let triangulation =
-            ConstrainedDelaunayTriangulation::<Numbered>::try_bulk_load_cdt(points, sides, |_| {
-                conflicts += 1;
-            })
-            .map_err(|error| format!("coordinates differ too much in magnitude: {error}"))?;
-        let faces: Vec<[u32; 3]> = triangulation
-            .inner_faces()
-            .map(|face| face.vertices().map(|vertex| vertex.data().index))
-            .collect();
-        let mut by_side: FxHashMap<[u32; 2], usize> = FxHashMap::default();
-        for (face, corners) in faces.iter().enumerate() {
-            by_side.extend(sides_of(corners).map(|side| (side, face)));
-        }
-        // The faces to the left of the rings are inside, and so are those reached without crossing a ring.
-        let mut inside = vec![false; faces.len()];
-        let mut reached: Vec<usize> =
-            inner_boundary.iter().filter_map(|side| by_side.get(side).copied()).collect();
-        while let Some(face) = reached.pop() {
-            if std::mem::replace(&mut inside[face], true) {
-                continue;
-            }
-            let inner = sides_of(&faces[face]).into_iter().filter(|side| !inner_boundary.contains(side));
-            reached.extend(inner.filter_map(|[from, to]| by_side.get(&[to, from]).copied()));
-        }
-        let triangles: Vec<[u32; 3]> =
-            faces.into_iter().zip(inside).filter(|&(_, inside)| inside).map(|(face, _)| face).collect();
-        if conflicts > 0 || triangles.len() != count + 2 * (self.rings.len() - 1) - 2 {
-            return Err("coordinates differ too much in magnitude".into());
-        }
-        Ok(triangles)
+        let points = self.rings.concat();
+        let expected = points.len() + 2 * (self.rings.len() - 1) - 2;
+        polygon::fill_region(&points, self.sides().into_iter())
+            .ok()
+            .filter(|triangles| triangles.len() == expected)
+            .ok_or_else(|| "coordinates differ too much in magnitude".into())
     }
-}
-
-fn sides_of(&[a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
 }
 
 fn ring_name(index: usize) -> String {
     if index == 0 { "the outer ring".into() } else { format!("hole {}", index - 1) }
-}
-
-struct Numbered {
-    place: Point2<f64>,
-    index: u32,
-}
-
-impl HasPosition for Numbered {
-    type Scalar = f64;
-
-    fn position(&self) -> Point2<f64> {
-        self.place
-    }
-}
-
-/// The side of the line from `a` to `b` that `c` is on: positive for left.
-fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
-    let coord = |p: [f64; 2]| Coord { x: p[0], y: p[1] };
-    orient2d(coord(a), coord(b), coord(c))
 }
 
 /// A side of a ring.
@@ -175,12 +114,12 @@ impl Side {
                 (a[axis] < corner[axis] && b[axis] < corner[axis])
                     || (a[axis] > corner[axis] && b[axis] > corner[axis])
             });
-            return turn(a, corner, b) == 0.0 && same_direction;
+            return orient2d(a, corner, b) == Sign::Zero && same_direction;
         }
         // Closed segments whose boxes overlap meet iff neither lies strictly to one side of the other's line.
         let strictly_beside = |line: &Self, side: &Self| {
-            let (a, b) = (turn(line.from, line.to, side.from), turn(line.from, line.to, side.to));
-            (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
+            let beside = orient2d(line.from, line.to, side.from);
+            beside != Sign::Zero && beside == orient2d(line.from, line.to, side.to)
         };
         !strictly_beside(self, other) && !strictly_beside(other, self)
     }
@@ -218,7 +157,7 @@ fn is_inside(ring: &[[f64; 2]], point: [f64; 2]) -> bool {
     for (step, &a) in ring.iter().enumerate() {
         let b = ring[(step + 1) % ring.len()];
         let (low, high) = if a[1] <= b[1] { (a, b) } else { (b, a) };
-        inside ^= low[1] <= point[1] && point[1] < high[1] && turn(low, high, point) > 0.0;
+        inside ^= low[1] <= point[1] && point[1] < high[1] && orient2d(low, high, point) == Sign::Positive;
     }
     inside
 }
@@ -232,5 +171,6 @@ fn is_counter_clockwise(ring: &[[f64; 2]]) -> bool {
         }
     }
     let count = ring.len();
-    turn(ring[(corner + count - 1) % count], ring[corner], ring[(corner + 1) % count]) > 0.0
+    let [before, after] = [count - 1, 1].map(|step| ring[(corner + step) % count]);
+    orient2d(before, ring[corner], after) == Sign::Positive
 }

@@ -5,7 +5,7 @@ use crate::parametric::curve::arc::cos_sin;
 use crate::parametric::error::{GeometryError, Result, check_points, check_positive};
 use crate::parametric::numeric::vector::{self, Point};
 use crate::parametric::region::polygons::Polygons;
-use crate::parametric::region::triangulate::PlaneMesh;
+use crate::primitives::{boundary_edges, loft};
 
 /// Settings of an extrusion: a region of the plane z = 0 moved to z = `height`.
 ///
@@ -85,7 +85,7 @@ impl Extrusion {
             };
             rings.push(section.points.iter().map(place).collect());
         }
-        Ok(loft(&section, &rings, Closing::Caps))
+        Ok(loft(&section.triangles, &boundary_edges(&section.triangles), &rings, false))
     }
 
     /// The region with edges short enough, and the number of layers, for the tolerance of a twist.
@@ -113,76 +113,5 @@ impl Extrusion {
         }
         let refined = region.refined(|a, b| count(a, b) as usize);
         Ok((refined, layers as usize))
-    }
-}
-
-/// How the ends of a loft are closed.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Closing {
-    /// Both ends by the filled section.
-    Caps,
-    /// The last ring is followed by the first.
-    Ring,
-}
-
-/// The closed mesh between rings of the same plane mesh: `rings[k][i]` is the place of its point `i` on ring `k`.
-/// Seen against the direction of travel the section's triangles turn counter-clockwise. Points of consecutive
-/// rings that coincide bit for bit become one vertex.
-pub(crate) fn loft(section: &PlaneMesh, rings: &[Vec<Point<3>>], closing: Closing) -> Mesh {
-    let count = section.points.len();
-    let mut vertices = VertexTable::default();
-    let ids: Vec<Vec<u32>> =
-        rings.iter().map(|ring| ring.iter().map(|p| vertices.id(*p)).collect()).collect();
-    let mut triangles: Vec<[u32; 3]> = Vec::new();
-    let mut push = |triangle: [u32; 3]| {
-        let [a, b, c] = triangle;
-        if a != b && b != c && c != a {
-            triangles.push(triangle);
-        }
-    };
-    if closing == Closing::Caps && count > 0 {
-        let (first, last) = (&ids[0], &ids[ids.len() - 1]);
-        for [a, b, c] in section.triangles.iter().map(|t| t.map(|i| i as usize)) {
-            push([first[a], first[c], first[b]]);
-            push([last[a], last[b], last[c]]);
-        }
-    }
-    let layers = if closing == Closing::Caps { rings.len() - 1 } else { rings.len() };
-    for [a, b] in section.boundary().into_iter().map(|edge| edge.map(|i| i as usize)) {
-        for k in 0..layers {
-            let above = (k + 1) % rings.len();
-            let (low, high) = (&ids[k], &ids[above]);
-            let diagonals = [
-                vector::distance(rings[k][a], rings[above][b]),
-                vector::distance(rings[k][b], rings[above][a]),
-            ];
-            if diagonals[0] <= diagonals[1] {
-                push([low[a], low[b], high[b]]);
-                push([low[a], high[b], high[a]]);
-            } else {
-                push([low[a], low[b], high[a]]);
-                push([low[b], high[b], high[a]]);
-            }
-        }
-    }
-    Mesh::new(vertices.positions, triangles)
-}
-
-/// Vertices, one for each place.
-#[derive(Default)]
-pub(crate) struct VertexTable {
-    pub(crate) positions: Vec<Point<3>>,
-    known: rustc_hash::FxHashMap<[u64; 3], u32>,
-}
-
-impl VertexTable {
-    /// The vertex at `p`, made if there is none yet.
-    pub(crate) fn id(&mut self, p: Point<3>) -> u32 {
-        // Adding zero makes one of the two zeros.
-        let p = p.map(|x| x + 0.0);
-        *self.known.entry(p.map(f64::to_bits)).or_insert_with(|| {
-            self.positions.push(p);
-            (self.positions.len() - 1) as u32
-        })
     }
 }

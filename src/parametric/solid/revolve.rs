@@ -2,12 +2,12 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::extrude::{Closing, loft};
 use crate::Mesh;
 use crate::parametric::curve::arc::cos_sin;
 use crate::parametric::error::{GeometryError, Result, check_positive};
 use crate::parametric::numeric::vector::Point;
 use crate::parametric::region::polygons::Polygons;
+use crate::primitives::{boundary_edges, loft};
 
 /// Settings of a solid of revolution: a region with x >= 0 turned about the y axis of its plane, which becomes the
 /// z axis of space: a point (x, y) goes through (x cos a, x sin a, y).
@@ -83,7 +83,7 @@ impl Revolution {
             section.points.iter().map(|p| [p[0] * cos, p[0] * sin, p[1]]).collect()
         };
         let rings: Vec<_> = (0..rings).rev().map(ring).collect();
-        Ok(loft(&section, &rings, if full { Closing::Ring } else { Closing::Caps }))
+        Ok(loft(&section.triangles, &boundary_edges(&section.triangles), &rings, full))
     }
 
     /// Steps whose sagitta at the greatest radius is within the tolerance.

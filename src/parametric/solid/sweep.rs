@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::extrude::{Closing, loft};
 use crate::Mesh;
 use crate::parametric::curve::discretise::CurveMeshing;
 use crate::parametric::curve::param_curve::Curve;
 use crate::parametric::error::{GeometryError, Result, check_points, check_positive};
 use crate::parametric::numeric::vector::{self, Point};
 use crate::parametric::region::polygons::Polygons;
+use crate::primitives::{boundary_edges, loft};
 
 /// Settings of a sweep: a region moved along a curve, its plane always square to the curve, turned about it as
 /// little as possible (rotation-minimising frame by double reflection; Wang, Juettler, Zheng and Liu 2008).
@@ -60,7 +60,7 @@ impl Sweep {
         if closed {
             rings.pop();
         }
-        Ok(loft(&section, &rings, if closed { Closing::Ring } else { Closing::Caps }))
+        Ok(loft(&section.triangles, &boundary_edges(&section.triangles), &rings, closed))
     }
 
     /// Places on the path with their frames, near enough to one another for the tolerance.

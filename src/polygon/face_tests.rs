@@ -10,7 +10,7 @@ use super::*;
 fn triangulate(points: &[[f64; 3]]) -> (Tiling, Vec<[u32; 3]>) {
     let corners: Vec<u32> = (0..points.len() as u32).collect();
     let mut triangles = Vec::new();
-    let tiling = Triangulator::default().triangulate(points, &corners, &mut triangles);
+    let tiling = FaceTriangulator::default().triangulate(points, &corners, &mut triangles);
     assert_eq!(triangles.len(), points.len() - 2);
     let mut uses = BTreeMap::new();
     let mut count = |from: u32, to: u32, step: i32| {
@@ -35,8 +35,8 @@ fn assert_tiled(points: &[[f64; 2]], lift: impl Fn([f64; 2]) -> [f64; 3]) {
     let (tiling, triangles) = triangulate(&lifted);
     assert_eq!(tiling, Tiling::Proper, "{points:?}");
     for triangle in triangles {
-        let [a, b, c] = triangle.map(|i| Coord { x: points[i as usize][0], y: points[i as usize][1] });
-        assert!(orient2d(a, b, c) > 0.0, "triangle {triangle:?} of {points:?}");
+        let [a, b, c] = triangle.map(|i| points[i as usize]);
+        assert!(orient2d(a, b, c) == Sign::Positive, "triangle {triangle:?} of {points:?}");
     }
 }
 
@@ -105,13 +105,13 @@ fn a_boundary_that_passes_a_vertex_twice_is_tiled() {
     for start in 0..corners.len() {
         let turned: Vec<u32> = (0..corners.len()).map(|i| corners[(start + i) % corners.len()]).collect();
         let mut triangles = Vec::new();
-        let tiling = Triangulator::default().triangulate(&points, &turned, &mut triangles);
+        let tiling = FaceTriangulator::default().triangulate(&points, &turned, &mut triangles);
         assert_eq!((tiling, triangles.len()), (Tiling::Proper, 6));
-        triangles.retain(|&triangle| is_whole(triangle));
+        triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
         assert_eq!(triangles.len(), 4);
         for triangle in triangles {
-            let [a, b, c] = triangle.map(|i| Coord { x: points[i as usize][0], y: points[i as usize][1] });
-            assert!(orient2d(a, b, c) > 0.0, "{triangle:?}");
+            let [a, b, c] = triangle.map(|i| points[i as usize]).map(|[x, y, _]| [x, y]);
+            assert!(orient2d(a, b, c) == Sign::Positive, "{triangle:?}");
         }
     }
 }
@@ -160,6 +160,57 @@ fn random_staircases_on_a_small_grid_are_tiled() {
             (0..n).rev().map(|x| [f64::from(x), f64::from(random.random_range(3..6))]).collect();
         let polygon: Vec<[f64; 2]> = lower.into_iter().chain(upper).collect();
         assert_tiled(&polygon, flat);
+    }
+}
+
+#[test]
+fn large_polygons_with_bridges_keep_their_corners_apart() {
+    // A ring cut open: the bridge is walked both ways, between corners of their own or between the same vertices.
+    let seed = 20_261_127;
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    for corners in [20, 100, 3_000] {
+        let mut circle = |reach: f64| -> Vec<[f64; 2]> {
+            let at = |i: i32| {
+                let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / f64::from(corners)).sin_cos();
+                let radius = reach * random.random_range(0.8..1.0);
+                [radius * cos, radius * sin]
+            };
+            (0..corners).map(at).collect()
+        };
+        let (outer, mut inner) = (circle(3.0), circle(1.0));
+        inner.reverse();
+        let closed = |ring: &[[f64; 2]]| ring.iter().chain(&ring[..1]).copied().collect::<Vec<_>>();
+        // The inner ring starts where the outer one does, on the x axis.
+        inner.rotate_right(1);
+        let bridged = [closed(&outer), closed(&inner)].concat();
+        assert_tiled(&bridged, flat);
+        // With the same two vertices at both ends of the bridge.
+        let (n, positions) = (corners as u32, [outer, inner].concat());
+        let positions: Vec<[f64; 3]> = positions.into_iter().map(flat).collect();
+        let walk: Vec<u32> = (0..n).chain([0]).chain(n..2 * n).chain([n]).collect();
+        let mut triangles = Vec::new();
+        let tiling = FaceTriangulator::default().triangulate(&positions, &walk, &mut triangles);
+        assert_eq!((tiling, triangles.len()), (Tiling::Proper, walk.len() - 2));
+        let area: f64 = triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|v| positions[v as usize]);
+                0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+            })
+            .inspect(|&area| assert!(area > 0.0))
+            .sum();
+        assert!((15.0..28.0).contains(&area), "{area}");
+    }
+}
+
+#[test]
+fn mixed_magnitudes_are_told_apart() {
+    // A notch of 1e-300 in a side of 1e300.
+    let notched = [[-1e300, 0.0], [1e300, 0.0], [1e300, 1e300], [0.0, 1e-300], [-1e300, 1e300]];
+    for start in 0..notched.len() {
+        let turned: Vec<[f64; 2]> =
+            (0..notched.len()).map(|i| notched[(start + i) % notched.len()]).collect();
+        assert_tiled(&turned, flat);
     }
 }
 
