@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use super::patch::{Face, Patch};
-use crate::boolean::cut::Cutter;
+use super::source::Source;
 use crate::exact::collinear;
 
 /// A flip: the two triangles that share the longest side from `c` to `a` of the flat triangle `a, b, c`.
@@ -61,7 +61,7 @@ pub(super) fn is_low([a, b, c]: [&[f64; 3]; 3], height: f64) -> bool {
 }
 
 /// Marks the triangles whose corners lay on one line before they were rounded, but do not now.
-pub(super) fn mark_flat(patch: &mut Patch<'_>, cutter: &Cutter<'_>) {
+pub(super) fn mark_flat(patch: &mut Patch<'_>, cutter: &Source<'_>) {
     for index in 0..patch.faces.len() as u32 {
         let corners = patch.faces[index as usize].corners;
         let is_low = is_lower(patch, index, cutter.rounding) && !is_exactly_flat(patch, index);
