@@ -3,6 +3,9 @@
 #![allow(clippy::print_stdout, reason = "the table of triangle counts")]
 #![allow(missing_docs, reason = "criterion's macros make undocumented functions")]
 
+#[path = "../tests/common/planar.rs"]
+mod planar;
+
 use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -108,19 +111,7 @@ fn table(_: &mut Criterion) {
 }
 
 fn curves(c: &mut Criterion) {
-    let control: Vec<[f64; 2]> = vec![
-        [0.0, 0.0],
-        [0.0, 3.0],
-        [1.0, 3.0],
-        [1.0, 1.0],
-        [4.0, 1.0],
-        [4.0, -1.0],
-        [1.0, -1.0],
-        [1.0, -3.0],
-        [0.0, -3.0],
-        [0.0, 0.0],
-    ];
-    let degree9 = Bezier::new(&control).expect("a curve");
+    let degree9 = Bezier::new(&planar::DEGREE_9).expect("a curve");
     let mut group = c.benchmark_group("curve mesh, degree 9");
     for refinement in [Refinement::Levelled, Refinement::Halving] {
         for tolerance in [1e-3, 1e-5] {

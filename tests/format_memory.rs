@@ -1,38 +1,12 @@
 //! How much memory the readers take: never more than a stated multiple of the file's size, whatever the file says.
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+#[path = "common/counting.rs"]
+mod counting;
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use trisect::Mesh;
 use trisect::io::{Encoding, Format, ReadOptions, WriteOptions, read, write};
-
-/// The system's allocator, with a count of the bytes in use.
-struct Counting;
-
-static IN_USE: AtomicUsize = AtomicUsize::new(0);
-static PEAK: AtomicUsize = AtomicUsize::new(0);
-
-#[expect(unsafe_code, reason = "an allocator can be counted in no other way; it only passes calls on")]
-// SAFETY: every call goes unchanged to the system's allocator, whose promises these are.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let in_use = IN_USE.fetch_add(layout.size(), Relaxed) + layout.size();
-        PEAK.fetch_max(in_use, Relaxed);
-        // SAFETY: as the caller promises.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        IN_USE.fetch_sub(layout.size(), Relaxed);
-        // SAFETY: as the caller promises.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// The promise of `docs/formats.md`: bytes per byte of the file, its own not counted, and a constant.
 const TIMES: usize = 40;
@@ -40,10 +14,7 @@ const CONSTANT: usize = 1 << 20;
 
 /// Peak memory while a file is read, in bytes, beyond what was in use before.
 fn peak(bytes: &[u8], format: Format) -> usize {
-    let before = IN_USE.load(Relaxed);
-    PEAK.store(before, Relaxed);
-    drop(read(bytes, format, &ReadOptions::new()));
-    PEAK.load(Relaxed) - before
+    counting::peak_of(|| read(bytes, format, &ReadOptions::new()))
 }
 
 fn repeated(head: &str, line: impl Fn(usize) -> String, count: usize, tail: &str) -> Vec<u8> {

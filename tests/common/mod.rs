@@ -2,7 +2,14 @@
 #![allow(dead_code, reason = "each test program uses some of these")]
 
 pub(crate) mod meshes;
+#[cfg(feature = "parametric")]
+pub(crate) mod parametric;
+pub(crate) mod planar;
+#[cfg(feature = "cli")]
+pub(crate) mod program;
 pub(crate) mod same_bits;
+pub(crate) mod shapes;
+pub(crate) mod surface;
 
 use trisect::{Mesh, Operation, Outcome, Solid};
 

@@ -3,7 +3,7 @@
 
 use std::ffi::OsStr;
 use std::fs;
-use std::io::Write as _;
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -141,10 +141,30 @@ pub(crate) fn ran(output: Output) -> Ran {
 }
 
 /// Sends a signal such as `INT` to a running program.
-pub(crate) fn signal(child: &Child, name: &str) {
+fn signal(child: &Child, name: &str) {
     // The shell's own: not every system has the program.
     let status = Command::new("sh").args(["-c", &format!("kill -{name} {}", child.id())]).status();
     assert!(status.expect("a shell").success());
+}
+
+/// Waits for a line of the running program that `is_due` accepts, sends a signal, and returns the exit code and what it says after
+/// that line. Panics if it ends without such a line.
+pub(crate) fn interrupted(
+    mut child: Child,
+    is_due: impl Fn(&str) -> bool,
+    name: &str,
+) -> (Option<i32>, String) {
+    let mut lines = BufReader::new(child.stderr.take().expect("a pipe"));
+    let mut line = String::new();
+    while !is_due(&line) {
+        line.clear();
+        assert_ne!(lines.read_line(&mut line).expect("text"), 0, "it ended without the line");
+    }
+    signal(&child, name);
+    let code = child.wait().expect("the program ends").code();
+    let mut rest = String::new();
+    lines.read_to_string(&mut rest).expect("text");
+    (code, rest)
 }
 
 /// A box between two corners as OBJ.

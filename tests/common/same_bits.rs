@@ -11,7 +11,7 @@
 
 use std::cell::RefCell;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use trisect::{BooleanOptions, Mesh, Operation, Outcome, Solid};
@@ -156,7 +156,10 @@ impl Cases {
         if !comparable || std::env::var_os("TRISECT_PROOF").is_some() {
             return;
         }
-        let table = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("fixtures/same-bits.txt");
+        // The proof is built by `benches/proof` as well.
+        let folders = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+        let mut tables = folders.map(|folder| folder.join("fixtures/same-bits.txt"));
+        let table = tables.find(|path| path.is_file()).expect("the table of hashes");
         let found = self.lines(CASES_A_LINE);
         if std::env::var_os("TRISECT_RECORD_BITS").is_some() {
             self.record(&table, &found);
@@ -191,7 +194,7 @@ impl Cases {
     }
 
     /// Replaces the group's lines in the table.
-    fn record(&self, table: &std::path::Path, found: &str) {
+    fn record(&self, table: &Path, found: &str) {
         static WRITING: Mutex<()> = Mutex::new(());
         let _one_at_a_time = WRITING.lock().unwrap_or_else(PoisonError::into_inner);
         let text = std::fs::read_to_string(table).unwrap_or_default();

@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
-#[cfg(feature = "parametric")]
 use trisect::model::{Evaluation, Model};
 use trisect::{BooleanOptions, Contact, Mesh, Solid};
 
@@ -12,8 +11,10 @@ use crate::common::same_bits;
 use crate::judge::cases::{Case, OPERATIONS, models};
 use crate::judge::placement::{anywhere, normalized};
 
+/// A folder of the repository. (The proof is built by `benches/proof` as well.)
 fn root(folder: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)
+    let start = Path::new(env!("CARGO_MANIFEST_DIR"));
+    start.ancestors().map(|above| above.join(folder)).find(|path| path.is_dir()).expect("the repository")
 }
 
 /// Every file in a folder and the folders inside it, in the order of their names.
@@ -65,7 +66,6 @@ fn every_model_with_the_next() {
     }
 }
 
-#[cfg(feature = "parametric")]
 #[test]
 fn model_files_evaluated_exactly() {
     let _bits = same_bits::group("model files");

@@ -1,35 +1,11 @@
 //! How soon a running boolean stops, and how honest its account of memory is. Measured, not asserted.
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+#[path = "../../../tests/common/counting.rs"]
+mod counting;
+
 use std::time::{Duration, Instant};
 
 use trisect::{BooleanOptions, CancelToken, Control, Error, Operation, Solid, primitives};
-
-/// The system's allocator, with a count of the bytes in use.
-struct Counting;
-
-static IN_USE: AtomicUsize = AtomicUsize::new(0);
-static PEAK: AtomicUsize = AtomicUsize::new(0);
-
-// SAFETY: every call goes unchanged to the system's allocator, whose promises these are.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        let in_use = IN_USE.fetch_add(layout.size(), Relaxed) + layout.size();
-        PEAK.fetch_max(in_use, Relaxed);
-        // SAFETY: as the caller promises.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        IN_USE.fetch_sub(layout.size(), Relaxed);
-        // SAFETY: as the caller promises.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 fn pair(frequency: u32) -> [Solid; 2] {
     let ball = primitives::geodesic_sphere(1.0, frequency).expect("a ball");
@@ -97,10 +73,7 @@ fn stopped(operands: &[Solid; 2], threads: usize, after: Duration) -> Option<Dur
 
 /// The smallest limit with which the operation ends, and the bytes it has in use at most.
 fn memory(operands: &[Solid; 2]) {
-    let before = IN_USE.load(Relaxed);
-    PEAK.store(before, Relaxed);
-    drop(union(operands, Control::new(), 1));
-    let peak = PEAK.load(Relaxed) - before;
+    let peak = counting::peak_of(|| union(operands, Control::new(), 1));
     let (mut low, mut high) = (0, 1 << 40);
     while high - low > 1 << 16 {
         let middle = low + (high - low) / 2;

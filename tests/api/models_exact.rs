@@ -1,14 +1,9 @@
 //! Models evaluated exactly: by the mesh booleans, and against the same trees evaluated as fields.
 #![allow(clippy::print_stdout, reason = "figures for the documentation, shown with --nocapture")]
 
-#[path = "common/shapes.rs"]
-mod shapes;
-#[path = "common/surface.rs"]
-mod surface;
-
 use std::path::Path;
 
-use surface::{manifold, volume};
+use crate::common::surface::{manifold, volume};
 use trisect::field::{SignRule, SignedDistance};
 use trisect::model::{Evaluation, Model};
 use trisect::{Control, Mesh};

@@ -1,5 +1,6 @@
 //! Plane regions: distances of polygons, contours of fields, bounds.
 
+use crate::common::planar::POLYGON;
 use rand::{RngExt, SeedableRng};
 use trisect::field::{
     ContourDistance, ContourExtraction, Contours, Expression, Extraction, Formula, System, extrude,
@@ -15,22 +16,8 @@ fn field(text: &str) -> Expression {
 
 /// The polygon of Choporov 2017, and a square hole in a square.
 fn shapes() -> Vec<Contours> {
-    let polygon = [
-        [0.0, 0.0],
-        [3.0, 0.0],
-        [3.0, 2.0],
-        [2.0, 2.0],
-        [2.0, 1.0],
-        [1.0, 1.0],
-        [1.0, 4.0],
-        [2.0, 4.0],
-        [2.0, 3.0],
-        [3.0, 3.0],
-        [3.0, 5.0],
-        [0.0, 5.0],
-    ];
     let square = |half: f64| vec![[-half, -half], [half, -half], [half, half], [-half, half]];
-    vec![Contours { loops: vec![polygon.to_vec()] }, Contours { loops: vec![square(2.0), square(1.0)] }]
+    vec![Contours { loops: vec![POLYGON.to_vec()] }, Contours { loops: vec![square(2.0), square(1.0)] }]
 }
 
 fn brute(contours: &Contours, [x, y]: [f64; 2]) -> f64 {

@@ -2,10 +2,7 @@
 
 #![cfg(feature = "cli")]
 
-#[path = "common/program.rs"]
-mod program;
-
-use program::{Folder, bytes, cube, inside_out, opened, unit_cube, volume};
+use crate::common::program::{Folder, bytes, cube, inside_out, opened, unit_cube, volume};
 
 /// Two surfaces in one file.
 fn together(first: &str, second: &str) -> String {

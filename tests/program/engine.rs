@@ -2,10 +2,9 @@
 
 #![cfg(feature = "cli")]
 
-#[path = "common/program.rs"]
-mod program;
-
-use program::{Folder, bytes, cube, inside_out, opened, sphere, unit_cube, vertices, volume};
+use crate::common::program::{
+    self, Folder, bytes, cube, inside_out, opened, sphere, unit_cube, vertices, volume,
+};
 use serde_json::{Value, json};
 
 /// Two cubes that share an eighth of each.
@@ -273,22 +272,12 @@ fn heavy() -> Folder {
 #[cfg(unix)]
 #[test]
 fn ctrl_c_stops_a_running_operation_and_leaves_nothing() {
-    use std::io::{BufRead as _, BufReader, Read as _};
     for name in ["INT", "TERM"] {
         let folder = heavy();
         let before = folder.names();
-        let mut child = folder.start("union a.off b.off -o c.off -o d.obj --threads 1 -v");
-        let mut lines = BufReader::new(child.stderr.take().expect("a pipe"));
-        let mut line = String::new();
+        let child = folder.start("union a.off b.off -o c.off -o d.obj --threads 1 -v");
         // The operands are described after reading and before the operation.
-        while !line.starts_with("b.off: ") {
-            line.clear();
-            assert_ne!(lines.read_line(&mut line).expect("text"), 0, "it ended without reading");
-        }
-        program::signal(&child, name);
-        let code = child.wait().expect("the program ends").code();
-        let mut rest = String::new();
-        lines.read_to_string(&mut rest).expect("text");
+        let (code, rest) = program::interrupted(child, |line| line.starts_with("b.off: "), name);
         assert_eq!((code, rest.as_str()), (Some(4), "trisect: cancelled\n"), "{name}");
         assert_eq!(folder.names(), before);
         assert_eq!(folder.read("c.off"), "precious");

@@ -1,9 +1,6 @@
 //! Grids of values and pictures of sections.
 
-#[path = "common/shapes.rs"]
-mod shapes;
-
-use shapes::{cuboid, sphere};
+use crate::common::shapes::{cuboid, sphere};
 use trisect::field::{Formula, Grid, GridFormat, Section, SignRule, SignedDistance, System};
 use trisect::{Control, Error};
 

@@ -1,12 +1,10 @@
 //! Curves, regions, patches and solids as JSON and SVG.
 #![cfg(feature = "parametric")]
 
-#[path = "common/parametric.rs"]
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{assert_closed, distance, rng, volume};
+use crate::common::parametric as common;
+use crate::common::parametric::{assert_closed, distance, rng, volume};
 use rand::RngExt;
 use serde_json::{Value, json};
 use trisect::parametric::json::{
@@ -220,7 +218,7 @@ fn solids_are_read_and_closed() {
         assert_closed(&mesh);
         assert!((volume(&mesh) / exact - 1.0).abs() < 0.01, "{value}: {}", volume(&mesh));
     }
-    let aircraft: Value = parse(include_str!("../examples/parametric/aircraft.json")).unwrap();
+    let aircraft: Value = parse(include_str!("../../examples/parametric/aircraft.json")).unwrap();
     let patches = named_patches(&aircraft).unwrap();
     assert_eq!(patches.iter().map(|p| p.0.as_str()).collect::<String>(), "ABCDEF");
 }

@@ -2,10 +2,7 @@
 
 #![cfg(feature = "cli")]
 
-#[path = "common/program.rs"]
-mod program;
-
-use program::{Folder, volume, workshop};
+use crate::common::program::{self, Folder, volume, workshop};
 use serde_json::Value;
 
 const MODEL: &str = r#"{

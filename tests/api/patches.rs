@@ -2,12 +2,9 @@
 #![cfg(feature = "parametric")]
 #![allow(clippy::print_stdout, reason = "measurements, shown with --nocapture")]
 
-#[path = "common/parametric.rs"]
-mod common;
-
 use std::f64::consts::PI;
 
-use common::{assert_closed, distance, rng, to_triangle, volume};
+use crate::common::parametric::{assert_closed, distance, rng, to_triangle, volume};
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use trisect::parametric::{
@@ -18,7 +15,7 @@ use trisect::{CancelToken, Control, Error};
 type Rows = Vec<Vec<[f64; 3]>>;
 
 fn aircraft() -> Vec<Patch> {
-    let text = include_str!("../examples/parametric/aircraft.json");
+    let text = include_str!("../../examples/parametric/aircraft.json");
     let document: serde_json::Value = serde_json::from_str(text).unwrap();
     let rows = |patch: &serde_json::Value| serde_json::from_value::<Rows>(patch["points"].clone()).unwrap();
     document["patches"].as_array().unwrap().iter().map(|p| Patch::bezier(&rows(p)).unwrap()).collect()

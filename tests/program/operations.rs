@@ -2,10 +2,7 @@
 
 #![cfg(feature = "cli")]
 
-#[path = "common/program.rs"]
-mod program;
-
-use program::{Folder, cube, unit_cube, vertices, volume, workshop};
+use crate::common::program::{self, Folder, cube, unit_cube, vertices, volume, workshop};
 use serde_json::{Value, json};
 
 #[test]

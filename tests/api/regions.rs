@@ -2,13 +2,12 @@
 #![cfg(feature = "parametric")]
 #![allow(clippy::print_stdout, reason = "measurements, shown with --nocapture")]
 
-#[path = "common/parametric.rs"]
-mod common;
-
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use common::{assert_closed, determinant, distance, point, points, rng, volume};
+use crate::common::parametric as common;
+use crate::common::parametric::{assert_closed, determinant, distance, point, points, rng, volume};
+use crate::common::planar::POLYGON;
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use trisect::parametric::{
@@ -78,20 +77,7 @@ fn turned_rays_and_exact_predicates_agree() {
 /// Points level with corners, on edges, on corners: where careless rays go wrong.
 #[test]
 fn rays_through_corners_are_turned() {
-    let corners = [
-        [0.0, 0.0],
-        [3.0, 0.0],
-        [3.0, 2.0],
-        [2.0, 2.0],
-        [2.0, 1.0],
-        [1.0, 1.0],
-        [1.0, 4.0],
-        [2.0, 4.0],
-        [2.0, 3.0],
-        [3.0, 3.0],
-        [3.0, 5.0],
-        [0.0, 5.0],
-    ];
+    let corners = POLYGON;
     let polygons = Polygons::new(&[corners.to_vec()], FillRule::EvenOdd).unwrap();
     let curves = as_curves(&polygons);
     let mut counts = [0; 3];

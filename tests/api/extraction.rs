@@ -1,10 +1,7 @@
 //! Surfaces extracted from fields: closed, manifold, sharp, within the tolerance.
 #![allow(clippy::print_stdout, reason = "figures for the documentation, shown with --nocapture")]
 
-#[path = "common/surface.rs"]
-mod surface;
-
-use surface::{manifold, volume};
+use crate::common::surface::{manifold, volume};
 use trisect::field::{Expression, Extracted, Extraction, Formula, System};
 
 fn field(text: &str) -> Expression {

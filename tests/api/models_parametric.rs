@@ -2,12 +2,9 @@
 #![cfg(feature = "parametric")]
 #![allow(clippy::print_stdout, reason = "figures for the documentation, shown with --nocapture")]
 
-#[path = "common/surface.rs"]
-mod surface;
-
 use std::path::Path;
 
-use surface::{manifold, volume};
+use crate::common::surface::{manifold, volume};
 use trisect::Error;
 use trisect::model::{Evaluation, Model};
 

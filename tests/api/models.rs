@@ -1,15 +1,11 @@
 //! Model files: the worked solids of the papers, hybrid solids, and everything a model file can get wrong.
 #![allow(clippy::print_stdout, reason = "figures for the documentation, shown with --nocapture")]
 
-#[path = "common/shapes.rs"]
-mod shapes;
-#[path = "common/surface.rs"]
-mod surface;
-
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use surface::{manifold, volume};
+use crate::common::shapes;
+use crate::common::surface::{manifold, volume};
 use trisect::field::Contours;
 use trisect::model::{Evaluation, LeafKind, Model};
 use trisect::{Control, Error, Failure, Mesh};

@@ -1,12 +1,9 @@
 //! Signed distances: against exact brute force, four sign rules against each other, hard points.
 #![allow(clippy::print_stdout, reason = "figures for the documentation, shown with --nocapture")]
 
-#[path = "common/shapes.rs"]
-mod shapes;
-
+use crate::common::shapes::{cuboid, joined, sphere, spiky, torus};
 use dashu::rational::RBig;
 use rand::{RngExt, SeedableRng};
-use shapes::{cuboid, joined, sphere, spiky, torus};
 use trisect::field::{SignRule, SignedDistance};
 use trisect::spatial::Side;
 use trisect::{Control, Mesh};

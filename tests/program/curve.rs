@@ -1,16 +1,13 @@
 //! The program's `curve` verbs.
 #![cfg(all(feature = "cli", feature = "parametric"))]
 
-#[path = "common/program.rs"]
-mod program;
-
-use program::Folder;
+use crate::common::program::Folder;
 use serde_json::Value;
 
 fn curves() -> Folder {
     let folder = Folder::new();
-    folder.write("p.json", include_str!("../examples/parametric/p.json"));
-    folder.write("q.json", include_str!("../examples/parametric/q.json"));
+    folder.write("p.json", include_str!("../../examples/parametric/p.json"));
+    folder.write("q.json", include_str!("../../examples/parametric/q.json"));
     folder.write("space.json", r#"{"type": "bezier", "points": [[0, 0, 0], [1, 1, 1]]}"#);
     folder.write("nothing.json", "{}");
     folder

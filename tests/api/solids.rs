@@ -1,11 +1,9 @@
 //! What is a solid and what is not, and what is said of the rest: the gate against a slow and simple judge of its
 //! own, on random chains with every kind of multiplicity; measures against exact integers; advice that holds.
 
-mod common;
-
 use std::collections::HashMap;
 
-use common::meshes::{chain_of, is_closed, jittered_soup, six_volumes};
+use crate::common::meshes::{chain_of, is_closed, jittered_soup, six_volumes};
 use proptest::prelude::*;
 use trisect::mesh::{Diagnosis, diagnose};
 use trisect::{Error, FaceGroup, Mesh, Solid, primitives};

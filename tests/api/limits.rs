@@ -1,15 +1,10 @@
 //! Limits inside one running operation: each stops it with its own error, and what it leaves is as before.
 
-mod common;
-#[cfg(feature = "cli")]
-#[path = "common/program.rs"]
-mod program;
-
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
-use common::solid;
+use crate::common::solid;
 use trisect::{BooleanOptions, CancelToken, Control, Error, Failure, Operation, Outcome, Solid, primitives};
 
 /// Balls that cross almost everywhere: the operation takes far longer than a message between threads.
@@ -156,7 +151,7 @@ fn what_was_reserved_is_given_back() {
 /// The program: exit code 4, and nothing on disk.
 #[cfg(feature = "cli")]
 mod program_limits {
-    use super::program::{self, Folder, sphere};
+    use crate::common::program::{self, Folder, sphere};
 
     #[test]
     fn every_time_limit_gives_the_result_or_leaves_nothing() {

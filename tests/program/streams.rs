@@ -2,10 +2,7 @@
 
 #![cfg(feature = "cli")]
 
-#[path = "common/program.rs"]
-mod program;
-
-use program::{Folder, unit_cube, volume, workshop};
+use crate::common::program::{self, Folder, unit_cube, volume, workshop};
 use serde_json::Value;
 
 #[test]
@@ -136,21 +133,11 @@ fn the_deadline_ends_a_run_that_waits_for_input() {
 #[cfg(unix)]
 #[test]
 fn signals_end_a_run_that_waits_for_input() {
-    use std::io::{BufRead as _, BufReader, Read as _};
     for name in ["INT", "TERM"] {
         let folder = Folder::new();
         let mut child = folder.start("convert - c.off --format obj -vv");
         let _input = child.stdin.take();
-        let mut lines = BufReader::new(child.stderr.take().expect("a pipe"));
-        let mut line = String::new();
-        while !line.contains("reading") {
-            line.clear();
-            assert_ne!(lines.read_line(&mut line).expect("text"), 0, "it ended without reading");
-        }
-        program::signal(&child, name);
-        let code = child.wait().expect("the program ends").code();
-        let mut rest = String::new();
-        lines.read_to_string(&mut rest).expect("text");
+        let (code, rest) = program::interrupted(child, |line| line.contains("reading"), name);
         assert_eq!((code, rest.contains("cancelled")), (Some(4), true), "{name}: {rest}");
         assert!(folder.names().is_empty());
     }

@@ -2,13 +2,12 @@
 #![cfg(feature = "parametric")]
 #![allow(clippy::print_stdout, reason = "measurements, shown with --nocapture")]
 
-#[path = "common/parametric.rs"]
-mod common;
-
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::sync::Arc;
 
-use common::{distance, parameter, point, points, rng, to_segment};
+use crate::common::parametric as common;
+use crate::common::parametric::{distance, parameter, point, points, rng, to_segment};
+use crate::common::planar::{DEGREE_9, POLYGON};
 use rand::RngExt;
 use trisect::parametric::{
     Bezier, Composite, CubicSpline, Curve, CurveMeshing, EllipticArc, GeometryError, HermiteSpline,
@@ -366,40 +365,14 @@ fn composites_are_spliced_flat() {
 
 #[test]
 fn worked_cases_of_choporov_2017() {
-    let control = [
-        [0.0, 0.0],
-        [0.0, 3.0],
-        [1.0, 3.0],
-        [1.0, 1.0],
-        [4.0, 1.0],
-        [4.0, -1.0],
-        [1.0, -1.0],
-        [1.0, -3.0],
-        [0.0, -3.0],
-        [0.0, 0.0],
-    ];
-    let curve = Bezier::new(&control).unwrap();
+    let curve = Bezier::new(&DEGREE_9).unwrap();
     let meshing = CurveMeshing::new(0.02).initial_nodes(41);
     let mesh = meshing.clone().refinement(Refinement::Halving).mesh(&curve).unwrap();
     assert!(measured_deviation(&curve, &mesh.parameters, &mesh.points) <= 0.02);
     assert_eq!(mesh.points.first(), mesh.points.last());
     println!("degree 9: {} edges from 40", mesh.points.len() - 1);
 
-    let corners = [
-        [0.0, 0.0],
-        [3.0, 0.0],
-        [3.0, 2.0],
-        [2.0, 2.0],
-        [2.0, 1.0],
-        [1.0, 1.0],
-        [1.0, 4.0],
-        [2.0, 4.0],
-        [2.0, 3.0],
-        [3.0, 3.0],
-        [3.0, 5.0],
-        [0.0, 5.0],
-    ];
-    let polygon = Polyline::new(&corners, &Spacing::Uniform, true).unwrap();
+    let polygon = Polyline::new(&POLYGON, &Spacing::Uniform, true).unwrap();
     for tolerance in [1.0, 1e-3, 1e-9] {
         let mesh = CurveMeshing::new(tolerance).initial_nodes(13).mesh(&polygon).unwrap();
         assert_eq!(mesh.points, polygon.points(), "the tolerance has no effect on a polygon");

@@ -2,10 +2,8 @@
 #![cfg(feature = "parametric")]
 #![allow(clippy::print_stdout, reason = "measurements, shown with --nocapture")]
 
-#[path = "common/parametric.rs"]
-mod common;
-
-use common::{bezier, distance, rng};
+use crate::common::parametric as common;
+use crate::common::parametric::{bezier, distance, rng};
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use trisect::parametric::{

@@ -1,0 +1,13 @@
+//! The program from outside.
+
+#![cfg(feature = "cli")]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod curve;
+mod engine;
+mod eval;
+mod operations;
+mod repairs;
+mod streams;
