@@ -10,12 +10,13 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 
+use crate::parallel::join;
+
 /// Below this depth a branch is split in halves by count.
 const HEURISTIC_DEPTH: usize = 40;
 /// Bins tried per split.
 const BINS: usize = 16;
 /// Branches with more boxes than this are built on several threads.
-#[cfg(feature = "parallel")]
 const PARALLEL_ABOVE: usize = 8192;
 
 /// Contains nothing; the neutral element of the union.
@@ -54,10 +55,9 @@ fn build(boxes: &[Aabb], branch: Branch<'_>) {
     let mut stack = vec![branch];
     while let Some(branch) = stack.pop() {
         if let Some((left, right)) = split(boxes, branch) {
-            #[cfg(feature = "parallel")]
             if left.order.len().min(right.order.len()) > PARALLEL_ABOVE {
                 // Nested at most log2(n / PARALLEL_ABOVE) plus the heuristic's depth.
-                rayon::join(|| build(boxes, left), || build(boxes, right));
+                join(usize::MAX, || build(boxes, left), || build(boxes, right));
                 continue;
             }
             stack.push(left);
