@@ -14,9 +14,9 @@ use crate::control::Control;
 use crate::parallel::Runner;
 use crate::spatial::morton_code;
 
-/// Items per leaf.
+/// Items in a leaf: one capsule round four neighbours of a bundle is hardly wider than theirs.
 const LEAF: usize = 4;
-/// Pairs handed on at once.
+/// Pairs handed on at once: what is looked up for them stays in the first-level cache.
 const BATCH: usize = 256;
 
 /// A balanced binary tree over the capsules of items.
@@ -117,7 +117,7 @@ fn order_key(capsule: &Capsule) -> u64 {
 }
 
 /// Calls `visit` for all pairs of an item of `a` and an item of `b` whose boxes meet and whose capsules are not apart, some
-/// hundred at once, and returns what it appends, in an order that depends on the trees alone.
+/// hundreds at once, and returns what it appends, in an order that depends on the trees alone.
 pub(crate) fn visit_pairs<T: Send>(
     a: &CapsuleTree,
     b: &CapsuleTree,

@@ -12,14 +12,15 @@ use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::spatial::{Frame, Occupancy, Regions};
 
-/// Below so many triangles of the smaller operand, ruling some out costs more than it saves.
+/// Below this many triangles of the smaller operand, ruling some out costs more than it saves.
 const DIVIDE_FROM: usize = 1_000;
-/// At most so many cells along an axis: their numbers have 15 bits.
+/// Cells along an axis, at most: their numbers have 15 bits.
 const MOST_CELLS: u32 = 32;
-/// So many triangles tell how long they usually are, and so many cells they may usually pass.
+/// Triangles that stand for all where it is asked how long they usually are.
 const SAMPLE: usize = 256;
+/// Cells along an axis that a triangle may usually pass.
 const MOST_PASSED: f32 = 8.0;
-/// So many vertices or triangles are looked at by one thread at once.
+/// Vertices or triangles that one thread looks at between two looks at the limits.
 const PIECE: usize = 1 << 14;
 /// The same where pieces have a grid each and no thread waits for one.
 const SERIAL_PIECE: usize = 1 << 18;
