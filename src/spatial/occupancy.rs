@@ -1,4 +1,8 @@
 //! Which cells of a coarse grid a set of triangles passes.
+//!
+//! A triangle whose box covers many cells is divided: for needles that lie askew. If all cells of its box were marked instead,
+//! a knot less 50 short cylinders took 1.5 times as long, a crowd of 200 spheres 1.1 times (`boolean/candidates` says how
+//! that was measured).
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;

@@ -3,6 +3,9 @@
 //! Needles lie side by side in bundles (the sides of a long cylinder). The box of a needle that lies askew is mostly empty, so
 //! all boxes of two bundles that cross meet, while hardly any needles do; capsules round parts of a bundle tell them apart.
 //! (Needles in a plane across an axis have flat boxes. So items keep their box, too.)
+//!
+//! For needles that lie askew. With trees of boxes instead: 23 for two crossed rods with 2,000 sides, 13 for two double cones
+//! with 4,000 triangles round each tip, 2.0 for a knot less 50 short cylinders.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;

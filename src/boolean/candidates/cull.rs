@@ -1,4 +1,7 @@
 //! Triangles ruled out by a grid as fine as the triangles.
+//!
+//! For operands that pass many cells of the coarse grid without touching there. Without it: 1.35 for a knot less 50 short
+//! cylinders, where vertices are many next to what is near; nothing for two spheres, where the coarse grid leaves little.
 
 use glam::Vec3A;
 

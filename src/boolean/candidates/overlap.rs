@@ -3,6 +3,11 @@
 //! The common part of the operands' boxes is divided into a coarse grid. Cells that the other operand's surface does not pass
 //! form regions (`spatial::Regions`), in each of which it winds round everything equally often. Triangles that touch no
 //! passed cell need not be looked at again.
+//!
+//! For operands of many triangles that cross along a curve. Without the grid: 1.2 for two spheres of 330,000 triangles, and
+//! 1.8 if the finer grid (`cull`) is not there either; 2.4 for a knot less 50 short cylinders without both. With the grid, but
+//! without regions, so that every vertex in a free cell is decided for itself: 7.6 for the spheres, 2.4 for a crowd of 200
+//! spheres, 1.5 for the knot.
 
 use obvhs::aabb::Aabb;
 
