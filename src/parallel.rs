@@ -2,8 +2,18 @@
 //! of threads, or on the feature `parallel`.
 //!
 //! A [`Runner`] also carries limits, for loops that may be long; the functions are for loops that are never.
+//!
+//! All of them reach rayon through three doors, [`for_each_number`], [`run_both`] and [`Runner::sort`]. The first two are not
+//! generic: rayon's machinery is compiled once for each of its callers, and was a sixth of the crate's code while every loop
+//! was one. A call through a pointer for each piece of thousands of items costs nothing.
 
+use std::convert::Infallible;
 use std::ops::Range;
+#[cfg(feature = "parallel")]
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicUsize, Ordering};
+#[cfg(feature = "parallel")]
+use std::sync::{Mutex, PoisonError};
 
 use crate::{Control, Error};
 
@@ -57,8 +67,25 @@ impl<'a> Runner<'a> {
         grain: usize,
         piece: impl Fn(Range<usize>) -> T + Sync,
     ) -> Result<Vec<T>, Error> {
-        let starts = (0..count).step_by(grain.max(1));
-        self.each(starts.map(|start| start..(start + grain.max(1)).min(count)).collect(), piece)
+        self.each(cut(count, grain), piece)
+    }
+
+    /// The same for work that may fail. After every piece the fraction that is done is reported as that of `stage`.
+    pub(crate) fn staged_pieces<T: Send>(
+        self,
+        count: usize,
+        grain: usize,
+        stage: &str,
+        piece: impl Fn(Range<usize>) -> Result<T, Error> + Sync,
+    ) -> Result<Vec<T>, Error> {
+        let pieces = cut(count, grain);
+        let (total, done) = (pieces.len(), AtomicUsize::new(0));
+        self.try_each(pieces, |range| {
+            let result = piece(range)?;
+            let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
+            self.control.report(stage, finished as f64 / total as f64)?;
+            Ok(result)
+        })
     }
 
     /// What `fill` appends for each piece of `0..count`, in order; about `room` items. The limits are checked before every
@@ -79,9 +106,9 @@ impl<'a> Runner<'a> {
             return self.concat(pieces);
         }
         let mut all = Vec::with_capacity(room);
-        for start in (0..count).step_by(grain.max(1)) {
+        for range in cut(count, grain) {
             self.control.check()?;
-            fill(start..(start + grain.max(1)).min(count), &mut all);
+            fill(range, &mut all);
         }
         Ok(all)
     }
@@ -92,16 +119,20 @@ impl<'a> Runner<'a> {
         items: Vec<T>,
         work: impl Fn(T) -> R + Sync,
     ) -> Result<Vec<R>, Error> {
-        let run = |item: T| -> Result<R, Error> {
+        self.try_each(items, |item| Ok(work(item)))
+    }
+
+    /// The same for work that may fail.
+    fn try_each<T: Send, R: Send>(
+        self,
+        items: Vec<T>,
+        work: impl Fn(T) -> Result<R, Error> + Sync,
+    ) -> Result<Vec<R>, Error> {
+        let run = |item: T| {
             self.control.check()?;
-            Ok(work(item))
+            work(item)
         };
-        #[cfg(feature = "parallel")]
-        if self.parallel && items.len() > 1 {
-            use rayon::prelude::*;
-            return items.into_par_iter().map(run).collect();
-        }
-        items.into_iter().map(run).collect()
+        if self.is_parallel() { try_map(items, run) } else { items.into_iter().map(run).collect() }
     }
 
     /// Lets `fill` write all of `items`, given the index of the first and a piece of `grain`. The limits are checked before
@@ -167,28 +198,89 @@ pub(crate) fn join<A: Send, B: Send>(
 ) -> (A, B) {
     #[cfg(feature = "parallel")]
     if work >= WORTH_A_THREAD {
-        return rayon::join(a, b);
+        let (mut a, mut b) = (Some(a), Some(b));
+        let (mut of_a, mut of_b) = (None, None);
+        run_both(&mut || of_a = a.take().map(|a| a()), &mut || of_b = b.take().map(|b| b()));
+        return (of_a.expect("it has run"), of_b.expect("it has run"));
     }
     let _ = work;
     (a(), b())
+}
+
+/// Runs both, at once where another thread is free.
+#[cfg(feature = "parallel")]
+fn run_both(a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
+    rayon::join(a, b);
+}
+
+/// Calls `work` with every number below `count`, on all threads of the current pool.
+#[cfg(feature = "parallel")]
+fn for_each_number(count: usize, work: &(dyn Fn(usize) + Sync)) {
+    use rayon::prelude::*;
+    (0..count).into_par_iter().for_each(work);
+}
+
+/// The results of `work` on every item, in order.
+pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
+    match try_map(items, |item| Ok::<R, Infallible>(work(item))) {
+        Ok(results) => results,
+        Err(never) => match never {},
+    }
+}
+
+/// The results of `work` on every item, in order, or the first failure in the order of those items that were looked at: no
+/// further ones are once there is one.
+pub(crate) fn try_map<T: Send, R: Send, E: Send>(
+    items: Vec<T>,
+    work: impl Fn(T) -> Result<R, E> + Sync,
+) -> Result<Vec<R>, E> {
+    #[cfg(feature = "parallel")]
+    if items.len() > 1 && rayon::current_num_threads() > 1 {
+        let has_failed = AtomicBool::new(false);
+        let slots: Vec<Mutex<Slot<T, Result<R, E>>>> =
+            items.into_iter().map(|item| Mutex::new(Slot::Waiting(item))).collect();
+        for_each_number(slots.len(), &|index| {
+            if has_failed.load(Ordering::Relaxed) {
+                return;
+            }
+            // Nobody else asks for it.
+            let mut slot = slots[index].lock().unwrap_or_else(PoisonError::into_inner);
+            if let Slot::Waiting(item) = std::mem::replace(&mut *slot, Slot::Empty) {
+                let result = work(item);
+                has_failed.fetch_or(result.is_err(), Ordering::Relaxed);
+                *slot = Slot::Done(result);
+            }
+        });
+        let results = slots.into_iter().filter_map(|slot| {
+            match slot.into_inner().unwrap_or_else(PoisonError::into_inner) {
+                Slot::Done(result) => Some(result),
+                Slot::Waiting(_) | Slot::Empty => None,
+            }
+        });
+        return results.collect();
+    }
+    items.into_iter().map(work).collect()
+}
+
+/// An item, and later its result.
+#[cfg(feature = "parallel")]
+enum Slot<T, R> {
+    Waiting(T),
+    Empty,
+    Done(R),
 }
 
 /// `work` on pieces of `items` of fixed length; the results in order.
 pub(crate) fn map_chunks<T: Sync, R: Send>(
     items: &[T],
     length: usize,
-    work: impl Fn(&[T]) -> R + Send + Sync,
+    work: impl Fn(&[T]) -> R + Sync,
 ) -> Vec<R> {
-    #[cfg(feature = "parallel")]
-    if items.len() > length {
-        use rayon::prelude::*;
-        return items.par_chunks(length).map(work).collect();
-    }
-    items.chunks(length).map(work).collect()
+    map(items.chunks(length).collect(), work)
 }
 
 /// How many pieces to cut `length` units of work into: one on a single thread or for little work.
-pub(crate) fn pieces(length: usize, smallest: usize) -> usize {
+pub(crate) fn piece_count(length: usize, smallest: usize) -> usize {
     #[cfg(feature = "parallel")]
     {
         match rayon::current_num_threads() {
@@ -203,42 +295,33 @@ pub(crate) fn pieces(length: usize, smallest: usize) -> usize {
     }
 }
 
-/// The results of `work` on every item, in order.
-pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
-    #[cfg(feature = "parallel")]
-    if items.len() > 1 {
-        use rayon::prelude::*;
-        return items.into_par_iter().map(work).collect();
-    }
-    items.into_iter().map(work).collect()
-}
-
 /// A list of `count` items that `fill` puts in, given the index of the first item and room for a run of them.
 pub(crate) fn build<T: Copy + Default + Send>(
     count: usize,
     smallest: usize,
-    fill: impl Fn(usize, &mut [T]) + Sync + Send,
+    fill: impl Fn(usize, &mut [T]) + Sync,
 ) -> Vec<T> {
     let mut items = vec![T::default(); count];
-    let length = count.div_ceil(pieces(count, smallest)).max(1);
-    #[cfg(feature = "parallel")]
-    if length < count {
-        use rayon::prelude::*;
-        items.par_chunks_mut(length).enumerate().for_each(|(i, run)| fill(i * length, run));
-        return items;
-    }
-    items.chunks_mut(length).enumerate().for_each(|(i, run)| fill(i * length, run));
+    let length = count.div_ceil(piece_count(count, smallest)).max(1);
+    map(items.chunks_mut(length).enumerate().collect(), |(i, run)| fill(i * length, run));
     items
 }
 
 /// Whether `test` holds for every item.
-pub(crate) fn all<T: Sync>(items: &[T], test: impl Fn(&T) -> bool + Sync + Send) -> bool {
-    #[cfg(feature = "parallel")]
-    if pieces(items.len(), 1 << 16) > 1 {
-        use rayon::prelude::*;
-        return items.par_chunks(1 << 14).all(|run| run.iter().all(&test));
+pub(crate) fn all<T: Sync>(items: &[T], test: impl Fn(&T) -> bool + Sync) -> bool {
+    /// Items that one thread looks at between two looks at whether another has found one that fails.
+    const RUN: usize = 1 << 14;
+    let holds = |run: &[T]| if run.iter().all(&test) { Ok(()) } else { Err(()) };
+    if items.len() < 8 * RUN {
+        return holds(items).is_ok();
     }
-    items.iter().all(test)
+    try_map(items.chunks(RUN).collect(), holds).is_ok()
+}
+
+/// Ranges of `grain` that cut `0..count`, the last one perhaps shorter.
+fn cut(count: usize, grain: usize) -> Vec<Range<usize>> {
+    let grain = grain.max(1);
+    (0..count).step_by(grain).map(|start| start..(start + grain).min(count)).collect()
 }
 
 /// Cuts `items` into parts of given lengths.
@@ -283,5 +366,29 @@ mod tests {
     fn results_come_in_order() {
         let squares = map((0..1000).collect(), |i: u64| i * i);
         assert!(squares.windows(2).all(|pair| pair[0] < pair[1]));
+        let chunks = map_chunks(&squares, 7, |chunk| chunk[0]);
+        assert!(chunks.iter().eq(squares.iter().step_by(7)));
+    }
+
+    #[test]
+    fn the_first_failure_is_told() {
+        let until =
+            |limit: u32| try_map((0..1000).collect(), |i: u32| if i < limit { Ok(i) } else { Err(i) });
+        assert_eq!(until(1000), Ok((0..1000).collect()));
+        assert!(until(0).is_err_and(|i| i < 1000) && until(900).is_err_and(|i| i >= 900));
+        let control = Control::new();
+        let pieces = |fails: bool| {
+            Runner::new(&control, true).staged_pieces(100, 7, "test", |range| {
+                if fails && range.contains(&50) { Err(Error::Cancelled) } else { Ok(range) }
+            })
+        };
+        assert!(pieces(true).is_err());
+        assert!(pieces(false).is_ok_and(|pieces| pieces.into_iter().flatten().eq(0..100)));
+    }
+
+    #[test]
+    fn both_results_come_back() {
+        assert_eq!(join(usize::MAX, || 1, || "two"), (1, "two"));
+        assert_eq!(join(0, || 1, || "two"), (1, "two"));
     }
 }

@@ -33,6 +33,6 @@ pub(super) fn collapsed(mesh: &Mesh, round: impl Fn([f64; 3]) -> [f32; 3] + Sync
                 .any(|(equal, i, j)| equal && exact(i) != exact(j))
     };
     let count = mesh.triangles.len();
-    let ranges = parallel::ranges(count, parallel::pieces(count, 1 << 16));
+    let ranges = parallel::ranges(count, parallel::piece_count(count, 1 << 16));
     parallel::map(ranges, |range| mesh.triangles[range].iter().filter(collapses).count()).into_iter().sum()
 }

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::ops::Range;
 
 use super::{Precision, WriteOptions, write_error};
+use crate::parallel;
 use crate::{Control, Error, Mesh};
 
 /// Vertices or triangles that are turned into bytes at a time.
@@ -63,30 +64,18 @@ pub(super) fn write_blocks(
 ) -> Result<(), Error> {
     let block = |i: usize| i * BLOCK..(i * BLOCK + BLOCK).min(count);
     let blocks = count.div_ceil(BLOCK);
-    #[cfg(feature = "parallel")]
-    if blocks > 1 && rayon::current_num_threads() > 1 {
-        use rayon::prelude::*;
-        let mut buffers = vec![Vec::new(); 4 * rayon::current_num_threads()];
-        for start in (0..blocks).step_by(buffers.len()) {
-            control.check()?;
-            buffers.par_iter_mut().enumerate().for_each(|(i, buffer)| {
-                buffer.clear();
-                if start + i < blocks {
-                    fill(block(start + i), buffer);
-                }
-            });
-            for buffer in &buffers {
-                write_all(output, buffer)?;
-            }
-        }
-        return Ok(());
-    }
-    let mut buffer = Vec::new();
-    for i in 0..blocks {
+    let mut buffers = vec![Vec::new(); parallel::piece_count(blocks, 1)];
+    for start in (0..blocks).step_by(buffers.len()) {
         control.check()?;
-        buffer.clear();
-        fill(block(i), &mut buffer);
-        write_all(output, &buffer)?;
+        let wave = buffers.iter_mut().zip(start..blocks).collect();
+        let filled = parallel::map(wave, |(buffer, i)| {
+            buffer.clear();
+            fill(block(i), buffer);
+            &buffer[..]
+        });
+        for bytes in filled {
+            write_all(output, bytes)?;
+        }
     }
     Ok(())
 }

@@ -6,17 +6,37 @@ use crate::{Control, Error};
 use super::box_tree::BoxTree;
 use super::pack::{LANES, for_each_bit};
 
-/// The pairs of subtrees at the top are opened until there are so many, which are shared out in about as many runs.
+/// Pairs of subtrees that are shared out among the threads, at least: enough for some dozens of threads, however unequal.
 const TASKS: usize = 256;
-/// Pairs are handed on in batches of about this size, so that what is looked up for them is looked up side by side.
+/// Pairs of items in a batch, about: what is looked up for them is looked up side by side, and still in the first-level cache
+/// afterwards.
 const BATCH: usize = 256;
-/// So many pairs of packs are tested between looks at the limits.
+/// Pairs of packs that are tested between two looks at the limits: less than a millisecond.
 const STEPS_BETWEEN_CHECKS: usize = 1 << 15;
+/// Of the pairs of lanes of one pack, those with the first lane before the second: two different items, in one order.
+const DIFFERENT_LANES: u32 = ordered_lanes(1);
+/// The same with pairs of a lane and itself, whose subtree is opened against itself.
+const ORDERED_LANES: u32 = ordered_lanes(0);
+
+/// The pairs of lanes (i, j), as bit 4 i + j, with `j` at least `i + gap`.
+const fn ordered_lanes(gap: usize) -> u32 {
+    let mut pairs = 0;
+    let mut i = 0;
+    while i < LANES {
+        let mut j = i + gap;
+        while j < LANES {
+            pairs |= 1 << (LANES * i + j);
+            j += 1;
+        }
+        i += 1;
+    }
+    pairs
+}
 
 /// Two packs of one level, by place.
 type Packs = [u32; 2];
 
-/// Calls `visit` for all pairs of an item of `a` and an item of `b` whose boxes meet, some hundred at once, and returns what
+/// Calls `visit` for all pairs of an item of `a` and an item of `b` whose boxes meet, some hundreds at once, and returns what
 /// it appends, in an order that depends on the trees alone.
 pub(crate) fn visit_pairs<T: Send>(
     a: &BoxTree,
@@ -72,7 +92,7 @@ impl Walk<'_> {
             return Ok(None);
         }
         let mut level = a.top().min(b.top());
-        // The packs of the higher tree that meet the box of the lower one.
+        // 1. Down the higher tree to the top of the lower one, wherever the box of the lower one is met.
         let (higher, lower, side) = if a.top() >= b.top() { (a, b, 0) } else { (b, a, 1) };
         let (low, high) = (lower.bounds().min.to_array(), lower.bounds().max.to_array());
         let mut tasks = vec![[0, 0]];
@@ -90,6 +110,7 @@ impl Walk<'_> {
             }
             tasks = opened;
         }
+        // 2. Down both until there are enough.
         while tasks.len() < TASKS && level > 0 {
             let mut opened = Vec::new();
             for &pair in &tasks {
@@ -107,8 +128,7 @@ impl Walk<'_> {
         let [x, y] = pair;
         let mut meeting = self.a.level(level)[x as usize].meeting_pack(&self.b.level(level)[y as usize]);
         if self.within && x == y {
-            // A box above the lowest level is opened against itself.
-            meeting &= if level == 0 { 0x08ce } else { 0x8cef };
+            meeting &= if level == 0 { DIFFERENT_LANES } else { ORDERED_LANES };
         }
         for_each_bit(meeting, |lanes| {
             found([LANES as u32 * x + lanes / LANES as u32, LANES as u32 * y + lanes % LANES as u32]);

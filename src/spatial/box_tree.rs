@@ -13,7 +13,7 @@ use super::pack::{LANES, Pack, for_each_bit};
 use super::read_ahead::read_ahead;
 use super::{morton, radix};
 
-/// Items whose boxes are read at once; a multiple of [`LANES`].
+/// Items whose boxes are read ahead; a multiple of [`LANES`], and few enough to stay in the first-level cache.
 const AT_ONCE: usize = 64;
 
 /// A balanced tree over the boxes of items: every pack of a level holds the boxes of four packs of the level below.
@@ -53,6 +53,7 @@ impl BoxTree {
 
     /// The tree of the given boxes; items are places in their list.
     pub(crate) fn of_boxes(unsorted: &[Aabb]) -> Self {
+        // 1. Items by the Morton codes of their centres (twice the centres, which is as good).
         let mut centres = Aabb { min: Vec3A::splat(f32::INFINITY), max: Vec3A::splat(f32::NEG_INFINITY) };
         for aabb in unsorted {
             let centre = aabb.min + aabb.max;
@@ -73,16 +74,18 @@ impl BoxTree {
         let items: Vec<u32> = order.iter().map(|&key| key as u32).collect();
         drop(order);
 
+        // 2. The packs of the items, and the box of each pack.
         let mut packs = Vec::with_capacity(items.len().div_ceil(LANES - 1) + 1);
         let mut boxes = Vec::with_capacity(items.len().div_ceil(LANES));
-        for some in items.chunks(AT_ONCE) {
-            read_ahead(some.iter().map(|&item| unsorted[item as usize].min.x.to_bits()));
-            for group in some.chunks(LANES) {
+        for part in items.chunks(AT_ONCE) {
+            read_ahead(part.iter().map(|&item| unsorted[item as usize].min.x.to_bits()));
+            for group in part.chunks(LANES) {
                 let boxes_of_items = group.iter().map(|&item| unsorted[item as usize]);
                 packs.push(Pack::new(boxes_of_items.clone()));
                 boxes.push(union(boxes_of_items));
             }
         }
+        // 3. Level by level, until one pack holds everything.
         let mut levels = vec![0];
         while boxes.len() > 1 {
             levels.push(packs.len());

@@ -22,7 +22,7 @@ pub struct Closest {
 
 /// Relative room left for the rounding of single-precision box distances: a difference, a square and a sum of three.
 const SLACK: f32 = 1.0 + 8.0 * f32::EPSILON;
-/// Queries farther out than this many model sizes compare boxes in double precision: a single-precision query
+/// Queries farther out than this (in the frame, where the model has a half-extent in 1..2) compare boxes in double precision: a single-precision query
 /// would be as coarse as the model.
 const FAR: f64 = 64.0;
 

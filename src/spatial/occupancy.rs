@@ -1,4 +1,8 @@
 //! Which cells of a coarse grid a set of triangles passes.
+//!
+//! A triangle whose box covers many cells is divided: for needles that lie askew. If all cells of its box were marked instead,
+//! a knot less 50 short cylinders took 1.5 times as long, a crowd of 200 spheres 1.1 times (`boolean/candidates` says how
+//! that was measured).
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
@@ -12,14 +16,14 @@ const THINNEST: f32 = 1e-6;
 /// Bits of one component of a cell number; the last resolution has eight.
 const BITS: u32 = 10;
 const MASK: u32 = (1 << BITS) - 1;
-/// A triangle whose box covers more cells than this is divided.
+/// A triangle whose box covers more cells than this is divided: below, marking all of them is faster.
 const DIVIDE_FROM: u32 = 12;
-/// So often a triangle is divided at most.
+/// Divisions of one triangle, at most: about as many as there are cells on its way through the largest grid, many times over.
 const MAX_DIVISIONS: u32 = 1 << 14;
-/// Divided parts reach a bit further, in cells, so that rounding loses nothing: so much, and so much for each cell that the
-/// triangle reaches from the origin. (Three half units in the last place for a corner; one for every midpoint, of coordinates
-/// that shrink by half in two divisions.)
+/// Divided parts are widened so that rounding loses nothing: by this part of a cell,
 const MARGIN: f32 = 1.0 / 64.0;
+/// and by this part of a cell for each cell that the triangle reaches from the origin. (Three half units in the last place
+/// for a corner; one for every midpoint, of coordinates that shrink by half in two divisions.)
 const MARGIN_PER_CELL: f32 = 8.0 * f32::EPSILON;
 
 /// A grid of bits over a region of a [`Frame`](super::Frame).
@@ -127,7 +131,7 @@ impl Occupancy {
         Cell(x | y << BITS | z << (2 * BITS))
     }
 
-    /// Marks the cells a triangle passes (and perhaps a few beside it), given the cells of its corners; `corners` is asked
+    /// Marks the cells a triangle passes (and perhaps a few next to it), given the cells of its corners; `corners` is asked
     /// only for big triangles.
     #[inline]
     pub(crate) fn mark(&mut self, of_corners: [Cell; 3], corners: impl FnOnce() -> [Vec3A; 3]) {

@@ -2,10 +2,10 @@
 
 /// Bits of a digit: its counters fit the first-level cache, and so does a cache line for each.
 const DIGIT: u32 = 11;
-/// Below this many items comparisons are faster.
+/// Below this many items sorting by comparisons is faster: counting takes as long as the number of digits.
 const FEW: usize = 256;
 
-/// Sorts by a key of so many `bits`, keeping the order of items with equal keys. `other` is memory for a second copy, with
+/// Sorts by a key of `bits` bits, keeping the order of items with equal keys. `other` is memory for a second copy, with
 /// any contents before and after.
 pub(crate) fn sort<T: Copy + Default>(
     items: &mut Vec<T>,

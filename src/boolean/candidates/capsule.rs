@@ -2,9 +2,9 @@
 
 use glam::Vec3A;
 
-/// A triangle is a needle if it is so many times as long as high.
+/// A triangle is a needle if its longest side is more than this many times its height.
 const SLENDER: f32 = 8.0;
-/// Widening of a capsule, in units of its largest coordinate: far more than single precision loses below.
+/// Widening of a capsule, in units of its largest coordinate: more than single precision loses in all steps together.
 const MARGIN: f32 = 1e-4;
 /// Widening of a capsule round two, in the same units.
 const ROUNDING: f32 = 16.0 * f32::EPSILON;

@@ -3,6 +3,9 @@
 //! Needles lie side by side in bundles (the sides of a long cylinder). The box of a needle that lies askew is mostly empty, so
 //! all boxes of two bundles that cross meet, while hardly any needles do; capsules round parts of a bundle tell them apart.
 //! (Needles in a plane across an axis have flat boxes. So items keep their box, too.)
+//!
+//! For needles that lie askew. With trees of boxes instead: 23 for two crossed rods with 2,000 sides, 13 for two double cones
+//! with 4,000 triangles round each tip, 2.0 for a knot less 50 short cylinders.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
@@ -14,9 +17,9 @@ use crate::control::Control;
 use crate::parallel::Runner;
 use crate::spatial::morton_code;
 
-/// Items per leaf.
+/// Items in a leaf: one capsule round four neighbours of a bundle is hardly wider than theirs.
 const LEAF: usize = 4;
-/// Pairs handed on at once.
+/// Pairs handed on at once: what is looked up for them stays in the first-level cache.
 const BATCH: usize = 256;
 
 /// A balanced binary tree over the capsules of items.
@@ -117,7 +120,7 @@ fn order_key(capsule: &Capsule) -> u64 {
 }
 
 /// Calls `visit` for all pairs of an item of `a` and an item of `b` whose boxes meet and whose capsules are not apart, some
-/// hundred at once, and returns what it appends, in an order that depends on the trees alone.
+/// hundreds at once, and returns what it appends, in an order that depends on the trees alone.
 pub(crate) fn visit_pairs<T: Send>(
     a: &CapsuleTree,
     b: &CapsuleTree,

@@ -3,6 +3,11 @@
 //! The common part of the operands' boxes is divided into a coarse grid. Cells that the other operand's surface does not pass
 //! form regions (`spatial::Regions`), in each of which it winds round everything equally often. Triangles that touch no
 //! passed cell need not be looked at again.
+//!
+//! For operands of many triangles that cross along a curve. Without the grid: 1.2 for two spheres of 330,000 triangles, and
+//! 1.8 if the finer grid (`cull`) is not there either; 2.4 for a knot less 50 short cylinders without both. With the grid, but
+//! without regions, so that every vertex in a free cell is decided for itself: 7.6 for the spheres, 2.4 for a crowd of 200
+//! spheres, 1.5 for the knot.
 
 use obvhs::aabb::Aabb;
 
@@ -12,14 +17,15 @@ use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::spatial::{Frame, Occupancy, Regions};
 
-/// Below so many triangles of the smaller operand, ruling some out costs more than it saves.
+/// Below this many triangles of the smaller operand, ruling some out costs more than it saves.
 const DIVIDE_FROM: usize = 1_000;
-/// At most so many cells along an axis: their numbers have 15 bits.
+/// Cells along an axis, at most: their numbers have 15 bits.
 const MOST_CELLS: u32 = 32;
-/// So many triangles tell how long they usually are, and so many cells they may usually pass.
+/// Triangles that stand for all where it is asked how long they usually are.
 const SAMPLE: usize = 256;
+/// Cells along an axis that a triangle may usually pass.
 const MOST_PASSED: f32 = 8.0;
-/// So many vertices or triangles are looked at by one thread at once.
+/// Vertices or triangles that one thread looks at between two looks at the limits.
 const PIECE: usize = 1 << 14;
 /// The same where pieces have a grid each and no thread waits for one.
 const SERIAL_PIECE: usize = 1 << 18;

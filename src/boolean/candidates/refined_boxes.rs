@@ -8,16 +8,17 @@ use obvhs::aabb::Aabb;
 
 use crate::spatial::Frame;
 
-/// Fewer pairs of triangles than this are not worth it.
+/// Pairs of triangles below which all of them are tested sooner than boxes are refined.
 const FROM_PAIRS: usize = 1 << 14;
-/// Triangles are halved while their box is so many times as wide as the other operand's boxes usually are long.
+/// Triangles are halved while their box is more than this many times as wide as the other operand's boxes usually are long.
 const WIDE: f32 = 2.0;
-/// So many boxes tell how long they usually are.
+/// Boxes that stand for all where it is asked how long they usually are.
 const SAMPLE: usize = 1_000;
-/// At most so many times.
+/// Times that a triangle is halved, at most: it then has 64 parts.
 const MOST_HALVINGS: u32 = 6;
-/// Parts of all triangles beside those, at most: so many, and so many for each triangle of both operands.
+/// Parts of all large triangles together, at most: this many,
 const FEW_PARTS: usize = 4_096;
+/// and this many for each triangle of both operands, so that refining never costs more than building the trees.
 const PARTS_PER_TRIANGLE: usize = 2;
 
 /// Corners of a triangle in the frame of the boxes.

@@ -27,7 +27,7 @@ const SMALLEST_PIECE: usize = 1 << 20;
 
 /// Reads the mesh and the warnings.
 pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<String>), Error> {
-    read_in_pieces(bytes, parallel::pieces(bytes.len(), SMALLEST_PIECE), options)
+    read_in_pieces(bytes, parallel::piece_count(bytes.len(), SMALLEST_PIECE), options)
 }
 
 /// Reads the file cut into at most `count` pieces; the result is the same for any number.

@@ -63,7 +63,7 @@ pub(super) fn read(bytes: &[u8], notes: &mut Notes, control: &Control) -> Result
     };
     let mut whole = Piece::new(count);
     let starts: Vec<usize> = (0..count).step_by(PIECE).collect();
-    for wave in starts.chunks(parallel::pieces(usize::MAX, 1)) {
+    for wave in starts.chunks(parallel::piece_count(usize::MAX, 1)) {
         control.check()?;
         let read = |start: usize| Piece::read(facets, start..(start + PIECE).min(count));
         for piece in parallel::map(wave.to_vec(), read) {

@@ -10,6 +10,7 @@ use rustc_hash::FxHashSet;
 use super::face_mesh::{EdgeSplit, FaceMesh, Proposal, Start, number_nodes};
 use super::joints::{self, Course, FaceSide, Gap, Joints, nearest_parameter};
 use super::orientation;
+use crate::parallel;
 use super::surface::{Patch, PatchSide};
 use crate::parametric::curve::discretise::{CurveMeshing, Refinement, check_resolvable};
 use crate::parametric::curve::param_curve::Curve;
@@ -360,15 +361,9 @@ impl<'a> Builder<'a> {
 /// Calls `work` for every face, in parallel if the crate is built so; the results in the order of the faces.
 fn each_face<T: Send>(
     meshes: &mut [FaceMesh],
-    work: impl Fn(&mut FaceMesh) -> Result<T, Error> + Send + Sync,
+    work: impl Fn(&mut FaceMesh) -> Result<T, Error> + Sync,
 ) -> Result<Vec<T>, Error> {
-    #[cfg(feature = "parallel")]
-    {
-        use rayon::prelude::*;
-        meshes.par_iter_mut().map(work).collect()
-    }
-    #[cfg(not(feature = "parallel"))]
-    meshes.iter_mut().map(work).collect()
+    parallel::try_map(meshes.iter_mut().collect(), work)
 }
 
 /// The mesh without the vertices that no triangle uses.
