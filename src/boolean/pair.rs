@@ -1,6 +1,5 @@
 //! The pipeline for two operands, one line a step.
 
-use crate::boolean::Operation;
 use crate::boolean::arrangement::Arrangement;
 use crate::boolean::arrangement::crossings::Crossings;
 use crate::boolean::arrangement::curve::Curve;
@@ -11,6 +10,7 @@ use crate::boolean::candidates::overlap::{Overlap, Place};
 use crate::boolean::classify::body::Body;
 use crate::boolean::classify::multiplicity::{self, Part};
 use crate::boolean::classify::winding::Windings;
+use crate::boolean::complex::operation::Operation;
 use crate::boolean::complex::{Complex, Motion, Operand};
 use crate::boolean::cut::{cut, plane_sums};
 use crate::boolean::result::assemble::{Assembled, assemble};

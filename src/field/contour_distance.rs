@@ -122,7 +122,7 @@ impl ContourDistance {
         }
     }
 
-    /// The corners of the rectangle round all polygons.
+    /// The corners of the rectangle around all polygons.
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         self.tree.bounds().map(|[low, high]| [[low[0], low[1]], [high[0], high[1]]])

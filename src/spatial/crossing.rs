@@ -54,16 +54,9 @@ impl TriangleTree {
 
     /// Calls `visit` with the corners of every triangle whose box meets the ray from `query` in +x.
     pub(crate) fn visit_right_of(&self, query: [f64; 3], mut visit: impl FnMut([DVec3; 3])) {
-        let around = self.frame.around(DVec3::from_array(query));
-        self.tree.visit(
-            |node, lane| {
-                node.high[0][lane] >= around.low[0]
-                    && (1..3).all(|axis| {
-                        node.low[axis][lane] <= around.high[axis] && node.high[axis][lane] >= around.low[axis]
-                    })
-            },
-            |leaf| visit(self.leaves[leaf as usize].corners),
-        );
+        let mut beam = self.frame.around(DVec3::from_array(query));
+        beam.max.x = f32::INFINITY;
+        self.tree.visit_meeting(&beam, |leaf| visit(self.leaves[leaf as usize].corners));
     }
 
     /// Whether `query` lies exactly on a triangle.
@@ -73,18 +66,10 @@ impl TriangleTree {
         if !query.is_finite() || self.is_empty() {
             return false;
         }
-        let around = self.frame.around(query);
         let mut touched = false;
-        self.tree.visit(
-            |node, lane| {
-                (0..3).all(|axis| {
-                    node.low[axis][lane] <= around.high[axis] && node.high[axis][lane] >= around.low[axis]
-                })
-            },
-            |leaf| {
-                touched |= contains(self.leaves[leaf as usize].corners, query);
-            },
-        );
+        self.tree.visit_meeting(&self.frame.around(query), |leaf| {
+            touched |= contains(self.leaves[leaf as usize].corners, query);
+        });
         touched
     }
 }

@@ -3,10 +3,11 @@
 use std::cell::Cell;
 
 use glam::DVec3;
+use obvhs::aabb::Aabb;
 
 use super::disc::{Disc, discs};
 use super::triangle::is_needle;
-use super::{LocalFrame, SmallBox, WideTree, binary_tree};
+use super::{Frame, LANES, WideTree, binary_tree};
 use crate::Mesh;
 
 /// A hierarchy over the triangles of a mesh, for nearest points, exact ray crossings and winding numbers.
@@ -18,7 +19,7 @@ pub struct TriangleTree {
     pub(super) tree: WideTree,
     /// What every node of `tree` holds, as a flat disc.
     pub(super) discs: Vec<Disc>,
-    pub(super) frame: LocalFrame,
+    pub(super) frame: Frame,
     /// The triangles in leaf order.
     pub(super) leaves: Vec<Leaf>,
     /// For every triangle of the mesh its position in `leaves`.
@@ -58,15 +59,15 @@ impl TriangleTree {
             }
         }
         let frame = if triangles.is_empty() {
-            LocalFrame::of(DVec3::ZERO, DVec3::ZERO)
+            Frame::of([0.0; 3], [0.0; 3])
         } else {
-            LocalFrame::of(low, high)
+            Frame::of(low.to_array(), high.to_array())
         };
-        let boxes: Vec<SmallBox> = triangles
+        let boxes: Vec<Aabb> = triangles
             .iter()
             .map(|leaf| {
                 let [a, b, c] = leaf.corners.map(|corner| frame.around(corner));
-                a.joined(&b).joined(&c)
+                a.union(&b).union(&c)
             })
             .collect();
         let binary = binary_tree(&boxes);
@@ -121,7 +122,10 @@ impl TriangleTree {
         let radius = (radius * self.frame.scale()) as f32;
         let bound = (radius * radius).next_up() * (1.0 + 1e-5);
         self.tree.visit(
-            |node, lane| go_on.get() && node.squared_distances(&query.low, &query.high)[lane] <= bound,
+            |pack| {
+                let near = pack.squared_distances(&query).map(|distance| u32::from(distance <= bound));
+                if go_on.get() { (0..LANES).map(|lane| near[lane] << lane).sum() } else { 0 }
+            },
             |leaf| go_on.set(go_on.get() && visit(self.leaves[leaf as usize].triangle)),
         );
     }

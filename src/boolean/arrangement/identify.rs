@@ -13,7 +13,7 @@ use super::points::Points;
 use super::sheets::Sheet;
 use crate::Error;
 use crate::boolean::complex::ids::{CutFaceId, NodeId, PointId};
-use crate::mesh::BitSet;
+use crate::mesh::{BitSet, SparseUnionFind};
 use crate::parallel::Runner;
 
 /// Up to this many points are compared pair by pair: fewer than sorting them costs.
@@ -21,9 +21,10 @@ const FEW: usize = 12;
 /// Faces that one thread looks at before the limits are checked.
 const FACES_AT_ONCE: usize = 1024;
 
-/// Union-find over points; only those that coincide with another are stored.
+/// The classes of points that are one; only those that coincide with another are stored.
 #[derive(Debug, Default)]
 pub(crate) struct Identification {
+    /// For every point that is not the lowest of its class, the lowest.
     parent: FxHashMap<PointId, PointId>,
     /// The points that are stored: for most points one look at a bit is enough.
     stored: BitSet,
@@ -42,7 +43,7 @@ impl Identification {
         runner: Runner<'_>,
     ) -> Result<Self, Error> {
         let outline = Outline { curve, plane_faces, points };
-        let mut result = Self::default();
+        let mut classes = SparseUnionFind::default();
         // 1. Plane face by plane face.
         for operand in 0..2 {
             let pairs = runner.gather(curve.faces[operand].len(), FACES_AT_ONCE, 0, |range, pairs| {
@@ -59,7 +60,7 @@ impl Identification {
                 };
                 visit_cut_faces(curve, points, operand, range, |_| 0, visit);
             })?;
-            pairs.into_iter().for_each(|[u, v]| result.join(PointId::new(u), PointId::new(v)));
+            pairs.into_iter().for_each(|[u, v]| classes.join(PointId::new(u), PointId::new(v)));
         }
         // 2. Sheet by sheet.
         for sheet in sheets {
@@ -71,15 +72,16 @@ impl Identification {
                 }
             }
             find_coincidences(&mut at, &mut pairs);
-            pairs.into_iter().for_each(|[u, v]| result.join(PointId::new(u), PointId::new(v)));
+            pairs.into_iter().for_each(|[u, v]| classes.join(PointId::new(u), PointId::new(v)));
         }
         // 3. Every point that is stored gets the lowest one of its class.
-        result.flatten();
-        if !result.is_empty() {
-            result.stored = BitSet::new(points.len());
-            result.parent.keys().for_each(|&point| result.stored.insert(point.number()));
+        let parent = classes.into_roots();
+        let mut stored = BitSet::default();
+        if !parent.is_empty() {
+            stored = BitSet::new(points.len());
+            parent.keys().for_each(|point| stored.insert(point.number()));
         }
-        Ok(result)
+        Ok(Self { parent, stored })
     }
 
     /// Whether every point is its own.
@@ -107,26 +109,6 @@ impl Identification {
         all.sort_unstable();
         all.dedup();
         all
-    }
-
-    fn root(&self, mut point: PointId) -> PointId {
-        while let Some(&parent) = self.parent.get(&point) {
-            point = parent;
-        }
-        point
-    }
-
-    fn join(&mut self, u: PointId, v: PointId) {
-        let (u, v) = (self.root(u), self.root(v));
-        if u != v {
-            self.parent.insert(u.max(v), u.min(v));
-        }
-    }
-
-    fn flatten(&mut self) {
-        let roots: Vec<(PointId, PointId)> =
-            self.parent.keys().map(|&point| (point, self.root(point))).collect();
-        self.parent.extend(roots);
     }
 }
 

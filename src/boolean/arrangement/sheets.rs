@@ -18,7 +18,7 @@ use crate::boolean::candidates::Candidates;
 use crate::boolean::complex::Complex;
 use crate::boolean::complex::ids::FaceId;
 use crate::exact::{Projection, Sign, collinear, orient2d, orient3d};
-use crate::mesh::UnionFind;
+use crate::mesh::SparseUnionFind;
 use crate::parallel::Runner;
 
 /// Faces of one plane that are added up, ascending.
@@ -69,11 +69,11 @@ pub(crate) fn find_sheets(
         }
     };
     // 2. Sets of them.
-    let touching: Vec<[FaceId; 2]> = touching
-        .into_iter()
-        .map(|pair: [u32; 2]| [0, 1].map(|operand| complex.face(operand, pair[operand])))
-        .collect();
-    Ok(connected_sets(&touching))
+    let mut classes = SparseUnionFind::default();
+    for [s, t] in touching {
+        classes.join(complex.face(0, s), complex.face(1, t));
+    }
+    Ok(classes.into_sets())
 }
 
 /// The faces of A near B that have a vertex without a direction, as triangles of A.
@@ -97,21 +97,4 @@ fn look_opposite_ways(complex: &Complex<'_>, triangles: [u32; 2]) -> Option<bool
     let seen = Projection::of(&a);
     let [p, q, r] = b.map(|p| seen.project(&p));
     Some(orient2d(p, q, r) != Sign::Positive)
-}
-
-/// The sets of faces that pairs connect, each ascending, in ascending order.
-fn connected_sets(pairs: &[[FaceId; 2]]) -> Vec<Sheet> {
-    let mut members: Vec<FaceId> = pairs.as_flattened().to_vec();
-    members.sort_unstable();
-    members.dedup();
-    let place = |face: FaceId| members.partition_point(|&member| member < face) as u32;
-    let mut classes = UnionFind::new(members.len());
-    pairs.iter().for_each(|&[f, g]| classes.join(place(f), place(g)));
-    let mut sheets: Vec<Sheet> = vec![Vec::new(); members.len()];
-    for (i, &member) in (0..).zip(&members) {
-        sheets[classes.root(i) as usize].push(member);
-    }
-    sheets.retain(|sheet| !sheet.is_empty());
-    sheets.sort_unstable();
-    sheets
 }

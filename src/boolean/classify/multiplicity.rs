@@ -13,7 +13,7 @@
 //! For operands that do not cross themselves, every multiplicity is 0 or 1. Where rounded surfaces cross themselves by
 //! rounding other values appear, and the result is closed all the same.
 
-use crate::boolean::Operation;
+use crate::boolean::complex::operation::Operation;
 
 /// What of a surface is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

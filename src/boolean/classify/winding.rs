@@ -10,7 +10,7 @@ use crate::boolean::arrangement::curve::Curve;
 use crate::boolean::candidates::overlap::{Overlap, Place};
 use crate::boolean::complex::ids::VertexId;
 use crate::boolean::complex::rays;
-use crate::mesh::Bounds;
+use crate::mesh::{Bounds, WeightedUnionFind};
 use crate::parallel::Runner;
 use crate::spatial::Regions;
 
@@ -113,25 +113,25 @@ fn winding_numbers(
     Ok((classes.values(), contacts))
 }
 
-/// Union-find over the vertices of one operand and the regions of the coarse grid, with the difference of winding numbers to
-/// the parent. Vertices in a region, or outside the other operand's box, are not told apart.
+/// Sets of vertices of one operand whose winding numbers are known relative to each other, with the regions of the coarse
+/// grid. Vertices in a region, or outside the other operand's box, are not told apart.
 struct WindingClasses<'a> {
     places: &'a [Place],
     regions: &'a Regions,
-    /// Vertices, then regions, then one entry for all that is outside. 0 for a root, else one more than the parent: memory
-    /// that starts as zeros costs nothing until it is used.
-    parent: Vec<u32>,
-    offset: Vec<i32>,
+    /// One entry for all that is outside, then the regions, then the vertices.
+    entries: WeightedUnionFind,
+    /// The entry of the first vertex.
+    first_vertex: u32,
 }
 
 impl<'a> WindingClasses<'a> {
-    fn new(places: &'a [Place], regions: &'a Regions) -> Self {
-        let count = places.len() + usize::from(regions.count()) + 1;
-        Self { places, regions, parent: vec![0; count], offset: vec![0; count] }
-    }
+    const OUTSIDE: u32 = 0;
+    const FIRST_REGION: u32 = 1;
 
-    fn outside(&self) -> u32 {
-        self.parent.len() as u32 - 1
+    fn new(places: &'a [Place], regions: &'a Regions) -> Self {
+        let first_vertex = Self::FIRST_REGION + u32::from(regions.count());
+        let entries = WeightedUnionFind::new(first_vertex as usize + places.len());
+        Self { places, regions, entries, first_vertex }
     }
 
     /// The entry that stands for a vertex.
@@ -139,78 +139,39 @@ impl<'a> WindingClasses<'a> {
     fn entry(&self, v: u32) -> u32 {
         let place = self.places[v as usize];
         if place.is_outside() {
-            return self.outside();
+            return Self::OUTSIDE;
         }
         match self.regions.of_cell(place.cell()) {
-            Regions::PASSED => v,
-            region => self.places.len() as u32 + u32::from(region),
-        }
-    }
-
-    /// The representative of an entry, and the entry's value relative to it.
-    #[inline]
-    fn find(&mut self, mut v: u32) -> (u32, i32) {
-        let mut sum = 0;
-        loop {
-            let parent = self.parent[v as usize];
-            if parent == 0 {
-                return (v, sum);
-            }
-            let grandparent = self.parent[parent as usize - 1];
-            // Path halving.
-            if grandparent != 0 {
-                self.offset[v as usize] += self.offset[parent as usize - 1];
-                self.parent[v as usize] = grandparent;
-            }
-            sum += self.offset[v as usize];
-            v = self.parent[v as usize] - 1;
+            Regions::PASSED => self.first_vertex + v,
+            region => Self::FIRST_REGION + u32::from(region),
         }
     }
 
     /// Records that the value of vertex `v` is that of `u` plus `change`.
     #[inline]
     fn join(&mut self, u: u32, v: u32, change: i32) {
-        let (u, v) = (self.entry(u), self.entry(v));
-        let ((root_u, value_u), (root_v, value_v)) = (self.find(u), self.find(v));
-        if root_u == root_v {
-            debug_assert_eq!(value_v - value_u, change, "signed crossings round a closed path cancel");
-            return;
-        }
-        // value(root_v) = value(root_u) + value_u + change - value_v. Of two vertices the lower stays above; regions and
-        // the outside stay above both.
-        let difference = value_u + change - value_v;
-        let is_vertex = |entry: u32| (entry as usize) < self.places.len();
-        if (is_vertex(root_v) && !is_vertex(root_u))
-            || (is_vertex(root_u) == is_vertex(root_v) && root_u < root_v)
-        {
-            self.parent[root_v as usize] = root_u + 1;
-            self.offset[root_v as usize] = difference;
-        } else {
-            self.parent[root_u as usize] = root_v + 1;
-            self.offset[root_u as usize] = -difference;
-        }
+        let contradiction = self.entries.join(self.entry(u), self.entry(v), change);
+        debug_assert_eq!(contradiction, 0, "signed crossings round a closed path cancel");
     }
 
     /// One vertex of every component that no outside vertex belongs to, ascending.
     fn unsettled(&mut self) -> Vec<u32> {
-        let (outside, _) = self.find(self.outside());
-        let mut seen = rustc_hash::FxHashSet::from_iter([outside]);
+        // The lowest entry stands for its set.
+        let mut seen = rustc_hash::FxHashSet::from_iter([Self::OUTSIDE]);
         let mut seen_regions = vec![false; usize::from(self.regions.count())];
         let mut seeds = Vec::new();
         for v in 0..self.places.len() as u32 {
             let entry = self.entry(v);
-            let is_new = match (entry as usize).checked_sub(self.places.len()) {
+            let is_new = if entry >= self.first_vertex {
+                true
+            } else if entry == Self::OUTSIDE {
+                false
+            } else {
                 // Nearly all vertices: one look at a small table.
-                Some(region) => {
-                    seen_regions.get_mut(region).is_some_and(|seen| !std::mem::replace(seen, true))
-                }
-                None => true,
+                !std::mem::replace(&mut seen_regions[(entry - Self::FIRST_REGION) as usize], true)
             };
-            if is_new {
-                let (root, _) = self.find(entry);
-                if seen.insert(root) {
-                    seeds.push(v);
-                }
+            if is_new && seen.insert(self.entries.root(entry).0) {
+                seeds.push(v);
             }
         }
         seeds
@@ -218,19 +179,13 @@ impl<'a> WindingClasses<'a> {
 
     /// Fixes the value of a vertex, and so of its component.
     fn settle(&mut self, v: u32, value: i32) {
-        let (outside, outside_value) = self.find(self.outside());
-        let (root, relative) = self.find(self.entry(v));
-        self.parent[root as usize] = outside + 1;
-        // value(v) - value(outside) = relative + offset - outside_value, and outside has 0.
-        self.offset[root as usize] = value - relative + outside_value;
+        self.entries.join(Self::OUTSIDE, self.entry(v), value);
     }
 
+    /// The values of all vertices, all of them settled: relative to the outside, which has 0.
     fn values(mut self) -> Vec<i32> {
-        let (_, outside_value) = self.find(self.outside());
-        let first_region = self.places.len() as u32;
-        let of_region: Vec<i32> = (0..u32::from(self.regions.count()))
-            .map(|region| self.find(first_region + region).1 - outside_value)
-            .collect();
+        let of_region: Vec<i32> =
+            (Self::FIRST_REGION..self.first_vertex).map(|entry| self.entries.root(entry).1).collect();
         (0..self.places.len() as u32)
             .map(|v| {
                 let place = self.places[v as usize];
@@ -238,7 +193,7 @@ impl<'a> WindingClasses<'a> {
                     return 0;
                 }
                 match self.regions.of_cell(place.cell()) {
-                    Regions::PASSED => self.find(v).1 - outside_value,
+                    Regions::PASSED => self.entries.root(self.first_vertex + v).1,
                     region => of_region[usize::from(region)],
                 }
             })

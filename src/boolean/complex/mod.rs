@@ -15,6 +15,7 @@
 
 pub(super) mod directions;
 pub(super) mod ids;
+pub(super) mod operation;
 pub(super) mod origin;
 pub(super) mod planes;
 pub(super) mod predicates;

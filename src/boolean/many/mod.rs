@@ -5,13 +5,16 @@
 //! smallest operands; a symmetric difference goes from left to right.
 
 mod merge_order;
+pub(super) mod options;
 
 use std::borrow::Cow;
 
+use crate::boolean::complex::operation::{Contact, Operation};
+use crate::boolean::complex::origin::Origin;
 use crate::boolean::pair::{self, Combined, Settings};
 use crate::boolean::result::certificate::{Notes, OperandState};
 use crate::boolean::result::origins::Origins;
-use crate::boolean::{Contact, Operation, Options, Origin, Outcome};
+use crate::boolean::result::outcome::Outcome;
 use crate::exact::{Projection, Sign, orient2d};
 use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
@@ -19,6 +22,15 @@ use crate::{Error, Mesh, Solid};
 
 /// From this many triangles on, threads are worth waking.
 const PARALLEL_FROM: usize = 4_096;
+
+/// What a result is to be like.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Policy {
+    /// What becomes of operands that touch.
+    pub(crate) contact: Contact,
+    /// Whether vertices that nobody needs are left out where the operation cuts.
+    pub(crate) remove_vertices: bool,
+}
 
 /// An operand, or what some of them have become.
 struct Partial<'a> {
@@ -48,7 +60,7 @@ impl<'a> Partial<'a> {
 
 /// Runs an operation over all operands.
 pub(crate) fn run(
-    options: &Options,
+    policy: Policy,
     operation: Operation,
     operands: &[&Solid],
     runner: Runner<'_>,
@@ -70,7 +82,7 @@ pub(crate) fn run(
             Partial::new(Cow::Owned(solid), source.iter().map(origin).collect(), groups)
         })
         .collect();
-    let engine = Engine { options, runner };
+    let engine = Engine { policy, runner };
     let result = match operation {
         Operation::Union => engine.union(partials)?,
         Operation::Difference => {
@@ -98,7 +110,7 @@ pub(crate) fn run(
 }
 
 struct Engine<'o> {
-    options: &'o Options,
+    policy: Policy,
     runner: Runner<'o>,
 }
 
@@ -123,7 +135,7 @@ impl Engine<'_> {
             self.runner.control.report("uniting", done as f64 / merges as f64)?;
             // Whole merges side by side while there are enough of them, else parallel inside each.
             let inside = if pairs.len() >= 8 { self.runner.serial() } else { self.runner };
-            let engine = Engine { options: self.options, runner: inside };
+            let engine = Engine { policy: self.policy, runner: inside };
             let merged = self.runner.pieces(pairs.len(), 1, |range| {
                 let [x, y] = pairs[range.start].map(|place| places[place].as_ref());
                 let both = x.zip(y).expect("a place is taken until it is merged into another");
@@ -144,9 +156,9 @@ impl Engine<'_> {
         b: &Partial<'_>,
     ) -> Result<Partial<'a>, Error> {
         let settings = Settings {
-            fuse: self.options.contact == Contact::Fuse,
+            fuse: self.policy.contact == Contact::Fuse,
             glue: operation == Operation::SymmetricDifference,
-            remove_vertices: self.options.remove_vertices,
+            remove_vertices: self.policy.remove_vertices,
             groups: [&a.groups, &b.groups],
         };
         let triangles = a.solid.mesh().triangles.len() + b.solid.mesh().triangles.len();
