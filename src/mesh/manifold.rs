@@ -1,5 +1,8 @@
 //! Making a surface 2-manifold: where more than two triangles meet in an edge they are paired so that solid wedges close;
 //! then every point with several fans of triangles is split. Bodies that touch separate; nothing opens.
+//!
+//! Angles around an edge are compared by exact orientations, and the pairing depends on nothing else but the order of the
+//! triangles: the same surface is always taken apart in the same way.
 
 use rustc_hash::FxHashMap;
 
@@ -37,9 +40,13 @@ pub(crate) trait Surface {
 }
 
 /// Makes a surface 2-manifold, given its half-edges. Returns the points made, with the ones they are copies of.
+/// O(n + m log m) for n triangles, m of them at edges with more than two.
 pub(crate) fn make_manifold(surface: &mut impl Surface, half_edges: &HalfEdges) -> Vec<(u32, u32)> {
+    // 1. Two by two at every edge.
     let (twins, crowded) = pair_half_edges(surface, half_edges);
+    // 2. A point of its own for every fan.
     let copies = split_points(surface, &twins);
+    // 3. What is still between the same two points comes apart in the middle.
     separate_parallel_edges(surface, &twins, &crowded);
     copies
 }
@@ -61,7 +68,7 @@ pub(crate) struct HalfEdges {
 impl HalfEdges {
     /// Those of the triangles that were not dropped.
     pub(crate) fn of(surface: &impl Surface) -> Self {
-        let all = alive(surface).flat_map(|(i, corners)| {
+        let all = live_triangles(surface).flat_map(|(i, corners)| {
             [0, 1, 2].map(|k| {
                 let (u, v) = (corners[k], corners[(k + 1) % 3]);
                 let entry =
@@ -96,7 +103,7 @@ fn ends(surface: &impl Surface, half_edge: HalfEdge) -> (u32, u32) {
 }
 
 /// The triangles that were not dropped, with their corners.
-fn alive(surface: &impl Surface) -> impl Iterator<Item = (u32, [u32; 3])> + Clone {
+fn live_triangles(surface: &impl Surface) -> impl Iterator<Item = (u32, [u32; 3])> + Clone {
     (0..surface.len() as u32).filter_map(|i| Some((i, surface.corners(i)?)))
 }
 
@@ -129,7 +136,7 @@ fn pair_half_edges(surface: &impl Surface, half_edges: &HalfEdges) -> (Vec<HalfE
 /// Pairs the half-edges at the edge from `u` to `v` so that each pair bounds a wedge of the solid.
 ///
 /// Seen along the edge, the solid lies clockwise of a triangle whose half-edge runs from `u` to `v`, and counter-clockwise
-/// of one that runs back. Going round counter-clockwise, a wedge thus opens at a backward half-edge and closes at the next
+/// of one that runs back. Going around counter-clockwise, a wedge thus opens at a backward half-edge and closes at the next
 /// forward one; with nesting they match like parentheses.
 fn pair_by_angle(
     surface: &impl Surface,
@@ -144,6 +151,7 @@ fn pair_by_angle(
         /// Whether the apex lies on the line of the edge: no angle then.
         is_flat: bool,
     }
+    // 1. The triangles as spokes around the edge.
     let (from, to) = (surface.position(u), surface.position(v));
     let mut spokes: Vec<Spoke> = half_edges
         .iter()
@@ -153,27 +161,28 @@ fn pair_by_angle(
             Spoke { half_edge, opens: ends(surface, half_edge).0 == v, apex, is_flat }
         })
         .collect();
+    // 2. By angle from the first of them that has one; those without come first.
     let reference = spokes.iter().find(|spoke| !spoke.is_flat).map(|spoke| spoke.apex);
-    let around = Around { from, to };
+    let axis = Axis { from, to };
     let by_angle = |x: &Spoke, y: &Spoke| match (reference, x.is_flat || y.is_flat) {
-        (Some(reference), false) => around.compare(&reference, &x.apex, &y.apex),
+        (Some(reference), false) => axis.compare(&reference, &x.apex, &y.apex),
         _ => y.is_flat.cmp(&x.is_flat),
     };
     // At equal angles wedges close before others open: what touches stays apart.
     spokes.sort_by(|x, y| by_angle(x, y).then(x.opens.cmp(&y.opens)).then(x.half_edge.cmp(&y.half_edge)));
-    // Start where the nesting is lowest, so that no wedge closes before it has opened.
-    let mut depth = 0i32;
-    let mut lowest = (0, 0);
+    // 3. Start where the nesting is lowest, so that no wedge closes before it has opened.
+    let (mut depth, mut lowest_depth, mut start) = (0i32, 0, 0);
     for (i, spoke) in spokes.iter().enumerate() {
         depth += if spoke.opens { 1 } else { -1 };
-        if depth < lowest.0 {
-            lowest = (depth, i + 1);
+        if depth < lowest_depth {
+            (lowest_depth, start) = (depth, i + 1);
         }
     }
+    // 4. Match like parentheses.
     let mut open = Vec::new();
     let mut pairs = Vec::new();
     for i in 0..spokes.len() {
-        let spoke = &spokes[(lowest.1 + i) % spokes.len()];
+        let spoke = &spokes[(start + i) % spokes.len()];
         if spoke.opens {
             open.push(spoke.half_edge);
         } else if let Some(other) = open.pop() {
@@ -183,13 +192,14 @@ fn pair_by_angle(
     pairs
 }
 
-/// Angles round an edge, counter-clockwise seen against its direction, compared exactly on the given coordinates.
-struct Around {
+/// An edge as an axis: angles around it, counter-clockwise seen against its direction, are compared exactly on the given
+/// coordinates.
+struct Axis {
     from: [f64; 3],
     to: [f64; 3],
 }
 
-impl Around {
+impl Axis {
     /// Compares the angles from the half-plane of `reference` to those of `x` and `y`.
     fn compare(&self, reference: &[f64; 3], x: &[f64; 3], y: &[f64; 3]) -> std::cmp::Ordering {
         let sector = |p: &[f64; 3]| match self.turn(reference, p) {
@@ -233,7 +243,7 @@ impl Around {
 /// Gives every fan of triangles at a complete point a point of its own; the first fan keeps the old one.
 fn split_points(surface: &mut impl Surface, twins: &[HalfEdge]) -> Vec<(u32, u32)> {
     let corners_of = |(i, corners): (u32, [u32; 3])| [0, 1, 2].map(|k| (corners[k], 3 * i + k as u32));
-    let all = alive(surface).flat_map(corners_of).filter(|&(point, _)| surface.is_complete(point));
+    let all = live_triangles(surface).flat_map(corners_of).filter(|&(point, _)| surface.is_complete(point));
     let by_point = Buckets::new(surface.point_count(), all);
     let mut seen = vec![false; twins.len()];
     let mut copies = Vec::new();
@@ -245,7 +255,7 @@ fn split_points(surface: &mut impl Surface, twins: &[HalfEdge]) -> Vec<(u32, u32
             if seen[start as usize] {
                 continue;
             }
-            // Round the fan: the half-edge before the corner arrives at the point; its twin leaves it.
+            // Around the fan: the half-edge before the corner arrives at the point; its twin leaves it.
             fan.clear();
             let mut corner = start;
             let closed = loop {
@@ -268,6 +278,7 @@ fn split_points(surface: &mut impl Surface, twins: &[HalfEdge]) -> Vec<(u32, u32
             changes.extend(fan.iter().map(|&corner| (corner, copy)));
         }
     }
+    // Only now: the fans were found by the corners as they were.
     for (corner, copy) in changes {
         if let Some(mut corners) = surface.corners(corner / 3) {
             corners[corner as usize % 3] = copy;
@@ -280,6 +291,7 @@ fn split_points(surface: &mut impl Surface, twins: &[HalfEdge]) -> Vec<(u32, u32
 /// Where two pairs of triangles still share both ends of an edge, one of the pairs gets a vertex in its middle. That can only
 /// be where there were several pairs.
 fn separate_parallel_edges(surface: &mut impl Surface, twins: &[HalfEdge], crowded: &[HalfEdge]) {
+    // 1. Pairs between the same two points, all but the first of each.
     let mut forward: Vec<(u32, u32, HalfEdge)> = Vec::new();
     for &half_edge in crowded.iter().filter(|&&half_edge| twins[half_edge as usize] != NONE) {
         let (u, v) = ends(surface, half_edge);
@@ -292,7 +304,7 @@ fn separate_parallel_edges(surface: &mut impl Surface, twins: &[HalfEdge], crowd
     for group in forward.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
         splits.extend(group[1..].iter().map(|entry| (entry.2, twins[entry.2 as usize])));
     }
-    // A triangle may have several sides to split: collect them by triangle, then cut it up.
+    // 2. A vertex in the middle of each.
     let mut middle_of: FxHashMap<HalfEdge, u32> = FxHashMap::default();
     for (x, y) in splits {
         let (u, v) = ends(surface, x);
@@ -301,6 +313,7 @@ fn separate_parallel_edges(surface: &mut impl Surface, twins: &[HalfEdge], crowd
         middle_of.insert(x, middle);
         middle_of.insert(y, middle);
     }
+    // 3. A triangle may have several sides to split: it is cut up with all of them.
     let mut touched: Vec<u32> = middle_of.keys().map(|half_edge| half_edge / 3).collect();
     touched.sort_unstable();
     touched.dedup();

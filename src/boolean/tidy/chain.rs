@@ -11,8 +11,8 @@ use super::flip::Flip;
 use super::patch::Patch;
 use super::snap::snap_pairs;
 
-/// Rounds of splitting and snapping. A round is followed by another only where two middle corners over one side are at the
-/// same place, and has fewer points than the last; the bound is for time alone.
+/// Rounds of splitting and snapping at most. Another round follows only where two middle corners over one side are at the
+/// same place; it has fewer points then, so the bound is for time alone.
 const MOST_ROUNDS: usize = 8;
 
 /// Triangles looked at in a round, for each that has no area at its start. Splitting only makes shorter sides, but flips

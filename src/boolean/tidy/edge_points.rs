@@ -16,10 +16,10 @@ use crate::mesh::{Buckets, HalfEdges};
 use crate::spatial::{BoxTree, Frame};
 use crate::{Control, Error};
 
-/// Edges looked at between looks at the limits; each takes about a microsecond.
+/// Edges tested between checks of the limits: bounds how long a cancelled operation goes on.
 const EDGES_BETWEEN_CHECKS: usize = 1024;
 
-/// Cells of the grid that an edge may pass; longer ones are looked up in a tree instead.
+/// Cells of the grid that the box of an edge may cover; longer edges are searched for in a tree instead.
 const MOST_CELLS_PER_EDGE: usize = 64;
 
 /// All edges of the patch, ascending: ends, and the faces there.
@@ -99,7 +99,7 @@ fn boxes_along(p: Vec3A, q: Vec3A, points: usize) -> impl Iterator<Item = Aabb> 
     /// Second largest extent, in units of the frame (the points' box is 1 long), from which a segment's own box holds many
     /// points that are not near the segment.
     const ASKEW: f32 = 0.05;
-    /// Points from which more boxes cost less than the points in one large box.
+    /// Points from which several boxes are searched: below, walking the tree again costs more than testing the points.
     const MANY_POINTS: usize = 50_000;
     /// Boxes for a segment.
     const PARTS: u8 = 16;

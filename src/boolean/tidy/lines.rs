@@ -15,8 +15,8 @@ use super::splits::Splits;
 use crate::exact::collinear;
 use crate::mesh::{BitSet, UnionFind};
 
-/// Rounds: points that become one, and faces that are split, may leave further triangles without area. Every round takes
-/// all there are, so that a second one is rare; the bound is for time alone.
+/// Rounds at most: points that become one, and faces that are split, may leave further triangles without area. A round
+/// removes all there are, so the bound is for time alone; the chain step takes what is left.
 const MOST_ROUNDS: usize = 8;
 
 /// Removes the triangles without area all of whose corners are complete. Those of one plane whose sides get vertices are

@@ -36,8 +36,8 @@ use patch::{Patch, Tidied};
 use separate::Separation;
 use source::Source;
 
-/// Rounds of all steps while triangles without area are left. Collapsing and flipping may leave some for the next round;
-/// what is left after three is kept by the rest of the surface, and further rounds would leave it too.
+/// Rounds of all steps at most, while triangles without area are left: removing vertices, collapsing and flipping may leave
+/// some for the next round. Bounds the time where the surface around holds a triangle fast that has no area.
 const MOST_ROUNDS: usize = 3;
 
 /// Settings of the clean-up.
@@ -51,7 +51,7 @@ pub(super) struct Settings {
     pub(super) glue: bool,
     /// How many decisions plain coordinates left open: without any, nothing touches.
     pub(super) contacts: u64,
-    /// Whether to clean up even where nothing points to work.
+    /// Whether to clean up even where the arrangement gives no reason to: cutting left slivers, or faces were added up.
     pub(super) always: bool,
 }
 
@@ -80,7 +80,7 @@ pub(super) fn tidy(
     let mut extra: Vec<PointId> = Vec::new();
     loop {
         let patch = gather::gather(source, pieces, &extra);
-        // Candidates that are not in the patch need no look.
+        // Candidates outside the patch have nothing that changed around them.
         let local = candidates.iter().filter_map(|&point| patch.find_point(point)).collect();
         match attempt(patch, local, settings, runner.control)? {
             Attempt::Done(tidied) => return Ok(Some(tidied)),

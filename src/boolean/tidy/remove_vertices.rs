@@ -11,7 +11,7 @@ use crate::exact::collinear;
 use crate::polygon::{Shape, Triangulator};
 use crate::{Control, Error};
 
-/// Vertices looked at between looks at the limits; each takes some microseconds.
+/// Vertices tried between checks of the limits: bounds how long a cancelled operation goes on.
 const VERTICES_BETWEEN_CHECKS: usize = 1024;
 
 /// Removes all candidates that can go.

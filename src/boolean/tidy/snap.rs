@@ -1,26 +1,15 @@
 //! Snapping: points at the same place become one.
 
-use rustc_hash::FxHashMap;
-
 use super::face::LocalPoint;
 use super::patch::Patch;
+use crate::mesh::SparseUnionFind;
 
 /// Makes one point of each pair, the lower one.
 pub(super) fn snap_pairs(patch: &mut Patch<'_>, pairs: &[(LocalPoint, LocalPoint)]) {
-    let mut stands_for: FxHashMap<LocalPoint, LocalPoint> = FxHashMap::default();
-    let root = |stands_for: &FxHashMap<LocalPoint, LocalPoint>, mut point: LocalPoint| {
-        while let Some(&other) = stands_for.get(&point) {
-            point = other;
-        }
-        point
-    };
-    for &(x, y) in pairs {
-        let (x, y) = (root(&stands_for, x), root(&stands_for, y));
-        if x != y {
-            stands_for.insert(x.max(y), x.min(y));
-        }
-    }
-    patch.substitute(|point| root(&stands_for, point));
+    let mut sets = SparseUnionFind::default();
+    pairs.iter().for_each(|&(x, y)| sets.join(x, y));
+    let lowest = sets.into_roots();
+    patch.substitute(|point| lowest.get(&point).copied().unwrap_or(point));
     patch.cancel();
 }
 
