@@ -36,17 +36,7 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     }
 
     let control = session.control();
-    let start = Instant::now();
-    let standard = arguments.model == Path::new(STANDARD);
-    let name = if standard { "standard input".to_owned() } else { arguments.model.display().to_string() };
-    session.console.stage(&format!("reading {name}"), 0.0);
-    let folder = arguments.model.parent().filter(|_| !standard).unwrap_or(Path::new(""));
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let model = Model::parse(&operands::text(&arguments.model, &session.limits)?, folder)?;
-    session.took("read", start);
-    let files: Vec<String> = model.files().iter().map(|file| file.display().to_string()).collect();
-    session
-        .note("model", json!({ "file": name, "nodes": model.names().collect::<Vec<_>>(), "files": files }));
+    let (model, name) = read(&arguments.model, session)?;
     if arguments.dry_run {
         return dry_run(&model, &name, session);
     }
@@ -60,17 +50,7 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     let mut drawn = Vec::new();
     if let (Some(path), Some(format)) = (&arguments.contours, format) {
         let contours = evaluation.contours(&model, arguments.contour_height)?;
-        parts.push(format!(
-            "{} of {}, area {}",
-            report::counted(contours.loops.len(), "contour"),
-            report::counted(contours.len(), "point"),
-            report::short(contours.area())
-        ));
-        session.note(
-            "contours",
-            json!({ "height": arguments.contour_height, "count": contours.loops.len(),
-                    "points": contours.len(), "area": contours.area() }),
-        );
+        parts.push(note_contours(&contours, arguments.contour_height, session));
         let bytes = if format == "svg" { svg(&contours) } else { polygons(&contours) }.into_bytes();
         drawn.push(Document { path: path.clone(), format, bytes });
     }
@@ -103,6 +83,34 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
         ));
     }
     Ok(Exit::Fine)
+}
+
+/// Reads the model file, and gives it with its name in messages.
+fn read(path: &Path, session: &mut Session<'_>) -> Result<(Model, String), Fault> {
+    let start = Instant::now();
+    let standard = path == Path::new(STANDARD);
+    let name = if standard { "standard input".to_owned() } else { path.display().to_string() };
+    session.console.stage(&format!("reading {name}"), 0.0);
+    let folder = path.parent().filter(|_| !standard).unwrap_or(Path::new(""));
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let model = Model::parse(&operands::text(path, &session.limits)?, folder)?;
+    session.took("read", start);
+    let files: Vec<String> = model.files().iter().map(|file| file.display().to_string()).collect();
+    session
+        .note("model", json!({ "file": name, "nodes": model.names().collect::<Vec<_>>(), "files": files }));
+    Ok((model, name))
+}
+
+/// Notes contours in the report, and gives the text that says what they are.
+fn note_contours(contours: &Contours, height: f64, session: &mut Session<'_>) -> String {
+    let (count, points, area) = (contours.loops.len(), contours.len(), contours.area());
+    session.note("contours", json!({ "height": height, "count": count, "points": points, "area": area }));
+    format!(
+        "{} of {}, area {}",
+        report::counted(count, "contour"),
+        report::counted(points, "point"),
+        report::short(area)
+    )
 }
 
 fn dry_run(model: &Model, name: &str, session: &mut Session<'_>) -> Result<Exit, Fault> {
