@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, ValueEnum};
+use clap::{Args, ColorChoice, ValueEnum};
 use trisect::io::Format;
 
 use super::values;
@@ -23,13 +23,19 @@ pub(crate) struct Common {
     /// Print more; twice: every stage
     #[arg(short, long, global = true, action = clap::ArgAction::Count, help_heading = "Reports")]
     pub(crate) verbose: u8,
+    /// Colour errors, warnings and progress
+    #[arg(
+        long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorChoice::Auto,
+        help_heading = "Reports"
+    )]
+    pub(crate) color: ColorChoice,
     /// Exit with code 5 if there were warnings (outputs are still written)
     #[arg(long, global = true, help_heading = "Reports")]
     pub(crate) strict: bool,
     /// Use this many threads [default: all processors]
     #[arg(
         long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024),
-        help_heading = "Limits"
+        help_heading = "Limits", allow_hyphen_values = true
     )]
     pub(crate) threads: Option<u16>,
     /// Give up after this time
@@ -75,6 +81,12 @@ pub(crate) struct Reading {
     /// Format of standard input, or of all inputs if standard input is not among them
     #[arg(long, value_name = "FORMAT", value_parser = values::format, help_heading = "Inputs")]
     pub(crate) format: Option<Format>,
+    /// A glTF scene may take this many times the bytes of its file: many nodes can show one mesh [default: 64]
+    #[arg(
+        long, value_name = "TIMES", value_parser = clap::value_parser!(u64).range(1..), help_heading = "Inputs",
+        allow_hyphen_values = true
+    )]
+    expansion: Option<u64>,
 }
 
 /// Transforms. Each applies to the input just before it on the command line; several apply in their order. The

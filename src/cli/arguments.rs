@@ -27,7 +27,6 @@ Exit codes:
     version,
     after_help = EXIT_CODES,
     arg_required_else_help = true,
-    disable_help_subcommand = true,
     max_term_width = 100
 )]
 pub(crate) struct Arguments {

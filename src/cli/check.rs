@@ -119,6 +119,15 @@ fn refused(name: &str, error: Error, diagnosis: Option<&Diagnosis>) -> Result<Ve
         Error::SelfCrossing(_) => {
             ("the surface crosses itself; unite its parts one by one, or repair it".into(), diagnosis)
         }
+        Error::InsideOutShells(found) => {
+            let shells = match found.count {
+                1 => "one of its shells faces".to_owned(),
+                count => format!("{count} of its shells face"),
+            };
+            let reason = "the wrong way (outwards inside another, or inwards by themselves); turn them (--orient does \
+                          it), or unite bodies that lie inside others one by one";
+            (format!("{shells} {reason}"), diagnosis)
+        }
         other => (fault::one_line(&other.to_string()), diagnosis),
     };
     let mut text = format!("{name}: {answer}: {reason}\n");

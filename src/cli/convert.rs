@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ArgMatches;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 use trisect::control::Reservation;
 use trisect::io::Format;
 use trisect::{Error, Mesh};
@@ -69,16 +69,11 @@ fn read(arguments: &Convert, request: &Request, session: &mut Session<'_>) -> Re
     for warning in &warnings {
         session.warn(format!("{}: {warning}", request.name()));
     }
-    let measures = Measures::of_mesh(&mesh);
-    let mut object = measures.to_json();
-    // Whether the surface is closed is not looked into here; `check` and `info` tell.
-    object.retain(|key, _| !matches!(key.as_str(), "closed" | "manifold" | "shells" | "genus" | "volume"));
+    let mut object = described(&mesh, &request);
     object.extend(report::into_map(json!({
-        "file": request.name(),
         "format": format.extension(),
         "turned": turned,
         "welded": welded,
-        "transforms": request.transforms.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "warnings": warnings,
         "seconds": seconds,
     })));
@@ -119,6 +114,16 @@ fn write(
     }
     session.took("write", start);
     Ok(())
+}
+
+/// What the report says of the input's shape and where it comes from.
+fn described(mesh: &Mesh, request: &Request) -> Map<String, Value> {
+    let mut object = Measures::of_mesh(mesh).to_json();
+    // Whether the surface is closed is not looked into here; `check` and `info` tell.
+    object.retain(|key, _| !matches!(key.as_str(), "closed" | "manifold" | "shells" | "genus" | "volume"));
+    let transforms: Vec<String> = request.transforms.iter().map(ToString::to_string).collect();
+    object.extend(report::into_map(json!({ "file": request.name(), "transforms": transforms })));
+    object
 }
 
 /// The one input, and the outputs: those of `-o`, or else the second file.

@@ -47,6 +47,16 @@ pub(crate) fn check<'p>(
     Ok(())
 }
 
+/// Refuses a file whose name says another format than the one it would get; streams and devices may have any name.
+pub(crate) fn check_ending(path: &Path, endings: &[&str], advice: &str) -> Result<(), Fault> {
+    let ending = path.extension().and_then(std::ffi::OsStr::to_str).unwrap_or_default();
+    let known = endings.iter().any(|known| ending.eq_ignore_ascii_case(known));
+    if known || path == Path::new(STANDARD) || stream::is_device(path) {
+        return Ok(());
+    }
+    Err(Fault::usage(format!("{advice}, not {}", path.display())))
+}
+
 /// Writes a document in its hidden folder, or to its stream.
 pub(crate) fn staged<'l>(document: &Document, limits: &'l Limits) -> Result<Option<Stage<'l>>, Fault> {
     let failed = |error| Fault::output(&document.path, error);

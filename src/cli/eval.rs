@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
         documents::check(places, common, &session.limits)?;
     }
 
-    let (model, name) = read(arguments, session)?;
+    let (model, name) = read(&arguments.model, session)?;
     if arguments.dry_run {
         return dry_run(&model, &name, session);
     }
@@ -84,15 +84,15 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     Ok(Exit::Fine)
 }
 
-/// The model, and its name in messages.
-fn read(arguments: &Eval, session: &mut Session<'_>) -> Result<(Model, String), Fault> {
+/// Reads the model file, and gives it with its name in messages.
+fn read(path: &Path, session: &mut Session<'_>) -> Result<(Model, String), Fault> {
     let start = Instant::now();
-    let standard = arguments.model == Path::new(STANDARD);
-    let name = if standard { "standard input".to_owned() } else { arguments.model.display().to_string() };
+    let standard = path == Path::new(STANDARD);
+    let name = if standard { "standard input".to_owned() } else { path.display().to_string() };
     session.console.stage(&format!("reading {name}"), 0.0);
-    let folder = arguments.model.parent().filter(|_| !standard).unwrap_or(Path::new(""));
+    let folder = path.parent().filter(|_| !standard).unwrap_or(Path::new(""));
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let model = Model::parse(&operands::text(&arguments.model, &session.limits)?, folder)?;
+    let model = Model::parse(&operands::text(path, &session.limits)?, folder)?;
     session.took("read", start);
     let files: Vec<String> = model.files().iter().map(|file| file.display().to_string()).collect();
     session
@@ -100,17 +100,15 @@ fn read(arguments: &Eval, session: &mut Session<'_>) -> Result<(Model, String), 
     Ok((model, name))
 }
 
-/// Notes contours in the report, and says them in a line.
+/// Notes contours in the report, and gives the text that says what they are.
 fn note_contours(contours: &Contours, height: f64, session: &mut Session<'_>) -> String {
-    session.note(
-        "contours",
-        json!({ "height": height, "count": contours.loops.len(), "points": contours.len(), "area": contours.area() }),
-    );
+    let (count, points, area) = (contours.loops.len(), contours.len(), contours.area());
+    session.note("contours", json!({ "height": height, "count": count, "points": points, "area": area }));
     format!(
         "{} of {}, area {}",
-        report::counted(contours.loops.len(), "contour"),
-        report::counted(contours.len(), "point"),
-        report::short(contours.area())
+        report::counted(count, "contour"),
+        report::counted(points, "point"),
+        report::short(area)
     )
 }
 

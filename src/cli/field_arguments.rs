@@ -106,7 +106,7 @@ pub(crate) struct Slice {
     /// Step between lines of equal value [default: about ten lines]
     #[arg(long, value_name = "STEP", value_parser = values::length, allow_hyphen_values = true)]
     pub(crate) bands: Option<f64>,
-    /// The picture, PNG; `-` is standard output
+    /// The picture: *.png; `-` is standard output
     #[arg(short, long, value_name = "FILE", help_heading = "Outputs")]
     pub(crate) output: PathBuf,
 }
@@ -133,7 +133,7 @@ pub(crate) struct SampleGrid {
     /// Of a mesh: exact distances only as far as this from the surface, this value beyond
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(crate) band: Option<f64>,
-    /// The grid: *.npy (NumPy) or any other name (raw, with a line of text before the values); `-` is standard output
+    /// The grid: *.npy (NumPy) or *.raw (a line of text before the values); `-` is standard output, raw
     #[arg(short, long, value_name = "FILE", help_heading = "Outputs")]
     pub(crate) output: PathBuf,
 }

@@ -19,6 +19,7 @@ pub(crate) fn run(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
+    documents::check_ending(&arguments.output, &["npy", "raw"], "a grid is written as *.npy or *.raw")?;
     documents::check([arguments.output.as_path()], session.common, &session.limits)?;
     let control = session.control();
     let start = Instant::now();

@@ -3,6 +3,7 @@
 mod argument_groups;
 mod arguments;
 mod check;
+mod color;
 mod combine;
 mod convert;
 #[cfg(feature = "parametric")]
@@ -27,6 +28,7 @@ mod source;
 mod stage;
 mod stream;
 mod values;
+mod verbs;
 
 use std::any::Any;
 use std::io::Write as _;
@@ -34,10 +36,12 @@ use std::panic::{self, AssertUnwindSafe};
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
-use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
+use clap::error::ErrorKind;
+use clap::{ArgMatches, ColorChoice, CommandFactory as _, FromArgMatches as _};
 use trisect::Operation;
 
 use arguments::{Arguments, Verb};
+use color::{PREFIX, painted};
 use fault::{Exit, Fault};
 use session::Session;
 
@@ -45,27 +49,42 @@ use session::Session;
 pub(crate) fn run() -> ExitCode {
     let line: Vec<_> = std::env::args_os().collect();
     let json = line.iter().any(|word| word == "--json");
-    let parsed = Arguments::command().try_get_matches_from(&line).and_then(|matches| {
+    let color = color::choice(&line);
+    let parsed = Arguments::command().color(color).try_get_matches_from(&line).and_then(|matches| {
         let arguments = Arguments::from_arg_matches(&matches)?;
         Ok((arguments, matches))
     });
     let exit = match parsed {
         Ok((arguments, matches)) => run_verb(&arguments, &matches),
-        Err(error) => usage(&error, json),
+        Err(error) => usage(&error, json, color),
     };
     ExitCode::from(exit.code())
 }
 
 /// Help, version, and command lines that clap refuses.
-fn usage(error: &clap::Error, json: bool) -> Exit {
-    // Nobody is left to tell if the stream is closed.
-    let _ = error.print();
+fn usage(error: &clap::Error, json: bool, color: ColorChoice) -> Exit {
+    // Nobody is left to tell if a stream is closed.
     if !error.use_stderr() {
+        let _ = error.print();
         return Exit::Fine;
     }
+    let text = error.render();
+    let plain = text.to_string();
+    let plain = plain.trim_start_matches("error: ");
+    let hint = verbs::hint(error);
+    let message = hint.as_deref().or(plain.lines().next()).unwrap_or_default();
+    let is_help = error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
+    let _ = match (&hint, color::is_on(color)) {
+        _ if is_help => error.print(),
+        (Some(hint), false) => writeln!(std::io::stderr(), "{PREFIX} {hint}"),
+        (Some(hint), true) => writeln!(std::io::stderr(), "{}", painted(&format!("{PREFIX} {hint}"))),
+        (None, false) => write!(std::io::stderr(), "{PREFIX} {plain}"),
+        // clap colours its first word, which is another one than ours.
+        (None, true) => {
+            write!(std::io::stderr(), "{}", text.ansi().to_string().replacen("error:", PREFIX, 1))
+        }
+    };
     if json {
-        let text = error.to_string();
-        let message = text.lines().next().unwrap_or_default().trim_start_matches("error: ");
         let _ = writeln!(std::io::stdout(), "{}", Fault::usage(message).to_object());
     }
     Exit::Usage

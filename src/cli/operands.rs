@@ -41,7 +41,10 @@ pub(crate) struct Operand {
 
 /// Reads one input and moves it to its place.
 pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Result<Input, Error> {
-    let options = io::ReadOptions::new().control(control.clone());
+    let mut options = io::ReadOptions::new().control(control.clone());
+    if let Some(times) = request.expansion {
+        options = options.expansion(times);
+    }
     let io::Loaded { mut mesh, format, warnings, .. } = match request.format {
         Some(format) => {
             let (bytes, options) = if request.is_standard() {
@@ -51,10 +54,11 @@ pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Res
                 let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
                 (file(&request.path, limits)?, options.folder(folder))
             };
-            io::read(&bytes, format, &options)?
+            io::read(&bytes, format, &options)
         }
-        None => io::load(&request.path, &options)?,
-    };
+        None => io::load(&request.path, &options),
+    }
+    .map_err(name_option)?;
     control.check()?;
     for transform in &request.transforms {
         mesh = transform.apply(mesh)?;
@@ -68,6 +72,16 @@ pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Res
     let bytes = size_of_val(&*mesh.positions) + size_of_val(&*mesh.triangles);
     let reserved = control.reserve(bytes as u64)?;
     Ok(Input { mesh, format, warnings, reserved })
+}
+
+/// The error with the program's name for what the library's text calls by its own.
+fn name_option(error: Error) -> Error {
+    match error {
+        Error::TooLarge { what } => {
+            Error::TooLarge { what: what.replace("ReadOptions::expansion", "--expansion TIMES") }
+        }
+        other => other,
+    }
 }
 
 fn file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Error> {
@@ -114,7 +128,7 @@ pub(crate) struct Crossings {
     pub(crate) object: Value,
 }
 
-/// Makes a mesh an operand, or says why it cannot be one.
+/// Makes a mesh an operand, or says why it cannot be one, with the triangles' numbers in the file.
 pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usable, Error> {
     let (mesh, welded) = welded(mesh, using.repair.weld)?;
     let (mesh, turned) = if using.repair.orient { oriented(mesh) } else { (mesh, false) };
@@ -123,10 +137,21 @@ pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usab
         true => None,
         false => {
             let found = solid.self_crossings(control)?;
-            if !found.is_clean() {
-                return Err(Error::SelfCrossing(Box::new(found.clone())));
+            let mut found = found.clone();
+            for place in &mut found.places {
+                place.triangles = place.triangles.map(|triangle| solid.source_triangle(triangle));
             }
-            let misplaced = solid.inside_out_shells();
+            if !found.is_clean() {
+                return Err(Error::SelfCrossing(Box::new(found)));
+            }
+            let mut misplaced = solid.inside_out_shells();
+            for place in &mut misplaced.places {
+                for triangle in &mut place.triangles {
+                    *triangle = solid.source_triangle(*triangle);
+                }
+                // Vertices may have been joined since the file was read: their numbers are no longer its own.
+                place.vertices.clear();
+            }
             if !misplaced.is_none() {
                 return Err(Error::InsideOutShells(Box::new(misplaced)));
             }

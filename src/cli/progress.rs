@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use trisect::Control;
 
 use super::argument_groups::Common;
+use super::color;
 
 /// Runs shorter than this show no bar.
 const PATIENCE: Duration = Duration::from_millis(300);
@@ -19,6 +20,7 @@ const STEPS: u64 = 1000;
 pub(crate) struct Console {
     /// -1 quiet, 0 normal, 1 and 2 more.
     verbosity: i8,
+    colored: bool,
     start: Instant,
     bar: ProgressBar,
     shown: bool,
@@ -31,16 +33,16 @@ impl Console {
         let verbosity = if common.quiet { -1 } else { common.verbose.min(2) as i8 };
         let shown = verbosity >= 0 && std::io::stderr().is_terminal();
         let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::hidden());
-        let plain = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
-        let template = if plain {
-            "{msg:28} [{bar:32}] {percent:>3} %  {elapsed}"
-        } else {
+        let colored = color::is_on(common.color);
+        let template = if colored {
             "{msg:28} [{bar:32.cyan/dim}] {percent:>3} %  {elapsed}"
+        } else {
+            "{msg:28} [{bar:32}] {percent:>3} %  {elapsed}"
         };
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.progress_chars("=> "));
         }
-        Self { verbosity, start: Instant::now(), bar, shown, stage: Arc::default() }
+        Self { verbosity, colored, start: Instant::now(), bar, shown, stage: Arc::default() }
     }
 
     /// A line that is printed unless the run is quiet.
@@ -55,7 +57,11 @@ impl Console {
 
     /// A line that is always printed.
     pub(crate) fn warn(&self, text: &str) {
-        self.print(-1, text);
+        if self.colored {
+            self.print(-1, &color::painted(text));
+        } else {
+            self.print(-1, text);
+        }
     }
 
     /// Runs `print`, which writes to the terminal, with the bar out of the way.

@@ -55,6 +55,8 @@ impl fmt::Display for Transform {
 pub(crate) struct Request {
     pub(crate) path: PathBuf,
     pub(crate) format: Option<Format>,
+    /// How many times the bytes of its file a scene may take; `None` for what the library allows.
+    pub(crate) expansion: Option<u64>,
     pub(crate) transforms: Vec<Transform>,
 }
 
@@ -100,10 +102,13 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     transforms("--matrix", placed(matches, "matrix").map(|(at, v)| (at, Transform::Matrix(v))).collect());
     items.sort_by_key(|&(at, _)| at);
 
+    let expansion = matches.get_one::<u64>("expansion").copied();
     let mut requests: Vec<Request> = Vec::new();
     for (_, item) in items {
         match (item, requests.last_mut()) {
-            (Item::File(path), _) => requests.push(Request { path, format: None, transforms: Vec::new() }),
+            (Item::File(path), _) => {
+                requests.push(Request { path, format: None, expansion, transforms: Vec::new() });
+            }
             (Item::Transform(_, transform), Some(request)) => request.transforms.push(transform),
             (Item::Transform(name, _), None) => {
                 return Err(Fault::usage(format!(

@@ -15,6 +15,11 @@ use super::source;
 
 /// Draws a section.
 pub(crate) fn run(arguments: &Slice, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    documents::check_ending(
+        &arguments.output,
+        &["png"],
+        "a section is drawn as *.png (`eval MODEL --contours FILE.svg` writes outlines)",
+    )?;
     documents::check([arguments.output.as_path()], session.common, &session.limits)?;
     let control = session.control();
     let start = Instant::now();

@@ -128,6 +128,16 @@ fn slice_draws_models_meshes_and_formulas() {
 }
 
 #[test]
+fn outputs_named_for_another_format_are_refused() {
+    let folder = workshop();
+    let before = folder.names();
+    folder.run("slice a.obj -o s.svg").exits(1).says("*.png").says("--contours").says("not s.svg");
+    folder.run("slice a.obj -o s").exits(1).says("*.png");
+    folder.run("grid a.obj --spacing 0.5 -o g.vti").exits(1).says("*.npy or *.raw, not g.vti");
+    assert_eq!(folder.names(), before);
+}
+
+#[test]
 fn grids_hold_the_distance() {
     let folder = folder();
     let line = "grid a.obj --spacing 0.25 --bounds=-0.5,-0.5,-0.5,1.5,1.5,1.5 -o g.npy --json";

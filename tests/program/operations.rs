@@ -373,3 +373,57 @@ fn thread_counts_do_not_change_a_byte() {
         assert_eq!(program::bytes(&folder.path(&format!("8.{extension}"))), one);
     }
 }
+
+#[test]
+fn help_is_a_verb_and_words_that_mean_verbs_get_a_hint() {
+    let folder = workshop();
+    assert!(folder.run("help union").exits(0).out.contains("Usage: trisect union"));
+    for (word, verb) in
+        [("subtract", "`difference`"), ("cut", "`slice`"), ("merge", "`union`"), ("repair", "`check`")]
+    {
+        let ran = folder.run(&format!("{word} a.obj b.obj")).exits(1).says(verb);
+        assert_eq!(ran.err.lines().count(), 1, "{ran:?}");
+    }
+    let object = folder.run("add a.obj b.obj --json").exits(1).json();
+    assert!(object["error"]["message"].as_str().unwrap().contains("`union`"), "{object}");
+}
+
+#[test]
+fn all_errors_begin_alike_and_are_coloured_on_request() {
+    let folder = workshop();
+    for line in ["union a.obj", "union a.obj b.obj --outpt c.obj", "unin", "subtract"] {
+        let ran = folder.run(line).exits(1);
+        assert!(ran.err.starts_with("trisect: "), "{ran:?}");
+        let ran = folder.run(&format!("{line} --color always")).exits(1);
+        assert!(
+            ran.err.starts_with("\x1b[1m\x1b[31mtrisect:") || ran.err.starts_with("\x1b[1;31mtrisect:"),
+            "{ran:?}"
+        );
+    }
+    let ran = folder.run("convert warned.obj c.off --color=always").exits(0);
+    assert!(ran.err.starts_with("\x1b[1;33mtrisect:\x1b[0m warning:"), "{ran:?}");
+    let ran = folder.run("union a.obj b.obj -o c.obj --threads -1").exits(1).says("-1 is not in 1..=1024");
+    assert!(!ran.err.contains("-- -1"), "{ran:?}");
+}
+
+#[test]
+fn inside_out_shells_are_named_by_their_numbers_in_the_file() {
+    let folder = Folder::new();
+    // A pair of opposite triangles comes first: the cleaning leaves it out, and it counts in the file's numbers.
+    let (mut text, second) = (unit_cube().replacen('f', "f 1 2 7\nf 7 2 1\nf", 1), cube([5.0; 3], [5.5; 3]));
+    for line in program::inside_out(&second).lines() {
+        let shifted =
+            |word: &str| word.parse::<u32>().map_or(word.to_owned(), |corner| (corner + 8).to_string());
+        let words: Vec<String> = line.split(' ').map(shifted).collect();
+        text += &if line.starts_with('f') { words.join(" ") + "\n" } else { format!("{line}\n") };
+    }
+    folder.write("two.obj", text);
+    let ran = folder.run("check two.obj").exits(3);
+    assert!(ran.out.contains("one of its shells faces the wrong way"), "{ran:?}");
+    let number = |text: &str| {
+        let after = text.split("triangle ").nth(1).expect("a number");
+        after.split(' ').next().expect("a word").parse::<u32>().expect("a number")
+    };
+    assert_eq!(number(&ran.out), 14, "{ran:?}");
+    assert_eq!(number(&folder.run("union two.obj two.obj -o c.obj").exits(3).err), 14);
+}

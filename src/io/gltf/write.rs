@@ -3,18 +3,23 @@
 //! One buffer: the positions in single precision, shared by all primitives so that the surface stays closed across
 //! groups, then the indices, group by group. Each group name becomes a node with a mesh, each group a primitive.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::io::Write;
 use std::ops::Range;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
+use gltf::json::accessor::{ComponentType, GenericComponentType, Type};
+use gltf::json::buffer::{Target, View};
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked::Valid;
+use gltf::json::{Accessor, Asset, Extras, Index, Node, Root, Scene};
 use serde_json::{Map, Value, json};
 
 use super::super::precision::collapsed;
 use super::super::text::{write_all, write_blocks};
-use super::super::{Format, WriteOptions};
+use super::super::{Format, WriteOptions, unsupported};
 use crate::{Error, FaceGroup, Mesh};
 
 /// Writes a `.gltf` file with its buffer inside, or a `.glb` file.
@@ -37,7 +42,7 @@ pub(in crate::io) fn write(
     let frame = Frame::of(mesh);
     let members = members(mesh);
     let bytes = 12 * (mesh.positions.len() as u64 + mesh.triangles.len() as u64);
-    let document = document(mesh, &frame, &members);
+    let document = document(mesh, &frame, &members)?;
     match format {
         Format::Glb => {
             let mut document = document;
@@ -151,97 +156,165 @@ fn members(mesh: &Mesh) -> Vec<Vec<u32>> {
     members
 }
 
-fn asset() -> Value {
-    json!({"version": "2.0", "generator": concat!("trisect ", env!("CARGO_PKG_VERSION"))})
+fn asset() -> Asset {
+    Asset { generator: Some(concat!("trisect ", env!("CARGO_PKG_VERSION")).to_string()), ..Asset::default() }
 }
 
 /// The document without its buffers.
-fn document(mesh: &Mesh, frame: &Frame, members: &[Vec<u32>]) -> Map<String, Value> {
-    let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
-    let mut low = [f32::INFINITY; 3];
-    let mut high = [f32::NEG_INFINITY; 3];
-    for &position in &mesh.positions {
-        let local = frame.local(position);
-        for axis in 0..3 {
-            low[axis] = low[axis].min(local[axis]);
-            high[axis] = high[axis].max(local[axis]);
-        }
-    }
-    let mut accessors = vec![json!({
-        "bufferView": 0, "componentType": 5126, "count": vertices, "type": "VEC3",
-        "min": low.map(f64::from), "max": high.map(f64::from),
-    })];
-    let mut materials: Vec<Value> = Vec::new();
-    let mut meshes: Vec<(&str, Vec<Value>)> = Vec::new();
-    let (mut known_materials, mut known_meshes) = (HashMap::new(), HashMap::new());
-    let unnamed = FaceGroup::default();
-    let mut before = 0;
+///
+/// Materials and the place of the model are put into its JSON by hand: the crate's types hold the place in single
+/// precision, which would move the model, and write every default of a material.
+fn document(mesh: &Mesh, frame: &Frame, members: &[Vec<u32>]) -> Result<Map<String, Value>, Error> {
+    let mut parts = Parts::new(mesh, frame);
     for (group, triangles) in members.iter().enumerate().filter(|(_, triangles)| !triangles.is_empty()) {
-        let group = mesh.groups.list.get(group).unwrap_or(&unnamed);
-        let mut primitive = json!({"attributes": {"POSITION": 0}, "indices": accessors.len()});
-        accessors.push(json!({
-            "bufferView": 1, "byteOffset": 12 * before, "componentType": 5125, "count": 3 * triangles.len(),
-            "type": "SCALAR",
-        }));
-        before += triangles.len();
-        if let Some(material) = &group.material {
-            let material = material_object(&material.name, material.base_color);
-            let index = *known_materials.entry(material.to_string()).or_insert_with(|| {
-                materials.push(material);
-                materials.len() - 1
-            });
-            primitive["material"] = json!(index);
-        }
-        let index = *known_meshes.entry(&group.name).or_insert_with(|| {
-            meshes.push((&group.name, Vec::new()));
-            meshes.len() - 1
-        });
-        meshes[index].1.push(primitive);
+        parts.add(mesh.groups.list.get(group), triangles.len());
     }
-
-    let named = |mut object: Value, name: &str| {
-        if !name.is_empty() {
-            object["name"] = json!(name);
-        }
-        object
-    };
-    let mut nodes: Vec<Value> =
-        meshes.iter().enumerate().map(|(i, (name, _))| named(json!({"mesh": i}), name)).collect();
+    let Parts { accessors, materials, meshes, .. } = parts;
+    let mut nodes: Vec<Node> = (0..)
+        .zip(&meshes)
+        .map(|(i, mesh)| Node { mesh: Some(Index::new(i)), name: mesh.name.clone(), ..Node::default() })
+        .collect();
     let placed = frame.offset != DVec3::ZERO || frame.scale != 1.0;
-    let mut roots: Vec<usize> = (0..nodes.len()).collect();
+    let mut roots: Vec<Index<Node>> = (0..nodes.len() as u32).map(Index::new).collect();
+    if placed && nodes.len() > 1 {
+        let all = Node { children: Some(roots), ..Node::default() };
+        roots = vec![Index::push(&mut nodes, all)];
+    }
+    let root = roots[0].value();
+    let (vertices, triangles) = (12 * mesh.positions.len() as u64, 12 * mesh.triangles.len() as u64);
+    let scene = Scene { extensions: None, extras: Extras::default(), name: None, nodes: roots };
+    let document = Root {
+        asset: asset(),
+        scene: Some(Index::new(0)),
+        scenes: vec![scene],
+        nodes,
+        meshes,
+        accessors,
+        buffer_views: vec![
+            view(0, vertices, Target::ArrayBuffer),
+            view(vertices, triangles, Target::ElementArrayBuffer),
+        ],
+        ..Root::default()
+    };
+    let mut document =
+        document.to_value().map_err(|error| unsupported(Format::Gltf, format!("no JSON: {error}")))?;
     if placed {
-        if nodes.len() > 1 {
-            nodes.push(json!({"children": roots}));
-            roots = vec![nodes.len() - 1];
-        }
-        let root = &mut nodes[roots[0]];
+        let root = &mut document["nodes"][root];
         root["translation"] = json!(frame.offset.to_array());
         if frame.scale != 1.0 {
             root["scale"] = json!([frame.scale, frame.scale, frame.scale]);
         }
     }
-    let mut document = Map::new();
-    let mut put = |key: &str, value: Value| document.insert(key.to_string(), value);
-    put("asset", asset());
-    put("scene", json!(0));
-    put("scenes", json!([{"nodes": roots}]));
-    put("nodes", json!(nodes));
-    put(
-        "meshes",
-        meshes.into_iter().map(|(name, primitives)| named(json!({"primitives": primitives}), name)).collect(),
-    );
-    put("accessors", json!(accessors));
-    put(
-        "bufferViews",
-        json!([
-            {"buffer": 0, "byteOffset": 0, "byteLength": 12 * vertices, "target": 34962},
-            {"buffer": 0, "byteOffset": 12 * vertices, "byteLength": 12 * triangles, "target": 34963},
-        ]),
-    );
     if !materials.is_empty() {
-        put("materials", json!(materials));
+        document["materials"] = materials.into();
     }
-    document
+    match document {
+        Value::Object(document) => Ok(document),
+        _ => Err(unsupported(Format::Gltf, "a document that is no JSON object")),
+    }
+}
+
+/// The parts of a document that grow group by group.
+struct Parts<'a> {
+    accessors: Vec<Accessor>,
+    materials: Vec<Value>,
+    meshes: Vec<gltf::json::Mesh>,
+    known_materials: HashMap<String, u32>,
+    known_meshes: HashMap<&'a str, usize>,
+    /// Triangles so far.
+    before: u64,
+}
+
+impl<'a> Parts<'a> {
+    /// The positions alone.
+    fn new(mesh: &Mesh, frame: &Frame) -> Self {
+        let mut low = [f32::INFINITY; 3];
+        let mut high = [f32::NEG_INFINITY; 3];
+        for &position in &mesh.positions {
+            let local = frame.local(position);
+            for axis in 0..3 {
+                low[axis] = low[axis].min(local[axis]);
+                high[axis] = high[axis].max(local[axis]);
+            }
+        }
+        let mut positions = accessor(0, ComponentType::F32, Type::Vec3, mesh.positions.len() as u64);
+        (positions.min, positions.max) = (Some(json!(low.map(f64::from))), Some(json!(high.map(f64::from))));
+        Self {
+            accessors: vec![positions],
+            materials: Vec::new(),
+            meshes: Vec::new(),
+            known_materials: HashMap::new(),
+            known_meshes: HashMap::new(),
+            before: 0,
+        }
+    }
+
+    /// A primitive for the next `triangles` triangles, those of a group.
+    fn add(&mut self, group: Option<&'a FaceGroup>, triangles: usize) {
+        let mut indices = accessor(1, ComponentType::U32, Type::Scalar, 3 * triangles as u64);
+        indices.byte_offset = Some((12 * self.before).into());
+        self.before += triangles as u64;
+        let material = group.and_then(|group| group.material.as_ref()).map(|material| {
+            let material = material_object(&material.name, material.base_color);
+            *self.known_materials.entry(material.to_string()).or_insert_with(|| {
+                self.materials.push(material);
+                self.materials.len() as u32 - 1
+            })
+        });
+        let primitive = Primitive {
+            attributes: BTreeMap::from([(Valid(Semantic::Positions), Index::new(0))]),
+            extensions: None,
+            extras: Extras::default(),
+            indices: Some(Index::push(&mut self.accessors, indices)),
+            material: material.map(Index::new),
+            mode: Valid(Mode::Triangles),
+            targets: None,
+        };
+        let name = group.map_or("", |group| &group.name);
+        let mesh = *self.known_meshes.entry(name).or_insert_with(|| {
+            self.meshes.push(gltf::json::Mesh {
+                extensions: None,
+                extras: Extras::default(),
+                name: (!name.is_empty()).then(|| name.to_string()),
+                primitives: Vec::new(),
+                weights: None,
+            });
+            self.meshes.len() - 1
+        });
+        self.meshes[mesh].primitives.push(primitive);
+    }
+}
+
+/// An accessor from the beginning of a buffer view.
+fn accessor(view: u32, component: ComponentType, shape: Type, count: u64) -> Accessor {
+    Accessor {
+        buffer_view: Some(Index::new(view)),
+        byte_offset: None,
+        count: count.into(),
+        component_type: Valid(GenericComponentType(component)),
+        extensions: None,
+        extras: Extras::default(),
+        type_: Valid(shape),
+        min: None,
+        max: None,
+        name: None,
+        normalized: false,
+        sparse: None,
+    }
+}
+
+/// A view of the one buffer.
+fn view(offset: u64, length: u64, target: Target) -> View {
+    View {
+        buffer: Index::new(0),
+        byte_length: length.into(),
+        byte_offset: Some(offset.into()),
+        byte_stride: None,
+        name: None,
+        target: Some(Valid(target)),
+        extensions: None,
+        extras: Extras::default(),
+    }
 }
 
 fn material_object(name: &str, color: [f32; 4]) -> Value {

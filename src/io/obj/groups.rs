@@ -23,7 +23,7 @@ pub(super) struct Groups<'a> {
     keys: Vec<Key<'a>>,
     known: HashMap<Key<'a>, u32>,
     libraries: Vec<&'a [u8]>,
-    materials: HashMap<String, [f32; 4]>,
+    materials: library::Materials,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -109,7 +109,8 @@ impl<'a> Groups<'a> {
                     if known.is_none() && !missing.contains(&key.material) && missing.len() < 4 {
                         missing.push(key.material);
                     }
-                    Material { base_color: known.copied().unwrap_or([1.0; 4]), name }
+                    let base_color = library::base_color(known.and_then(Option::as_deref));
+                    Material { base_color, name }
                 });
                 groups.list.push(FaceGroup { name: name_of(key), material });
             }

@@ -1,6 +1,6 @@
 //! Wavefront OBJ: positions, faces, groups and materials.
 //!
-//! Read by a parser of its own: the text is cut into pieces of whole lines, the pieces are parsed side by side, and
+//! Read by a parser of its own: the text is cut into chunks of whole lines, the chunks are parsed side by side, and
 //! their vertices and faces put together in order. (The crate `tobj` splits a file into one vertex list per group,
 //! fans concave polygons and reads about 75 MB/s; it serves as the oracle in the tests.)
 
@@ -20,26 +20,26 @@ use super::{Format, ReadOptions, malformed};
 use crate::parallel;
 use crate::{Error, Mesh};
 use groups::Groups;
-use parse::{Fault, Piece};
+use parse::{Chunk, Fault};
 
-/// Pieces smaller than this are not worth a thread.
-const SMALLEST_PIECE: usize = 1 << 20;
+/// Chunks smaller than this are not worth a thread.
+const SMALLEST_CHUNK: usize = 1 << 20;
 
 /// Reads the mesh and the warnings.
 pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<String>), Error> {
-    read_in_pieces(bytes, parallel::piece_count(bytes.len(), SMALLEST_PIECE), options)
+    read_in_chunks(bytes, parallel::piece_count(bytes.len(), SMALLEST_CHUNK), options)
 }
 
-/// Reads the file cut into at most `count` pieces; the result is the same for any number.
-fn read_in_pieces(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(Mesh, Vec<String>), Error> {
-    let mut pieces = parse_pieces(bytes, count, options)?;
+/// Reads the file cut into at most `count` chunks; the result is the same for any number.
+fn read_in_chunks(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(Mesh, Vec<String>), Error> {
+    let mut chunks = parse_chunks(bytes, count, options)?;
     let mut notes = Notes::default();
-    for piece in &mut pieces {
-        notes.append(std::mem::take(&mut piece.notes));
+    for chunk in &mut chunks {
+        notes.append(std::mem::take(&mut chunk.notes));
     }
-    let vertices: usize = pieces.iter().map(|piece| piece.positions.len()).sum();
-    if vertices == 0 && pieces.iter().all(|piece| piece.faces.is_empty()) {
-        if pieces.iter().any(|piece| piece.strange) {
+    let vertices: usize = chunks.iter().map(|chunk| chunk.positions.len()).sum();
+    if vertices == 0 && chunks.iter().all(|chunk| chunk.faces.is_empty()) {
+        if chunks.iter().any(|chunk| chunk.strange) {
             return Err(malformed(
                 Format::Obj,
                 "line 1",
@@ -51,18 +51,18 @@ fn read_in_pieces(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
     if vertices > u32::MAX as usize {
         return Err(too_large(Format::Obj, "vertices"));
     }
-    if pieces.iter().filter_map(|piece| piece.faces.largest()).max().is_some_and(|i| i as usize >= vertices) {
+    if chunks.iter().filter_map(|chunk| chunk.faces.largest()).max().is_some_and(|i| i as usize >= vertices) {
         let (place, index) = locate::face_out_of_range(bytes, vertices);
         return Err(index_error(Format::Obj, place, index, vertices));
     }
 
-    let positions = join(pieces.iter_mut().map(|piece| std::mem::take(&mut piece.positions)).collect());
-    let resolved = parallel::map(pieces, |piece| -> Result<_, Error> {
+    let positions = join(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.positions)).collect());
+    let resolved = parallel::map(chunks, |chunk| -> Result<_, Error> {
         let mut notes = Notes::default();
-        let places: Vec<_> = piece.changes.iter().map(|change| change.at).collect();
+        let places: Vec<_> = chunk.changes.iter().map(|change| change.at).collect();
         let (triangles, offsets) =
-            piece.faces.into_triangles(&positions, &places, &mut notes, &options.control)?;
-        Ok((triangles, offsets, piece.changes, piece.libraries, notes))
+            chunk.faces.into_triangles(&positions, &places, &mut notes, &options.control)?;
+        Ok((triangles, offsets, chunk.changes, chunk.libraries, notes))
     });
 
     let mut groups = Groups::default();
@@ -90,23 +90,23 @@ fn read_in_pieces(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
     Ok((mesh, notes.into_warnings(|offset| line_place(bytes, offset))))
 }
 
-/// The file in pieces, parsed.
-fn parse_pieces<'a>(bytes: &'a [u8], count: usize, options: &ReadOptions) -> Result<Vec<Piece<'a>>, Error> {
+/// The file in chunks, parsed.
+fn parse_chunks<'a>(bytes: &'a [u8], count: usize, options: &ReadOptions) -> Result<Vec<Chunk<'a>>, Error> {
     let mut ends: Vec<usize> =
         parallel::ranges(bytes.len(), count).iter().map(|range| end_of_line(bytes, range.end)).collect();
     ends.dedup();
     let starts = std::iter::once(0).chain(ends.iter().copied());
     let ranges: Vec<_> = starts.zip(ends.iter().copied()).map(|(start, end)| start..end).collect();
     let parsed: Result<Vec<_>, _> =
-        parallel::map(ranges, |range| Piece::parse(bytes, range, &options.control)).into_iter().collect();
+        parallel::map(ranges, |range| Chunk::parse(bytes, range, &options.control)).into_iter().collect();
     match parsed {
-        Ok(pieces) => Ok(pieces),
+        Ok(chunks) => Ok(chunks),
         Err(Fault::Error(error)) => Err(error),
-        // Indices counted backwards need the number of vertices before the piece: one piece, then.
-        Err(Fault::Relative) => match Piece::parse(bytes, 0..bytes.len(), &options.control) {
-            Ok(piece) => Ok(vec![piece]),
+        // Indices counted backwards need the number of vertices before the chunk: one chunk, then.
+        Err(Fault::Relative) => match Chunk::parse(bytes, 0..bytes.len(), &options.control) {
+            Ok(chunk) => Ok(vec![chunk]),
             Err(Fault::Error(error)) => Err(error),
-            // The first piece knows the vertices before it: none.
+            // The first chunk knows the vertices before it: none.
             Err(Fault::Relative) => Err(Error::InvalidArgument("an index relative to no vertex".into())),
         },
     }

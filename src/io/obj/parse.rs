@@ -1,4 +1,4 @@
-//! The statements of a piece of an OBJ file.
+//! The statements of a chunk of an OBJ file.
 
 use std::ops::Range;
 
@@ -8,9 +8,9 @@ use super::super::scan::{Scanner, line_place, quote};
 use super::super::{Format, malformed};
 use crate::{Control, Error};
 
-/// What one piece of the file holds.
+/// What one chunk of the file holds.
 #[derive(Debug, Default)]
-pub(super) struct Piece<'a> {
+pub(super) struct Chunk<'a> {
     pub(super) positions: Vec<[f64; 3]>,
     pub(super) faces: FaceList,
     pub(super) changes: Vec<Change<'a>>,
@@ -36,11 +36,11 @@ pub(super) enum Kind {
     Material,
 }
 
-/// Why a piece could not be parsed.
+/// Why a chunk could not be parsed.
 #[derive(Debug)]
 pub(super) enum Fault {
     Error(Error),
-    /// An index counted backwards, in a piece that does not know how many vertices come before it.
+    /// An index counted backwards, in a chunk that does not know how many vertices come before it.
     Relative,
 }
 
@@ -53,10 +53,10 @@ impl From<Error> for Fault {
 /// How many bytes are parsed between two looks at the limits.
 const CHECK_INTERVAL: usize = 1 << 16;
 
-impl<'a> Piece<'a> {
+impl<'a> Chunk<'a> {
     /// Parses the statements in a range of whole lines.
     pub(super) fn parse(bytes: &'a [u8], range: Range<usize>, control: &Control) -> Result<Self, Fault> {
-        let mut piece = Self::default();
+        let mut chunk = Self::default();
         let first = range.start == 0;
         let mut scanner = Scanner::new(&bytes[..range.end], range.start);
         if first && bytes.starts_with(b"\xef\xbb\xbf") {
@@ -67,10 +67,10 @@ impl<'a> Piece<'a> {
             control.check()?;
             let pause = scanner.offset().saturating_add(CHECK_INTERVAL).min(range.end);
             while scanner.offset() < pause {
-                piece.statement(bytes, &mut scanner, first, &mut corners)?;
+                chunk.statement(bytes, &mut scanner, first, &mut corners)?;
             }
         }
-        Ok(piece)
+        Ok(chunk)
     }
 
     #[inline(always)]

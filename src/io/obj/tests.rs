@@ -160,7 +160,7 @@ fn empty_meshes_are_meshes() {
 }
 
 #[test]
-fn the_number_of_pieces_does_not_matter() {
+fn the_number_of_chunks_does_not_matter() {
     let mut text = String::from("o first\n");
     for i in 0..40 {
         text.push_str(&format!("v {i} 0 0\nv {i} 1 0 \\\n1 0 0\nv {i} 0 1\r\nv {i} 1 1 # end\n"));
@@ -174,10 +174,10 @@ fn the_number_of_pieces_does_not_matter() {
     }
     let relative = format!("{text}f -1 -2 -3\n");
     for text in [&text, &relative] {
-        let expected = read_in_pieces(text.as_bytes(), 1, &ReadOptions::new()).unwrap();
+        let expected = read_in_chunks(text.as_bytes(), 1, &ReadOptions::new()).unwrap();
         for count in 2..60 {
             assert_eq!(
-                read_in_pieces(text.as_bytes(), count, &ReadOptions::new()).unwrap(),
+                read_in_chunks(text.as_bytes(), count, &ReadOptions::new()).unwrap(),
                 expected,
                 "{count}"
             );
@@ -185,7 +185,7 @@ fn the_number_of_pieces_does_not_matter() {
     }
     let wrong = format!("{text}f 1 2 1000\n");
     let errors: Vec<String> = (1..60)
-        .map(|count| read_in_pieces(wrong.as_bytes(), count, &ReadOptions::new()).unwrap_err().to_string())
+        .map(|count| read_in_chunks(wrong.as_bytes(), count, &ReadOptions::new()).unwrap_err().to_string())
         .collect();
     assert!(errors.iter().all(|error| *error == errors[0]), "{errors:?}");
 }

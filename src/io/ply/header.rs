@@ -109,6 +109,17 @@ pub(super) struct Header {
     pub(super) end: usize,
 }
 
+impl Coding {
+    fn of_name(name: &[u8]) -> Option<Self> {
+        match name {
+            b"ascii" => Some(Self::Ascii),
+            b"binary_little_endian" => Some(Self::LittleEndian),
+            b"binary_big_endian" => Some(Self::BigEndian),
+            _ => None,
+        }
+    }
+}
+
 /// An element with the names of its properties.
 struct Named<'a> {
     element: Element,
@@ -132,31 +143,21 @@ impl Header {
                 None | Some(b"comment" | b"obj_info") => {}
                 Some(b"end_header") => break,
                 Some(b"format") => {
-                    coding = Some(match words.next() {
-                        Some(b"ascii") => Coding::Ascii,
-                        Some(b"binary_little_endian") => Coding::LittleEndian,
-                        Some(b"binary_big_endian") => Coding::BigEndian,
-                        other => {
-                            return Err(lines.error(&format!(
-                                "the format is {}, which is none of ascii, binary_little_endian, binary_big_endian",
-                                quote(other.unwrap_or_default())
-                            )));
-                        }
-                    });
+                    let name = words.next().unwrap_or_default();
+                    coding = Some(Coding::of_name(name).ok_or_else(|| {
+                        lines.error(&format!(
+                            "the format is {}, which is none of ascii, binary_little_endian, binary_big_endian",
+                            quote(name)
+                        ))
+                    })?);
                 }
                 Some(b"element") => {
                     let (Some(name), Some(count)) = (words.next(), words.next().and_then(number)) else {
                         return Err(lines.error("expected \"element\", a name and a count"));
                     };
-                    elements.push(Named {
-                        element: Element {
-                            name: decode(name),
-                            count,
-                            properties: Vec::new(),
-                            role: Role::Other,
-                        },
-                        names: Vec::new(),
-                    });
+                    let element =
+                        Element { name: decode(name), count, properties: Vec::new(), role: Role::Other };
+                    elements.push(Named { element, names: Vec::new() });
                 }
                 Some(b"property") => {
                     let Some((name, property)) = property(&mut words) else {

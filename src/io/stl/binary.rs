@@ -15,8 +15,8 @@ const FACET: usize = 50;
 const BATCH: usize = 32;
 
 /// Facets that are read together: their vertices have room in the processor's nearer memory, so most corners are found
-/// fast, and only the vertices of each piece are looked up among all.
-const PIECE: usize = 1 << 14;
+/// fast, and only the vertices of each chunk are looked up among all.
+const CHUNK: usize = 1 << 14;
 
 /// The length that a binary STL file with this beginning should have.
 pub(in crate::io) fn exact_length(bytes: &[u8]) -> Option<u64> {
@@ -61,13 +61,13 @@ pub(super) fn read(bytes: &[u8], notes: &mut Notes, control: &Control) -> Result
         notes.say(format!("{surplus} bytes after the last facet ignored"));
         announced as usize
     };
-    let mut whole = Piece::new(count);
-    let starts: Vec<usize> = (0..count).step_by(PIECE).collect();
+    let mut whole = Chunk::new(count);
+    let starts: Vec<usize> = (0..count).step_by(CHUNK).collect();
     for wave in starts.chunks(parallel::piece_count(usize::MAX, 1)) {
         control.check()?;
-        let read = |start: usize| Piece::read(facets, start..(start + PIECE).min(count));
-        for piece in parallel::map(wave.to_vec(), read) {
-            whole.append(&piece?)?;
+        let read = |start: usize| Chunk::read(facets, start..(start + CHUNK).min(count));
+        for chunk in parallel::map(wave.to_vec(), read) {
+            whole.append(&chunk?)?;
         }
     }
     notes.add("facet with two equal corners dropped", whole.degenerate);
@@ -75,27 +75,27 @@ pub(super) fn read(bytes: &[u8], notes: &mut Notes, control: &Control) -> Result
 }
 
 /// A run of facets, with vertices of its own.
-struct Piece {
+struct Chunk {
     weld: Weld<[f32; 3]>,
     triangles: Vec<[u32; 3]>,
     degenerate: usize,
 }
 
-impl Piece {
+impl Chunk {
     fn new(facets: usize) -> Self {
         Self { weld: Weld::new(facets), triangles: Vec::with_capacity(facets), degenerate: 0 }
     }
 
     fn read(facets: &[[u8; FACET]], range: Range<usize>) -> Result<Self, Error> {
-        let mut piece = Self::new(range.len());
+        let mut chunk = Self::new(range.len());
         let (batches, rest) = facets[range.clone()].as_chunks::<BATCH>();
         for (i, batch) in batches.iter().enumerate() {
-            piece.add(batch, range.start + i * BATCH)?;
+            chunk.add(batch, range.start + i * BATCH)?;
         }
         for (i, facet) in rest.iter().enumerate() {
-            piece.add(&[*facet], range.end - rest.len() + i)?;
+            chunk.add(&[*facet], range.end - rest.len() + i)?;
         }
-        Ok(piece)
+        Ok(chunk)
     }
 
     /// Adds facets, the first of which is number `first` of the file.
