@@ -6,7 +6,7 @@ use common::{assert_sound, run, solid};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use trisect::Operation::{Difference, Intersection, Union};
-use trisect::{Contact, Mesh, Operation, Options, Solid, primitives};
+use trisect::{BooleanOptions, Contact, Mesh, Operation, Solid, primitives};
 
 /// What a result must be: volume, vertices, triangles.
 #[derive(Clone, Copy)]
@@ -152,7 +152,7 @@ fn contacts_after_a_shared_rotation_stay_closed_and_right() {
 #[test]
 fn separate_contacts_keep_both_bodies() {
     let (a, b) = (common::cube([0.0; 3], 1.0), common::cube([1.0, 0.0, 0.0], 1.0));
-    let outcome = Options::new().contact(Contact::Separate).run(Union, &[&a, &b]).expect("no limits");
+    let outcome = BooleanOptions::new().contact(Contact::Separate).run(Union, [&a, &b]).expect("no limits");
     assert_sound(&outcome, "separate");
     assert_eq!((outcome.certificate().components, outcome.solid().volume()), (2, 2.0));
 }
@@ -276,9 +276,9 @@ fn results_that_count_twice_are_operands_like_others() -> Result<(), trisect::Er
     // Its faces cut the diagonals of the inner cube's faces in general position.
     let ball = primitives::geodesic_sphere(0.7, 4)?.rotated([1.0, 2.0, 3.0], 20.0)?;
     let ball = Solid::try_from(ball.translated([0.51, 0.47, 0.62]))?;
-    let options = Options::new();
-    let once = options.run(Intersection, &[&inner, &ball])?;
-    let found = options.run(Intersection, &[&inner, &twice, &ball])?;
+    let options = BooleanOptions::new();
+    let once = options.run(Intersection, [&inner, &ball])?;
+    let found = options.run(Intersection, [&inner, &twice, &ball])?;
     let mesh = found.solid().mesh();
     assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
     assert!(found.certificate().closed, "{}", found.certificate());

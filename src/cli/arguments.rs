@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use trisect::Operation;
 
 use super::argument_groups::{Common, Inputs, Placing, Reading, Repair, Results};
 #[cfg(feature = "parametric")]
@@ -92,10 +93,10 @@ impl Verb {
     /// The verb's name, as on the command line.
     pub(crate) fn name(&self) -> &'static str {
         match self {
-            Self::Union(_) => "union",
-            Self::Difference(_) => "difference",
-            Self::Intersection(_) => "intersection",
-            Self::Xor(_) => "xor",
+            Self::Union(_) => Operation::Union.name(),
+            Self::Difference(_) => Operation::Difference.name(),
+            Self::Intersection(_) => Operation::Intersection.name(),
+            Self::Xor(_) => Operation::SymmetricDifference.name(),
             Self::Check(_) => "check",
             Self::Info(_) => "info",
             Self::Convert(_) => "convert",

@@ -5,7 +5,7 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::Value;
 use trisect::io::Format;
-use trisect::{Operation, Options, Outcome, Solid};
+use trisect::{BooleanOptions, Operation, Outcome};
 
 use super::argument_groups::Colours;
 use super::arguments::Combine;
@@ -42,12 +42,11 @@ pub(crate) fn run(
     }
 
     let start = Instant::now();
-    let mut options = Options::new().control(control);
+    let mut options = BooleanOptions::new().control(control);
     if let Some(threads) = session.common.threads {
         options = options.threads(usize::from(threads));
     }
-    let solids: Vec<&Solid> = operands.iter().map(|operand| &operand.solid).collect();
-    let outcome = options.run(operation, &solids)?;
+    let outcome = options.run(operation, operands.iter().map(|operand| &operand.solid))?;
     let seconds = session.took("run", start);
 
     let measures = Measures::of_solid(outcome.solid());
@@ -133,18 +132,12 @@ fn write(
 
 /// What `--dry-run` says.
 fn announce(operation: Operation, operands: &[Operand], targets: &[Target], session: &mut Session<'_>) {
-    let verb = match operation {
-        Operation::Union => "unite",
-        Operation::Intersection => "intersect",
-        Operation::Difference => "subtract all others from the first of",
-        Operation::SymmetricDifference => "take the symmetric difference of",
-    };
     let triangles = operands.iter().map(|operand| operand.solid.mesh().triangles.len()).sum();
     let names: Vec<String> =
         targets.iter().map(|target| format!("{} ({})", target.name(), target.format())).collect();
     let writing = if names.is_empty() { "nothing".into() } else { names.join(", ") };
     session.console.say(&format!(
-        "dry run: would {verb} {} with {} and write {writing}",
+        "dry run: would take the {operation} of {} with {} and write {writing}",
         report::counted(operands.len(), "operand"),
         report::counted(triangles, "triangle"),
     ));

@@ -132,13 +132,7 @@ fn system_of(text: &str) -> Result<System, Error> {
 }
 
 fn operation_of(name: &str) -> Option<Operation> {
-    Some(match name {
-        "union" => Operation::Union,
-        "intersection" => Operation::Intersection,
-        "difference" => Operation::Difference,
-        "xor" => Operation::SymmetricDifference,
-        _ => return None,
-    })
+    name.parse().ok()
 }
 
 #[derive(Deserialize)]

@@ -3,7 +3,7 @@
 
 pub(crate) mod meshes;
 
-use trisect::{Mesh, Operation, Options, Outcome, Solid};
+use trisect::{BooleanOptions, Mesh, Operation, Outcome, Solid};
 
 /// The solid of a mesh that must be one.
 pub(crate) fn solid(mesh: Mesh) -> Solid {
@@ -22,7 +22,7 @@ pub(crate) fn cube(low: [f64; 3], side: f64) -> Solid {
 
 /// Runs an operation with default settings.
 pub(crate) fn run(operation: Operation, operands: &[&Solid]) -> Outcome {
-    Options::new().run(operation, operands).expect("booleans do not fail")
+    BooleanOptions::new().run(operation, operands.iter().copied()).expect("booleans do not fail")
 }
 
 /// Asserts what every result promises: closed, 2-manifold, no triangle without area, one origin per triangle.

@@ -4,7 +4,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use trisect::Operation::{Difference, Intersection, Union};
-use trisect::{Mesh, Operation, Options, Solid, primitives};
+use trisect::{BooleanOptions, Mesh, Operation, Solid, primitives};
 
 use crate::common::{cuboid, solid};
 use crate::judge::cells::Cells;
@@ -19,7 +19,7 @@ fn steps(usual: usize) -> usize {
 }
 
 fn run(operation: Operation, operands: &[&Solid]) -> Solid {
-    Options::new().run(operation, operands).expect("no limits").into_solid()
+    BooleanOptions::new().run(operation, operands.iter().copied()).expect("no limits").into_solid()
 }
 
 fn assert_sound(found: &Properties, context: &str) {

@@ -1,6 +1,6 @@
 //! What manifold3d finds of the first few thousand random cases, as `compare.py record` wrote it. See `docs/proof.md`.
 
-use trisect::{Options, Solid};
+use trisect::{BooleanOptions, Solid};
 
 use crate::judge::cases::{Case, Family, models};
 use crate::judge::surface::{Properties, volume};
@@ -35,8 +35,10 @@ fn results_of_manifold3d() {
             );
         }
         let solids = [&case.a, &case.b].map(|mesh| Solid::try_from(mesh.clone()).expect("closed"));
-        let outcome =
-            Options::new().threads(1).run(case.operation, &[&solids[0], &solids[1]]).expect("no limits");
+        let outcome = BooleanOptions::new()
+            .threads(1)
+            .run(case.operation, [&solids[0], &solids[1]])
+            .expect("no limits");
         let found = Properties::of(outcome.solid().mesh());
         let [low, high] = extent(case.a.positions.iter().chain(&case.b.positions));
         let [x, y, z] = [0, 1, 2].map(|k| high[k] - low[k]);

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use trisect::{Mesh, Operation, Options, Solid};
+use trisect::{BooleanOptions, Mesh, Operation, Solid};
 
 use super::judge::surface::Properties;
 
@@ -50,7 +50,7 @@ impl Trial {
         expected: &Expected,
     ) -> Option<Solid> {
         self.tried += 1;
-        let run = || Options::new().threads(1).run(operation, &operands).expect("no limits");
+        let run = || BooleanOptions::new().threads(1).run(operation, operands).expect("no limits");
         let Ok(outcome) = catch_unwind(AssertUnwindSafe(run)) else {
             self.fail(context, operation, operands, None, "panic");
             return None;

@@ -42,6 +42,7 @@ pub struct Certificate {
 
 /// What is known of an operand's crossings with itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum OperandState {
     /// Nobody has asked; see [`Solid::self_crossings`].
     NotChecked,

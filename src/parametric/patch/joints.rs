@@ -1,6 +1,7 @@
 //! Where patches meet: boundary curves compared in either direction, joined into shared edges, corners identified.
 
 use super::surface::{Patch, PatchSide};
+use crate::mesh::UnionFind;
 use crate::parametric::curve::nurbs::NurbsCurve;
 use crate::parametric::curve::nurbs_tools::rescaled_to_unit;
 use crate::parametric::curve::param_curve::Curve;
@@ -244,28 +245,28 @@ fn identify_corners(
     sides: &[[FaceSide; 4]],
     edges: &[SharedEdge],
 ) -> (Vec<[usize; 4]>, Vec<Point<3>>) {
-    let mut parent: Vec<usize> = (0..4 * faces.len()).collect();
+    let mut sets = UnionFind::new(4 * faces.len());
     for (face, sides) in sides.iter().enumerate() {
         for (side, what) in sides.iter().enumerate() {
-            let [start, end] = SIDE_CORNERS[side].map(|c| 4 * face + c);
+            let [start, end] = SIDE_CORNERS[side].map(|c| (4 * face + c) as u32);
             match what {
-                FaceSide::Collapsed => unite(&mut parent, start, end),
+                FaceSide::Collapsed => sets.join(start, end),
                 FaceSide::Edge { edge, course } => {
                     let (face0, side0) = edges[*edge].uses[0];
-                    let [start0, end0] = SIDE_CORNERS[side0].map(|c| 4 * face0 + c);
+                    let [start0, end0] = SIDE_CORNERS[side0].map(|c| (4 * face0 + c) as u32);
                     let [start, end] = if course.is_reversed() { [end, start] } else { [start, end] };
-                    unite(&mut parent, start0, start);
-                    unite(&mut parent, end0, end);
+                    sets.join(start0, start);
+                    sets.join(end0, end);
                 }
             }
         }
     }
-    let mut number: Vec<Option<usize>> = vec![None; parent.len()];
+    let mut number: Vec<Option<usize>> = vec![None; 4 * faces.len()];
     let mut places = Vec::new();
     let mut corners = Vec::new();
     for (face, patch) in faces.iter().enumerate() {
         corners.push(std::array::from_fn(|corner| {
-            let root = find(&mut parent, 4 * face + corner);
+            let root = sets.root((4 * face + corner) as u32) as usize;
             *number[root].get_or_insert_with(|| {
                 let [i, j] = [[0, 0], [1, 0], [1, 1], [0, 1]][corner];
                 let [rows, columns] = patch.counts;
@@ -275,19 +276,6 @@ fn identify_corners(
         }));
     }
     (corners, places)
-}
-
-pub(crate) fn find(parent: &mut [usize], mut i: usize) -> usize {
-    while parent[i] != i {
-        parent[i] = parent[parent[i]];
-        i = parent[i];
-    }
-    i
-}
-
-fn unite(parent: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (find(parent, a), find(parent, b));
-    parent[a.max(b)] = a.min(b);
 }
 
 /// The boundaries that met no other, with their distance to the nearest other such boundary.

@@ -1,8 +1,7 @@
 //! Polygons with holes.
 
-use robust::{Coord, orient2d};
-
 use super::membership::Membership;
+use crate::exact::{Sign, orient2d};
 use crate::parametric::error::{GeometryError, Result, check_points};
 use crate::parametric::numeric::vector::{self, Point};
 
@@ -72,7 +71,7 @@ impl Polygons {
             if (a[1] < point[1]) != (b[1] < point[1]) {
                 let [low, high] = if a[1] < b[1] { [a, b] } else { [b, a] };
                 // The edge meets the ray if the point is to its left, seen upwards.
-                inside ^= side(low, high, point) > 0.0;
+                inside ^= orient2d(low, high, point) == Sign::Positive;
             }
         }
         if inside { Membership::Inside } else { Membership::Outside }
@@ -116,13 +115,28 @@ pub(crate) fn signed_area(contour: &[Point<2>]) -> f64 {
     0.5 * twice
 }
 
-/// Positive if `p` is to the left of the line from `a` to `b`, zero if on it; the sign is exact.
-pub(crate) fn side(a: Point<2>, b: Point<2>, p: Point<2>) -> f64 {
-    let coord = |p: Point<2>| Coord { x: p[0], y: p[1] };
-    orient2d(coord(a), coord(b), coord(p))
-}
-
 fn on_segment(p: Point<2>, a: Point<2>, b: Point<2>) -> bool {
     let within = |i: usize| p[i] >= a[i].min(b[i]) && p[i] <= a[i].max(b[i]);
-    within(0) && within(1) && side(a, b, p) == 0.0
+    within(0) && within(1) && orient2d(a, b, p) == Sign::Zero
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn membership_is_exact_at_any_magnitude() {
+        let membership =
+            |points: [[f64; 2]; 3], point| Polygons::trusted(vec![vec![points.to_vec()]]).membership(point);
+        for scale in [1e-300, 1.0, 1e300] {
+            let wedge = [[0.0, 0.0], [3.0 * scale, scale], [0.0, scale]];
+            let [x, y] = [3.0, 1.0].map(|x| 0.25 * scale * x);
+            assert_eq!(membership(wedge, [x, y]), Membership::Boundary, "{scale}");
+            assert_eq!(membership(wedge, [x, y.next_up()]), Membership::Inside, "{scale}");
+            assert_eq!(membership(wedge, [x, y.next_down()]), Membership::Outside, "{scale}");
+        }
+        let huge = [[0.0, 0.0], [1e300, 1e300], [-1e300, 1e300]];
+        assert_eq!(membership(huge, [1e-300, 1e-300]), Membership::Boundary);
+        assert_eq!(membership(huge, [1e-300, 1e-300f64.next_up()]), Membership::Inside);
+    }
 }

@@ -4,7 +4,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use trisect::Operation::{Difference, Union};
-use trisect::{Mesh, Options, Solid};
+use trisect::{BooleanOptions, Mesh, Solid};
 
 use super::convex::{Twin, run};
 use crate::common::{cube, cuboid};
@@ -65,7 +65,7 @@ fn menger_sponges_bored_one_bar_at_a_time() {
                 high[k] = (x + width) as f64;
             }
             let bar = cuboid(low, high);
-            sponge = Options::new().run(Difference, &[&sponge, &bar]).expect("no limits").into_solid();
+            sponge = BooleanOptions::new().run(Difference, [&sponge, &bar]).expect("no limits").into_solid();
         }
         assert_is(&sponge, &Cells::new([0; 3], [size; 3], in_sponge), &format!("depth {depth}"));
     }
@@ -88,8 +88,7 @@ fn the_menger_sponge_of_depth_three_in_one_operation() {
         });
         operands.push(Solid::try_from(cells.surface().mesh).expect("closed"));
     }
-    let operands: Vec<&Solid> = operands.iter().collect();
-    let sponge = Options::new().run(Difference, &operands).expect("no limits");
+    let sponge = BooleanOptions::new().run(Difference, &operands).expect("no limits");
     assert_is(sponge.solid(), &Cells::new([0; 3], [size; 3], in_sponge), "depth 3");
 }
 
@@ -104,7 +103,7 @@ fn cubes_of_a_grid_united_in_sampled_orders() {
         for (step, &place) in places.iter().enumerate() {
             let one = cube(place.map(|x| x as f64), 1.0);
             let operands = if random.random() { [&sum, &one] } else { [&one, &sum] };
-            sum = Options::new().run(Union, &operands).expect("no limits").into_solid();
+            sum = BooleanOptions::new().run(Union, operands).expect("no limits").into_solid();
             let so_far = Cells::new([0; 3], [3; 3], |cell| places[..=step].contains(&cell));
             assert_is(&sum, &so_far, &format!("seed {seed}, step {step}"));
         }
@@ -120,15 +119,12 @@ fn cubes_of_a_grid_united_in_a_tree_and_all_at_once() {
     for seed in 0..6 {
         let mut parts = cubes.clone();
         parts.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
-        let operands: Vec<&Solid> = parts.iter().collect();
-        let at_once = Options::new().run(Union, &operands).expect("no limits");
+        let at_once = BooleanOptions::new().run(Union, &parts).expect("no limits");
         assert_is(at_once.solid(), &whole, &format!("seed {seed}, at once"));
         assert_eq!(at_once.solid().mesh().triangles.len(), 12, "seed {seed}");
         while parts.len() > 1 {
-            let united = |pair: &[Solid]| {
-                let operands: Vec<&Solid> = pair.iter().collect();
-                Options::new().run(Union, &operands).expect("no limits").into_solid()
-            };
+            let united =
+                |pair: &[Solid]| BooleanOptions::new().run(Union, pair).expect("no limits").into_solid();
             parts = parts.chunks(2).map(united).collect();
         }
         assert_is(&parts[0], &whole, &format!("seed {seed}, tree"));

@@ -1,8 +1,6 @@
-//! Operands that touch themselves, as sheets: the perturbation moves vertices, so every sheet needs its own.
+//! Solids that touch themselves, taken apart where they do.
 
-use crate::boolean::result::origins::Origins;
-use crate::boolean::result::outcome::Origin;
-use crate::mesh::{HalfEdges, Surface, make_manifold};
+use super::manifold::{HalfEdges, Surface, make_manifold};
 use crate::{Mesh, Solid};
 
 /// A whole mesh that is taken apart.
@@ -82,9 +80,4 @@ impl Solid {
         }
         (separated, whole.source)
     }
-}
-
-/// The origins of the triangles of a separated operand.
-pub(crate) fn origins(operand: u32, source: &[u32]) -> Origins {
-    source.iter().map(|&triangle| Origin { operand, triangle, reversed: false }).collect()
 }
