@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 use spade::handles::FixedVertexHandle;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use super::winding::{CountedEdge, CountedTriangle};
+use super::counted::{CountedEdge, CountedTriangle};
 
 /// A vertex that remembers its index.
 struct Vertex {
