@@ -58,14 +58,7 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     let solid = found.as_ref().map(|found| Solid::try_from(found.mesh.clone())).transpose()?;
     let seconds = session.took("run", start);
     if let (Some(found), Some(solid)) = (&found, &solid) {
-        let measures = Measures::of_solid(solid);
-        let mut result = measures.to_json();
-        result.insert("extraction".into(), extraction(found));
-        session.note("result", result);
-        parts.push(measures.line());
-        for warning in &found.warnings {
-            session.warn(warning.clone());
-        }
+        parts.push(note_result(found, solid, session));
     }
     write(arguments, &targets, solid.as_ref(), &drawn, session)?;
     let names: Vec<String> = targets
@@ -110,6 +103,18 @@ fn note_contours(contours: &Contours, height: f64, session: &mut Session<'_>) ->
         report::counted(points, "point"),
         report::short(area)
     )
+}
+
+/// Notes the mesh in the report, and says it in a line.
+fn note_result(found: &Evaluated, solid: &Solid, session: &mut Session<'_>) -> String {
+    let measures = Measures::of_solid(solid);
+    let mut result = measures.to_json();
+    result.insert("extraction".into(), extraction(found));
+    session.note("result", result);
+    for warning in &found.warnings {
+        session.warn(warning.clone());
+    }
+    measures.line()
 }
 
 fn dry_run(model: &Model, name: &str, session: &mut Session<'_>) -> Result<Exit, Fault> {

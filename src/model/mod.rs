@@ -27,6 +27,7 @@ mod evaluate;
 mod parametric;
 mod parse;
 mod primitive;
+mod references;
 mod transform;
 
 use std::collections::BTreeMap;

@@ -11,13 +11,11 @@ use serde_json::{Map, Value};
 use super::contour::PlaneRegion;
 #[cfg(feature = "parametric")]
 use super::parametric::{self, Curves, Described, Parametric};
-use super::{Defaults, Kind, Mode, Model, Node, contour, fault, primitive, transform};
+use super::{Defaults, Kind, Mode, Model, Node, contour, fault, primitive, references, transform};
 use crate::Error;
 use crate::boolean::Operation;
 use crate::field::{Formula, System, named_system};
 
-/// Longest chain of nodes in nodes.
-const DEEPEST: usize = 400;
 /// How the names of kinds begin that a [`LeafKind`](super::LeafKind) evaluates.
 const CUSTOM: &str = "x-";
 /// Kinds of solids that are described as in `docs/parametric.md`.
@@ -79,8 +77,8 @@ pub(super) fn model(text: &str, folder: &Path) -> Result<Model, Error> {
     };
     let mut model =
         Model { nodes: reading.nodes, names: reading.names, result, folder: folder.to_owned(), defaults };
-    resolve(&mut model)?;
-    check_order(&model)?;
+    references::resolve(&mut model)?;
+    references::check_order(&model)?;
     Ok(model)
 }
 
@@ -401,62 +399,4 @@ fn region_of(_: Value) -> Result<Kind, Error> {
 fn extension(text: &str) -> Option<&'static str> {
     let ending = Path::new(text).extension()?.to_str()?.to_ascii_lowercase();
     ["json", "obj", "gltf", "glb", "stl", "ply", "off"].into_iter().find(|known| *known == ending)
-}
-
-/// Looks up all names.
-fn resolve(model: &mut Model) -> Result<(), Error> {
-    let names = model.names.clone();
-    for node in &mut model.nodes {
-        match &mut node.kind {
-            Kind::Reference(name, target) => match names.get(name) {
-                Some(&index) => *target = index,
-                None => {
-                    let what = format!("there is no node named `{name}`, and it is not the name of a file");
-                    return Err(fault(what).in_node(&node.label));
-                }
-            },
-            Kind::Formula { formula, uses, .. } => {
-                for name in formula.free_names() {
-                    if let Some(&index) = names.get(&name) {
-                        uses.push((name, index));
-                    }
-                }
-            }
-            _ => {}
-        }
-    }
-    Ok(())
-}
-
-/// Refuses cycles and chains too long to follow.
-fn check_order(model: &Model) -> Result<(), Error> {
-    let mut finished = vec![false; model.nodes.len()];
-    for start in 0..model.nodes.len() {
-        let mut path: Vec<(usize, Vec<usize>)> = Vec::new();
-        if !finished[start] {
-            path.push((start, model.operands(start)));
-        }
-        while let Some((node, pending)) = path.last_mut() {
-            let node = *node;
-            let Some(next) = pending.pop() else {
-                finished[node] = true;
-                path.pop();
-                continue;
-            };
-            if let Some(from) = path.iter().position(|entry| entry.0 == next) {
-                let round: Vec<&str> =
-                    path[from..].iter().map(|entry| model.nodes[entry.0].label.as_str()).collect();
-                let what = format!("cyclic reference: {} -> {}", round.join(" -> "), round[0]);
-                return Err(fault(what).in_node(&model.nodes[next].label));
-            }
-            if path.len() >= DEEPEST {
-                let what = format!("nodes are nested more than {DEEPEST} deep");
-                return Err(fault(what).in_node(&model.nodes[next].label));
-            }
-            if !finished[next] {
-                path.push((next, model.operands(next)));
-            }
-        }
-    }
-    Ok(())
 }

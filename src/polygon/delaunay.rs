@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use spade::handles::{DirectedEdgeHandle, FixedVertexHandle};
 use spade::{CdtEdge, ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use super::winding::{CountedEdge, CountedTriangle};
+use super::counted::{CountedEdge, CountedTriangle};
 
 /// Why edges are not all edges of one triangulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

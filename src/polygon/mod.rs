@@ -5,6 +5,7 @@
 //! holes, whatever rounding did to the shape. So triangles of neighbouring faces always fit together. Where the shape is
 //! sound (exact tests on the given coordinates), all triangles are counter-clockwise.
 
+mod counted;
 mod delaunay;
 mod ears;
 mod face;

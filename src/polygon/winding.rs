@@ -4,10 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::delaunay::triangulate_between;
 use crate::exact::{Sign, orient2d};
-
-/// A directed edge, or a counter-clockwise triangle, and how often it counts.
-pub(super) type CountedEdge = ([u32; 2], i32);
-pub(crate) type CountedTriangle = ([u32; 3], i32);
+use crate::polygon::counted::{CountedEdge, CountedTriangle};
 
 /// A directed edge that counts a number of times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

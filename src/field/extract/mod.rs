@@ -22,6 +22,7 @@
 //! tolerance is checked at sample points (the largest deviation found is in the report), not proven.
 
 mod boundaries;
+mod cell_lines;
 mod contour;
 mod faces;
 mod filling;

@@ -3,10 +3,11 @@
 use glam::DVec3;
 
 use super::boundaries::CellFace;
+use super::cell_lines::corners_of;
 use super::filling::{Cell, Corner};
 use super::lattice::{Key, unkey};
 use super::loops::{LoopLink, chain, stretches};
-use super::octree::{corners_of, value_at};
+use super::octree::value_at;
 use super::solve::{crossing, deviation};
 use super::tables::{FaceLine, Tables};
 use super::tetrahedra;

@@ -2,9 +2,13 @@
 
 use std::sync::Arc;
 
-use serde::Deserialize;
 use serde_json::Value;
 
+use super::curve_spec::{
+    ArcSpec, BsplineSpec, CircleSpec, CompositeSpec, CubicSpec, EllipseSpec, EndsSpec, HermiteSpec,
+    LagrangeSpec, LineSpec, NamedSpacing, NamedTangents, PointsSpec, PolylineSpec, ReversedSpec, SpacingSpec,
+    SvgSpec, TangentsSpec,
+};
 use super::{JsonNode, point, points};
 use crate::parametric::error::Result;
 use crate::parametric::file::svg::curves_of_path;
@@ -88,161 +92,6 @@ fn dimension(value: &Value) -> usize {
         Some(inner) => dimension(inner),
         None => 2,
     }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PointsSpec {
-    points: Vec<Vec<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LineSpec {
-    point: Vec<f64>,
-    direction: Vec<f64>,
-    domain: [f64; 2],
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CircleSpec {
-    center: Vec<f64>,
-    radius: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct EllipseSpec {
-    center: Vec<f64>,
-    radii: [f64; 2],
-    #[serde(default)]
-    rotation: f64,
-}
-
-/// An arc of a circle in the plane (`radius`), or of any ellipse (`a` and `b`).
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ArcSpec {
-    center: Vec<f64>,
-    radius: Option<f64>,
-    a: Option<Vec<f64>>,
-    b: Option<Vec<f64>>,
-    #[serde(default)]
-    start: f64,
-    sweep: f64,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SvgSpec {
-    d: String,
-}
-
-/// `"uniform"`, `"chord"`, `"centripetal"`, or the parameters themselves.
-#[derive(Deserialize, Default)]
-#[serde(rename_all = "snake_case")]
-enum NamedSpacing {
-    Uniform,
-    #[default]
-    Chord,
-    Centripetal,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum SpacingSpec {
-    Named(NamedSpacing),
-    Given(Vec<f64>),
-}
-
-fn spacing(spec: Option<SpacingSpec>) -> Spacing {
-    match spec {
-        None | Some(SpacingSpec::Named(NamedSpacing::Chord)) => Spacing::ChordLength,
-        Some(SpacingSpec::Named(NamedSpacing::Uniform)) => Spacing::Uniform,
-        Some(SpacingSpec::Named(NamedSpacing::Centripetal)) => Spacing::Centripetal,
-        Some(SpacingSpec::Given(values)) => Spacing::Given(values),
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PolylineSpec {
-    points: Vec<Vec<f64>>,
-    #[serde(default)]
-    closed: bool,
-    spacing: Option<SpacingSpec>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum NamedTangents {
-    Central,
-    Nearer,
-    Farther,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum TangentsSpec {
-    Rule(NamedTangents),
-    Given(Vec<Vec<f64>>),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct HermiteSpec {
-    points: Vec<Vec<f64>>,
-    tangents: Option<TangentsSpec>,
-    #[serde(default)]
-    closed: bool,
-    spacing: Option<SpacingSpec>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum EndsSpec {
-    Natural,
-    Periodic,
-    Clamped([Vec<f64>; 2]),
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CubicSpec {
-    points: Vec<Vec<f64>>,
-    ends: Option<EndsSpec>,
-    spacing: Option<SpacingSpec>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LagrangeSpec {
-    points: Vec<Vec<f64>>,
-    spacing: Option<SpacingSpec>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BsplineSpec {
-    degree: usize,
-    points: Vec<Vec<f64>>,
-    knots: Option<Vec<f64>>,
-    weights: Option<Vec<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CompositeSpec {
-    segments: Vec<Value>,
-    #[serde(default)]
-    closed: bool,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ReversedSpec {
-    curve: Value,
 }
 
 const TYPES: [&str; 13] = [
@@ -409,4 +258,13 @@ fn read_hermite<const D: usize>(node: &JsonNode<'_>) -> Result<SharedCurve<D>> {
         Some(TangentsSpec::Rule(NamedTangents::Farther)) => TangentRule::FartherNeighbour,
     };
     Ok(Arc::new(node.place(HermiteSpline::through(&through, rule, &spacing, spec.closed))?))
+}
+
+fn spacing(spec: Option<SpacingSpec>) -> Spacing {
+    match spec {
+        None | Some(SpacingSpec::Named(NamedSpacing::Chord)) => Spacing::ChordLength,
+        Some(SpacingSpec::Named(NamedSpacing::Uniform)) => Spacing::Uniform,
+        Some(SpacingSpec::Named(NamedSpacing::Centripetal)) => Spacing::Centripetal,
+        Some(SpacingSpec::Given(values)) => Spacing::Given(values),
+    }
 }

@@ -4,6 +4,7 @@
 //! not silently ignored; every error says where, as a JSON pointer. Angles in files are in degrees.
 
 mod curve;
+mod curve_spec;
 mod patch;
 mod region;
 mod solid;
