@@ -32,6 +32,6 @@ pub mod spatial;
 pub use boolean::{
     BooleanOptions, Certificate, Contact, OperandState, Operation, Origin, Outcome, UnknownName, boolean,
 };
-pub use control::{CancelToken, Control};
-pub use error::{Error, Failure};
-pub use mesh::{FaceGroup, FaceGroups, Material, Mesh, Solid};
+pub use control::{CancelToken, Control, Limit};
+pub use error::{Error, Failure, FileAction};
+pub use mesh::{FaceGroup, FaceGroups, Material, Mesh, MeshError, Solid};

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use crate::{Control, Error};
+use crate::control::{Control, Limit};
 
 /// How loops run: on how many threads, and under which limits.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +56,7 @@ impl<'a> Runner<'a> {
         count: usize,
         grain: usize,
         piece: impl Fn(Range<usize>) -> T + Sync,
-    ) -> Result<Vec<T>, Error> {
+    ) -> Result<Vec<T>, Limit> {
         let starts = (0..count).step_by(grain.max(1));
         self.each(starts.map(|start| start..(start + grain.max(1)).min(count)).collect(), piece)
     }
@@ -69,7 +69,7 @@ impl<'a> Runner<'a> {
         grain: usize,
         room: usize,
         fill: impl Fn(Range<usize>, &mut Vec<T>) + Sync,
-    ) -> Result<Vec<T>, Error> {
+    ) -> Result<Vec<T>, Limit> {
         if self.is_parallel() {
             let pieces = self.pieces(count, grain, |range| {
                 let mut piece = Vec::new();
@@ -91,8 +91,8 @@ impl<'a> Runner<'a> {
         self,
         items: Vec<T>,
         work: impl Fn(T) -> R + Sync,
-    ) -> Result<Vec<R>, Error> {
-        let run = |item: T| -> Result<R, Error> {
+    ) -> Result<Vec<R>, Limit> {
+        let run = |item: T| -> Result<R, Limit> {
             self.control.check()?;
             Ok(work(item))
         };
@@ -111,7 +111,7 @@ impl<'a> Runner<'a> {
         items: &mut [T],
         grain: usize,
         fill: impl Fn(usize, &mut [T]) + Sync,
-    ) -> Result<(), Error> {
+    ) -> Result<(), Limit> {
         let grain = grain.max(1);
         let pieces = items.chunks_mut(grain).enumerate().map(|(i, piece)| (i * grain, piece)).collect();
         self.each(pieces, |(first, piece)| fill(first, piece)).map(drop)
@@ -121,7 +121,7 @@ impl<'a> Runner<'a> {
     pub(crate) fn concat<T: Copy + Default + Send + Sync>(
         self,
         mut lists: Vec<Vec<T>>,
-    ) -> Result<Vec<T>, Error> {
+    ) -> Result<Vec<T>, Limit> {
         if lists.len() < 2 {
             return Ok(lists.pop().unwrap_or_default());
         }

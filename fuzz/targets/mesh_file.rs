@@ -7,8 +7,8 @@ use trisect::{Error, Mesh};
 pub fn check(bytes: &[u8], format: Format) {
     match read(bytes, format, &ReadOptions::new()) {
         Ok(loaded) => assert_valid(&loaded.mesh),
-        Err(Error::Malformed { place, what, .. }) => assert!(!place.is_empty() && !what.is_empty()),
-        Err(Error::Unsupported { .. } | Error::UnknownFormat { .. } | Error::TooLarge { .. }) => {}
+        Err(Error::Format(trisect::io::FormatError::Malformed { place, what, .. })) => assert!(!place.is_empty() && !what.is_empty()),
+        Err(Error::Format(trisect::io::FormatError::Unsupported { .. } | trisect::io::FormatError::Unknown { .. }) | Error::TooLarge { .. }) => {}
         Err(other) => panic!("not an error of a file: {other}"),
     }
 }

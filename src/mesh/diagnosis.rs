@@ -177,7 +177,7 @@ impl Diagnosis {
         match (open, turned) {
             (true, false) => Some("its holes must be filled first"),
             (false, true) if self.unbalanced_edges.is_none() => {
-                Some("triangles that face the wrong way can be turned (--orient), if they are not many")
+                Some("triangles that face the wrong way can be turned, if they are not many")
             }
             _ => None,
         }
@@ -233,7 +233,7 @@ impl fmt::Display for Diagnosis {
         }
         if let Some(distance) = self.closing_distance {
             separate(f)?;
-            write!(f, "welding vertices within {distance:e} would close it (--weld {distance:e})")?;
+            write!(f, "welding vertices within {distance:e} would close it")?;
         } else if let Some(advice) = self.advice() {
             separate(f)?;
             f.write_str(advice)?;
@@ -295,7 +295,7 @@ mod tests {
         let expected = "7 open edges: triangle 0 vertices 0-1 at (0, -1e-9, 0), \
             triangle 1 vertices 1-2 at (0.3333333, -1e-9, 0), ...; \
             1 zero-area triangle: triangle 0 vertices 0-1 at (0, -1e-9, 0); \
-            welding vertices within 1e-7 would close it (--weld 1e-7)";
+            welding vertices within 1e-7 would close it";
         assert_eq!(diagnosis.to_string(), expected);
         assert_eq!(format!("{diagnosis:#}").lines().count(), 3);
         assert_eq!(format!("{diagnosis:#}").matches(" at ").count(), 6);

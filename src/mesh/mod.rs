@@ -12,6 +12,7 @@ mod diagnose;
 mod diagnosis;
 mod duplicates;
 mod edges;
+mod error;
 mod groups;
 mod manifold;
 mod measure;
@@ -32,13 +33,12 @@ pub use bounds::Bounds;
 pub(crate) use buckets::Buckets;
 pub use diagnose::diagnose;
 pub use diagnosis::{Diagnosis, Fault, Place};
+pub use error::{GroupFault, MeshError, TransformFault};
 pub use groups::{FaceGroup, FaceGroups, Material};
 pub(crate) use manifold::{HalfEdges, Surface, make_manifold};
 pub use self_crossing::{SelfCrossing, SelfCrossings};
 pub use solid::{Cleaning, Solid};
 pub(crate) use union_find::UnionFind;
-
-use crate::Error;
 
 /// Whether every directed edge is met by its opposite equally often; false for indices out of range.
 pub(crate) fn is_closed(mesh: &Mesh) -> bool {
@@ -74,12 +74,13 @@ impl Mesh {
     /// Appends the vertices, triangles and groups of `other`; its vertices stay apart from those here.
     ///
     /// # Errors
-    /// [`Error::TooLarge`] if there are more vertices than 32 bits can name; this mesh is then as before.
-    pub fn append(&mut self, other: &Self) -> Result<(), Error> {
+    /// [`MeshError::TooLarge`] if there are more vertices than 32 bits can name; this mesh is then as before.
+    pub fn append(&mut self, other: &Self) -> Result<(), MeshError> {
         let first = self.positions.len();
         let vertices = first + other.positions.len();
         if vertices > u32::MAX as usize {
-            return Err(Error::TooLarge { what: format!("{vertices} vertices in one mesh") });
+            let triangles = self.triangles.len() + other.triangles.len();
+            return Err(MeshError::TooLarge { vertices, triangles });
         }
         self.groups.append(self.triangles.len(), &other.groups, other.triangles.len());
         self.positions.extend_from_slice(&other.positions);
@@ -92,8 +93,8 @@ impl Mesh {
     /// All `meshes` in one, in order; their vertices stay apart.
     ///
     /// # Errors
-    /// [`Error::TooLarge`] if there are more vertices than 32 bits can name.
-    pub fn merged<'a>(meshes: impl IntoIterator<Item = &'a Self>) -> Result<Self, Error> {
+    /// [`MeshError::TooLarge`] if there are more vertices than 32 bits can name.
+    pub fn merged<'a>(meshes: impl IntoIterator<Item = &'a Self>) -> Result<Self, MeshError> {
         let mut all = Self::default();
         meshes.into_iter().try_for_each(|mesh| all.append(mesh))?;
         Ok(all)
@@ -105,13 +106,11 @@ impl Mesh {
     /// the surface. O(n log n).
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] unless `distance` is finite and positive or zero (equal coordinates only);
-    /// [`Error::IndexOutOfRange`], [`Error::NotFinite`].
-    pub fn welded(mut self, distance: f64) -> Result<Self, Error> {
+    /// [`MeshError::WeldingDistance`] unless `distance` is finite and positive or zero (equal coordinates only);
+    /// [`MeshError::IndexOutOfRange`], [`MeshError::NotFinite`].
+    pub fn welded(mut self, distance: f64) -> Result<Self, MeshError> {
         if !(distance.is_finite() && distance >= 0.0) {
-            return Err(Error::InvalidArgument(format!(
-                "the welding distance must be finite and not negative, not {distance}"
-            )));
+            return Err(MeshError::WeldingDistance(distance));
         }
         clean::check_corners(&self)?;
         let how = if distance == 0.0 { clean::Weld::Exact } else { clean::Weld::Within(distance) };

@@ -42,7 +42,7 @@ pub(super) fn solid_of(name: &str, mut object: Map<String, Value>) -> Result<Kin
 pub(super) fn file(folder: &Path, file: &str) -> Result<Kind, Error> {
     let path = folder.join(file);
     let text = std::fs::read_to_string(&path).map_err(|source| Error::File {
-        action: "read",
+        action: crate::FileAction::Read,
         path: path.clone(),
         source,
     })?;

@@ -15,7 +15,7 @@ use super::joints::{self, Course, FaceSide, Gap, Joints, nearest_parameter};
 use super::orientation;
 use super::patch::{Patch, Side};
 use super::vector::{self, Point};
-use crate::{Control, Error, FaceGroup, FaceGroups, Mesh, Solid};
+use crate::{Control, Error, FaceGroup, FaceGroups, Mesh, MeshError, Solid};
 
 /// Settings of a patch mesh.
 #[derive(Clone, Debug)]
@@ -57,7 +57,7 @@ impl PatchMesh {
     ///
     /// # Errors
     /// Those of [`Solid`]'s conversion.
-    pub fn into_solid(self) -> Result<Solid, Error> {
+    pub fn into_solid(self) -> Result<Solid, MeshError> {
         Solid::try_from(self.mesh)
     }
 }
@@ -148,7 +148,7 @@ impl PatchMeshing {
     /// # Errors
     /// [`GeometryError::OutOfRange`], [`GeometryError::ToleranceTooSmall`], [`GeometryError::TooManyNodes`],
     /// [`GeometryError::BoundaryShared`] if more than two boundaries run along one curve,
-    /// [`GeometryError::OneSided`]; [`Error::Cancelled`], [`Error::DeadlineExceeded`].
+    /// [`GeometryError::OneSided`]; [`Limit::Cancelled`](crate::Limit::Cancelled), [`Limit::DeadlineExceeded`](crate::Limit::DeadlineExceeded).
     pub fn surface(&self, patches: &[Patch]) -> Result<PatchMesh, Error> {
         let (faces, joints) = self.prepare(patches)?;
         self.run(patches, &faces, &joints)

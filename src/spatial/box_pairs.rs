@@ -1,7 +1,7 @@
 //! All pairs of boxes that meet, of two trees or within one: both are walked at once, pack against pack.
 
+use crate::control::{Control, Limit};
 use crate::parallel::Runner;
-use crate::{Control, Error};
 
 use super::box_tree::{BoxTree, LANES, for_each_bit};
 
@@ -22,7 +22,7 @@ pub(crate) fn visit_pairs<T: Send>(
     b: &BoxTree,
     runner: Runner<'_>,
     visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
-) -> Result<Vec<T>, Error> {
+) -> Result<Vec<T>, Limit> {
     Walk { a, b, within: false, control: runner.control }.run(runner, visit)
 }
 
@@ -32,7 +32,7 @@ pub(crate) fn self_overlapping_pairs(
     tree: &BoxTree,
     runner: Runner<'_>,
     wanted: impl Fn([u32; 2]) -> bool + Sync,
-) -> Result<Vec<[u32; 2]>, Error> {
+) -> Result<Vec<[u32; 2]>, Limit> {
     let walk = Walk { a: tree, b: tree, within: true, control: runner.control };
     walk.run(runner, |pairs, found| {
         found.extend(pairs.iter().map(|&[i, j]| [i.min(j), i.max(j)]).filter(|&pair| wanted(pair)));
@@ -53,7 +53,7 @@ impl Walk<'_> {
         &self,
         runner: Runner<'_>,
         visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
-    ) -> Result<Vec<T>, Error> {
+    ) -> Result<Vec<T>, Limit> {
         let Some((level, tasks)) = self.tasks()? else { return Ok(Vec::new()) };
         let grain = if runner.is_parallel() { tasks.len().div_ceil(TASKS) } else { tasks.len() };
         let pieces = runner.pieces(tasks.len(), grain.max(1), |range| {
@@ -65,7 +65,7 @@ impl Walk<'_> {
     }
 
     /// Pairs of packs of one level, and the level, below which all pairs of items are found.
-    fn tasks(&self) -> Result<Option<(usize, Vec<Packs>)>, Error> {
+    fn tasks(&self) -> Result<Option<(usize, Vec<Packs>)>, Limit> {
         let (a, b) = (self.a, self.b);
         if a.is_empty() || b.is_empty() {
             return Ok(None);
@@ -115,7 +115,7 @@ impl Walk<'_> {
     }
 
     /// Hands on all pairs of items below some pairs of packs.
-    fn below(&self, level: usize, tasks: &[Packs], mut found: impl FnMut(&[[u32; 2]])) -> Result<(), Error> {
+    fn below(&self, level: usize, tasks: &[Packs], mut found: impl FnMut(&[[u32; 2]])) -> Result<(), Limit> {
         let (of_a, of_b) = (self.a.items(), self.b.items());
         let mut batch = Vec::with_capacity(BATCH + LANES * LANES);
         let mut stack: Vec<(u32, Packs)> = Vec::new();
@@ -143,7 +143,7 @@ impl Walk<'_> {
     }
 }
 
-fn concatenated<T>(pieces: Vec<Result<Vec<T>, Error>>) -> Result<Vec<T>, Error> {
+fn concatenated<T>(pieces: Vec<Result<Vec<T>, Limit>>) -> Result<Vec<T>, Limit> {
     let mut pieces = pieces.into_iter();
     let mut all = pieces.next().unwrap_or(Ok(Vec::new()))?;
     for piece in pieces {

@@ -11,7 +11,7 @@ use obvhs::aabb::Aabb;
 
 use crate::Error;
 use crate::boolean::complex::operands::Operands;
-use crate::control::Reservation;
+use crate::control::{Limit, Reservation};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Cell, Frame, Occupancy, read_ahead, visit_pairs};
 use capsule_tree::CapsuleTree;
@@ -109,7 +109,7 @@ impl Candidates {
         visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
     ) -> Result<Vec<T>, Error> {
         match &self.hierarchies {
-            Hierarchies::Boxes([a, b]) => visit_pairs(a, b, runner, visit),
+            Hierarchies::Boxes([a, b]) => Ok(visit_pairs(a, b, runner, visit)?),
             Hierarchies::Capsules([a, b]) => capsule_tree::visit_pairs(a, b, runner, visit),
         }
     }
@@ -218,7 +218,7 @@ fn cull(
         })?;
         Ok(parts.into_iter().reduce(Occupancy::united).unwrap_or_else(|| grid.empty()))
     };
-    let passing = |grid: &Occupancy, side: usize| -> Result<Vec<u32>, Error> {
+    let passing = |grid: &Occupancy, side: usize| -> Result<Vec<u32>, Limit> {
         runner.gather(near[side].len(), TRIANGLES_PER_PIECE, 0, |range, passing| {
             with_cells(grid, side, &near[side][range], &mut |t, cells| {
                 if grid.is_marked(cells, || corners(side, t)) {

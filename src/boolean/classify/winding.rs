@@ -223,24 +223,24 @@ fn cast_rays(
         (start, end)
     };
     if seeds.len() * other.triangles.len() < TREE_FROM || seeds.len() < TREE_FROM_RAYS {
-        return runner.pieces(seeds.len(), 1, |range| {
+        return Ok(runner.pieces(seeds.len(), 1, |range| {
             let (start, end) = ray(range.start);
             let beside = Beside::new(other, &start);
             let meeting = (0..other.triangles.len() as u32).filter(|&t| beside.may_meet(other, t, &start));
             meeting.map(|t| ray_crossing(operands, 1 - side, t, &start, &end)).sum()
-        });
+        })?);
     }
     let frame = Frame::of(bounds.low, bounds.high);
     let all: Vec<u32> = (0..other.triangles.len() as u32).collect();
     let box_of = |t: u32| frame.triangle(other.triangles[t as usize].map(|v| &other.positions[v as usize]));
     let tree = BoxTree::new(&all, box_of);
-    runner.pieces(seeds.len(), 1, |range| {
+    Ok(runner.pieces(seeds.len(), 1, |range| {
         let (start, end) = ray(range.start);
         let query = frame.triangle([&start.position, &start.position, &end.position]);
         let mut sum = 0;
         tree.meeting(&query, |t| sum += ray_crossing(operands, 1 - side, t, &start, &end));
         sum
-    })
+    })?)
 }
 
 /// A coordinate beyond an interval.
