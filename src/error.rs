@@ -5,7 +5,9 @@ use std::fmt;
 use std::path::PathBuf;
 
 use crate::control::Limit;
+#[cfg(feature = "field")]
 use crate::field::{FieldError, FormulaError};
+#[cfg(feature = "formats")]
 use crate::io::FormatError;
 use crate::mesh::MeshError;
 
@@ -50,6 +52,7 @@ pub enum Error {
         source: std::io::Error,
     },
     /// A file is not what its format says, or the format cannot hold a mesh.
+    #[cfg(feature = "formats")]
     #[error(transparent)]
     Format(#[from] FormatError),
     /// A mesh is not what an operation needs.
@@ -68,12 +71,15 @@ pub enum Error {
     #[error(transparent)]
     Limit(#[from] Limit),
     /// A field cannot be evaluated or meshed as asked.
+    #[cfg(feature = "field")]
     #[error(transparent)]
     Field(#[from] FieldError),
     /// A formula that cannot be read.
+    #[cfg(feature = "field")]
     #[error(transparent)]
     Formula(#[from] FormulaError),
     /// A model file says something that has no meaning.
+    #[cfg(feature = "model")]
     #[error("model: {0}")]
     Model(String),
     /// A curve, region or patch, or its file, is at fault.
@@ -91,6 +97,7 @@ pub enum Error {
         source: Box<Error>,
     },
     /// A node of a model is at fault.
+    #[cfg(feature = "model")]
     #[error("model, node {node}: {source}")]
     InNode {
         /// The node's name, if it has one, and its place in the file.
@@ -119,19 +126,25 @@ impl Error {
     #[must_use]
     pub fn failure(&self) -> Failure {
         match self {
-            Self::File { .. } | Self::Format(_) => Failure::Unreadable,
-            Self::Mesh(MeshError::Groups(_) | MeshError::WeldingDistance(_) | MeshError::Transform(_)) => {
+            Self::File { .. } => Failure::Unreadable,
+            #[cfg(feature = "formats")]
+            Self::Format(_) => Failure::Unreadable,
+            Self::InvalidArgument(_)
+            | Self::Mesh(MeshError::Groups(_) | MeshError::WeldingDistance(_) | MeshError::Transform(_)) => {
                 Failure::Usage
             }
-            Self::Mesh(_) | Self::TooLarge { .. } | Self::Field(_) | Self::Formula(_) | Self::Model(_) => {
-                Failure::Unusable
-            }
+            Self::Mesh(_) | Self::TooLarge { .. } => Failure::Unusable,
+            #[cfg(feature = "field")]
+            Self::Field(_) | Self::Formula(_) => Failure::Unusable,
+            #[cfg(feature = "model")]
+            Self::Model(_) => Failure::Unusable,
             #[cfg(feature = "parametric")]
             Self::Geometry(fault) if fault.is_unreadable() => Failure::Unreadable,
             #[cfg(feature = "parametric")]
             Self::Geometry(_) => Failure::Unusable,
-            Self::Operand { source, .. } | Self::InNode { source, .. } => source.failure(),
-            Self::InvalidArgument(_) => Failure::Usage,
+            Self::Operand { source, .. } => source.failure(),
+            #[cfg(feature = "model")]
+            Self::InNode { source, .. } => source.failure(),
             Self::Limit(_) => Failure::Limit,
         }
     }
@@ -147,6 +160,7 @@ impl Error {
     }
 
     /// This error, said of the node of a model called `node`. A limit is no node's fault and stays as it is.
+    #[cfg(feature = "model")]
     #[must_use]
     pub fn in_node(self, node: &str) -> Self {
         match self {

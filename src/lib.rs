@@ -16,9 +16,12 @@ mod boolean;
 pub mod control;
 mod error;
 pub mod exact;
+#[cfg(feature = "field")]
 pub mod field;
+#[cfg(feature = "formats")]
 pub mod io;
 pub mod mesh;
+#[cfg(feature = "model")]
 pub mod model;
 mod parallel;
 #[cfg(feature = "parametric")]

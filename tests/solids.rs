@@ -141,7 +141,6 @@ proptest! {
     ) {
         let mesh = Mesh::new(positions, triangles);
         let diagnosis = diagnose(&mesh);
-        prop_assert!(diagnosis.to_json().is_object());
         let texts = format!("{diagnosis}{diagnosis:#}");
         prop_assert!(!texts.is_empty());
         let out_of_range = !diagnosis.index_out_of_range.is_none();
@@ -153,7 +152,7 @@ proptest! {
             Ok(_) => prop_assert!(diagnosis.closed && !out_of_range),
             Err(MeshError::IndexOutOfRange { .. }) => prop_assert!(out_of_range),
             Err(MeshError::NotFinite { .. }) => prop_assert!(!diagnosis.not_finite.is_none()),
-            Err(MeshError::NotClosed(said)) => prop_assert_eq!(said.to_json(), diagnosis.to_json()),
+            Err(MeshError::NotClosed(said)) => prop_assert_eq!(format!("{said:?}"), format!("{diagnosis:?}")),
             Err(MeshError::InsideOut { .. }) => prop_assert!(diagnosis.closed && !diagnosis.inside_out_shells.is_none()),
             Err(other) => prop_assert!(false, "{other}"),
         }

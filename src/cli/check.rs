@@ -9,7 +9,7 @@ use super::arguments::Check;
 use super::fault::{self, Exit, Fault};
 use super::operands::{self, Input, Usable};
 use super::output;
-use super::report::{self, Measures, into_map};
+use super::report::{self, Measures, into_map, json_of};
 use super::requests::{self, Request};
 use super::session::Session;
 use trisect::mesh::diagnose;
@@ -62,14 +62,14 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     let mut object = Measures::of_mesh(&mesh).to_json();
     object.insert("format".into(), format.extension().into());
     object.insert("warnings".into(), json!(warnings));
-    object.insert("diagnosis".into(), diagnosis.to_json());
+    object.insert("diagnosis".into(), json_of(&diagnosis));
     let Usable { solid, turned, welded, crossings } = match operands::usable(mesh, arguments.using, &control)
     {
         Ok(usable) => usable,
         Err(error) => {
             if let Error::Mesh(MeshError::SelfCrossing(found)) = &error {
                 diagnosis.self_crossings = Some((&**found).into());
-                object.insert("diagnosis".into(), diagnosis.to_json());
+                object.insert("diagnosis".into(), json_of(&diagnosis));
             }
             let mut verdict = refused(&name, error, Some(&diagnosis))?;
             object.extend(into_map(verdict.object));

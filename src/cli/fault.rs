@@ -7,6 +7,8 @@ use trisect::io::FormatError;
 use trisect::mesh::Diagnosis;
 use trisect::{Error, Failure, FileAction, MeshError};
 
+use super::report::json_of;
+
 /// The version of the JSON objects' layout. It rises when a key changes its meaning or goes; new keys may come
 /// without.
 pub(crate) const SCHEMA: u32 = 1;
@@ -116,13 +118,13 @@ impl Fault {
                     object.insert("place".into(), place.as_str().into());
                 }
                 Error::Mesh(MeshError::NotClosed(diagnosis)) => {
-                    object.insert("diagnosis".into(), diagnosis.to_json());
+                    object.insert("diagnosis".into(), json_of(diagnosis));
                 }
                 Error::Mesh(MeshError::InsideOutShells(shells)) => {
-                    object.insert("inside_out_shells".into(), shells.to_json());
+                    object.insert("inside_out_shells".into(), json_of(shells));
                 }
                 Error::Mesh(MeshError::SelfCrossing(crossings)) => {
-                    object.insert("self_crossings".into(), crossings.to_json());
+                    object.insert("self_crossings".into(), json_of(crossings));
                 }
                 _ => {}
             }

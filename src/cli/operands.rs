@@ -14,6 +14,7 @@ use trisect::{Control, Error, Mesh, MeshError, Solid};
 use super::arguments::Using;
 use super::limits::Limits;
 use super::progress::Console;
+use super::report::json_of;
 use super::requests::Request;
 use trisect::io;
 
@@ -136,7 +137,7 @@ pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usab
             if !misplaced.is_none() {
                 return Err(MeshError::InsideOutShells(Box::new(misplaced)).into());
             }
-            Some(Crossings { tolerated: found.tolerated, object: found.to_json() })
+            Some(Crossings { tolerated: found.tolerated, object: json_of(found) })
         }
     };
     Ok(Usable { solid, turned, welded, crossings })

@@ -4,6 +4,7 @@ use super::GroupFault;
 
 /// Colour and name of a surface material.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Material {
     /// Name as in the file.
     pub name: String,
@@ -13,6 +14,7 @@ pub struct Material {
 
 /// A named set of triangles with one material.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FaceGroup {
     /// Name of the object, group or node; may be empty.
     pub name: String,
@@ -22,6 +24,7 @@ pub struct FaceGroup {
 
 /// The groups of a mesh. A mesh without any has `list` empty and `of_triangle` empty.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FaceGroups {
     /// The groups.
     pub list: Vec<FaceGroup>,

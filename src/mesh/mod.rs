@@ -48,6 +48,7 @@ pub(crate) fn is_closed(mesh: &Mesh) -> bool {
 /// A triangle mesh: positions, triangles, and the groups the triangles belong to. Plain data without invariants;
 /// [`Solid`] is the mesh that is known to be a closed surface.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Mesh {
     /// Vertex coordinates, in the units of the file.
@@ -55,6 +56,7 @@ pub struct Mesh {
     /// Triangles as vertex indices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Named groups and materials of the triangles.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub groups: FaceGroups,
 }
 

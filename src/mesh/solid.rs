@@ -54,6 +54,7 @@ pub struct Solid {
 
 /// What was left out or joined to make a [`Solid`] of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Cleaning {
     /// Triangles left out because of a repeated corner, as given or once welded.
@@ -222,6 +223,21 @@ impl From<Solid> for Mesh {
     }
 }
 
+/// Written as its mesh, and read through the gate.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Solid {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.mesh.serialize(serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for Solid {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::try_from(Mesh::deserialize(deserializer)?).map_err(serde::de::Error::custom)
+    }
+}
+
 /// The gate every operand passes.
 impl TryFrom<Mesh> for Solid {
     type Error = MeshError;
@@ -341,6 +357,19 @@ mod tests {
         let borrowed: &Mesh = solid.as_ref();
         assert_eq!(*borrowed, mesh);
         assert_eq!(Mesh::from(solid), mesh);
+    }
+
+    #[test]
+    #[cfg(feature = "serde")]
+    fn solids_are_read_through_the_gate() {
+        let mesh = primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
+        let solid = Solid::try_from(mesh.clone()).unwrap();
+        let text = serde_json::to_string(&solid).unwrap();
+        assert_eq!(serde_json::from_str::<Solid>(&text).unwrap(), solid);
+        let text = serde_json::to_string(&mesh.reversed()).unwrap();
+        assert!(serde_json::from_str::<Solid>(&text).unwrap_err().to_string().contains("inside out"));
+        let bare = serde_json::from_str::<Mesh>(r#"{"positions": [], "triangles": []}"#).unwrap();
+        assert_eq!(bare, Mesh::default());
     }
 
     #[test]

@@ -10,6 +10,7 @@ use crate::boolean::result::origins::Origins;
 
 /// Where a triangle of a result came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Origin {
     /// Position of the operand in the argument list.
     pub operand: u32,
