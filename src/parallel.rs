@@ -4,6 +4,8 @@
 //! A [`Runner`] also carries limits, for loops that may be long; the functions are for loops that are never.
 
 use std::ops::Range;
+#[cfg(feature = "parallel")]
+use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::control::{Control, Limit};
 
@@ -155,6 +157,43 @@ impl<'a> Runner<'a> {
     }
 }
 
+/// How many pools are kept, of different sizes. Programs use one or two; the tests three.
+#[cfg(feature = "parallel")]
+const POOLS: usize = 4;
+
+/// Pools made so far, the last used at the end. Their threads sleep while nobody uses them.
+#[cfg(feature = "parallel")]
+static KEPT_POOLS: Mutex<Vec<Arc<rayon::ThreadPool>>> = Mutex::new(Vec::new());
+
+/// Runs `work` in a pool of `threads` threads, [`most_threads`](crate::control::most_threads) at most. Pools are kept
+/// for the next call, and callers at the same time share one.
+///
+/// # Errors
+/// What the system says if it makes no further threads.
+#[cfg(feature = "parallel")]
+pub(crate) fn run_in_pool<R: Send>(
+    threads: usize,
+    work: impl FnOnce() -> R + Send,
+) -> Result<R, rayon::ThreadPoolBuildError> {
+    let threads = threads.clamp(1, crate::control::most_threads());
+    Ok(pool(threads)?.install(work))
+}
+
+#[cfg(feature = "parallel")]
+fn pool(threads: usize) -> Result<Arc<rayon::ThreadPool>, rayon::ThreadPoolBuildError> {
+    let mut kept = KEPT_POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let pool = match kept.iter().position(|pool| pool.current_num_threads() == threads) {
+        Some(place) => kept.remove(place),
+        None => Arc::new(rayon::ThreadPoolBuilder::new().num_threads(threads).build()?),
+    };
+    if kept.len() == POOLS {
+        // Its threads end when the last who uses it is done.
+        drop(kept.remove(0));
+    }
+    kept.push(Arc::clone(&pool));
+    Ok(pool)
+}
+
 /// Units of work (triangles, say) below which waking another thread costs more than it saves.
 #[cfg(feature = "parallel")]
 const WORTH_A_THREAD: usize = 1 << 13;
@@ -277,6 +316,20 @@ mod tests {
             assert!(all(&built, |&item| item < count as u64));
             assert!(count == 0 || !all(&built, |&item| item != count as u64 / 2));
         }
+    }
+
+    #[test]
+    #[cfg(feature = "parallel")]
+    fn pools_have_the_threads_asked_for_and_are_kept() {
+        for _ in 0..2 {
+            for threads in [8, 2, 3, 5, 7] {
+                assert_eq!(run_in_pool(threads, rayon::current_num_threads).unwrap(), threads);
+            }
+        }
+        let most = crate::control::most_threads();
+        assert!(most >= 16);
+        assert_eq!(run_in_pool(100_000, rayon::current_num_threads).unwrap(), most);
+        assert!(KEPT_POOLS.lock().unwrap().len() <= POOLS);
     }
 
     #[test]

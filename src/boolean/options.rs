@@ -3,6 +3,8 @@
 use super::{Contact, Operation, Outcome, many};
 use crate::control::Control;
 use crate::parallel::Runner;
+#[cfg(feature = "parallel")]
+use crate::parallel::run_in_pool;
 use crate::{Error, Solid};
 
 /// Settings of a boolean. The default has no limits and uses every thread of the current rayon pool.
@@ -34,7 +36,8 @@ impl BooleanOptions {
         self
     }
 
-    /// Exactly this many threads (1: the caller's own, no pool). Without it, the rayon pool the caller is in.
+    /// Exactly this many threads, [`most_threads`](crate::control::most_threads) at most (1: the caller's own, no pool).
+    /// Without it, the rayon pool the caller is in. Pools are kept from call to call; calls at the same time share one.
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = Some(threads);
@@ -107,11 +110,9 @@ impl BooleanOptions {
         operands: &[&Solid],
         threads: usize,
     ) -> Result<Outcome, Error> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|error| Error::InvalidArgument(format!("cannot make {threads} threads: {error}")))?;
-        pool.install(|| many::run(self, operation, operands, Runner::new(&self.control, true)))
+        let run = || many::run(self, operation, operands, Runner::new(&self.control, true));
+        run_in_pool(threads, run)
+            .map_err(|error| Error::InvalidArgument(format!("cannot make {threads} threads: {error}")))?
     }
 
     #[cfg(not(feature = "parallel"))]
@@ -122,5 +123,25 @@ impl BooleanOptions {
         _threads: usize,
     ) -> Result<Outcome, Error> {
         many::run(self, operation, operands, Runner::new(&self.control, false))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::primitives;
+
+    #[test]
+    fn any_number_of_threads_may_be_asked_for() {
+        let ball = |x: f64| {
+            let ball = primitives::geodesic_sphere(1.0, 24).unwrap().translated([x, 0.1, 0.0]);
+            Solid::try_from(ball).unwrap()
+        };
+        let operands = [ball(0.0), ball(0.7)];
+        let united =
+            |threads| BooleanOptions::new().threads(threads).run(Operation::Union, &operands).unwrap();
+        let alone = united(1);
+        assert_eq!(united(100_000).solid(), alone.solid());
+        assert_eq!(united(usize::MAX).solid(), alone.solid());
     }
 }

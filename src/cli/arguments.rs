@@ -57,10 +57,10 @@ pub(crate) struct Common {
     /// Exit with code 5 if there were warnings (outputs are still written)
     #[arg(long, global = true, help_heading = "Reports")]
     pub(crate) strict: bool,
-    /// Use this many threads [default: all processors]
+    /// Use this many threads, or as many as the machine can use [default: all processors]
     #[arg(
         long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024),
-        help_heading = "Limits"
+        allow_negative_numbers = true, help_heading = "Limits"
     )]
     pub(crate) threads: Option<u16>,
     /// Give up after this time
