@@ -2,16 +2,20 @@
 //!
 //! The algorithm is that of Vyatkin 2019 (steps 1 and 2) with every decision exact. All decisions are signs of one
 //! determinant of perturbed input vertices, so the operands are always in general position and there is one kind of event:
-//! an edge of one crosses a triangle of the other. The result is a sum of pieces of faces with integer multiplicities
-//! (`multiplicity`) whose boundary cancels identically; what perturbation kept apart at the same place is identified
-//! afterwards, exactly, and where it cannot decide, faces of one plane are added up in it (`walls`). The pipeline is `pair::combine`, one function per step:
+//! an edge of one crosses a face of the other. The result is a sum of pieces of faces with integer multiplicities
+//! (`classify::multiplicity`) whose boundary cancels identically; what perturbation kept apart at the same place is
+//! identified afterwards, exactly, and where it cannot decide, faces of one plane are added up in it (`cut::plane_sums`).
 //!
-//! 1. `overlap`, `candidates`: pairs of triangles that may meet;
-//! 2. `crossings`: which do, and where (`cut_edges`: in which order along each edge, correctly rounded);
-//! 3. `winding`: how often each operand winds round the other's vertices;
-//! 4. `identify`, `cut`: coincident points become one; kept pieces of cut faces become triangles;
-//! 5. `tidy`: what touches separates; triangles without area and needless vertices go;
-//! 6. `assemble`: untouched triangles keep their order, and vertices their bits.
+//! One room a step, each standing on those before it; `pair::combine` calls them in the order of `docs/algorithm.md`:
+//!
+//! - `complex`: the operands under one numbering, perturbed, and the one predicate;
+//! - `candidates`: pairs of triangles that may meet (step 1);
+//! - `arrangement`: crossings, their order, and the points they are (steps 3, 4 and 6);
+//! - `classify`: winding numbers, and what is kept (step 5);
+//! - `cut`: kept pieces of cut faces become triangles (step 7);
+//! - `tidy`: what touches separates; triangles without area and needless vertices go (step 8);
+//! - `result`: untouched triangles keep their order, and vertices their bits (step 9);
+//! - `pair`: all steps for two operands; `many`: which pairs are combined in which order.
 //!
 //! **Guaranteed** for any closed operands: the result is closed; it is the exact boolean with every new coordinate correctly
 //! rounded; operands that touch resolve as regularised set operations do; the same input gives the same bits on any number of
@@ -23,16 +27,15 @@ mod classify;
 mod complex;
 mod cut;
 mod many;
-mod operation;
-mod options;
 mod pair;
 mod result;
 mod tidy;
 
-pub use operation::{Contact, Operation, UnknownName};
-pub use options::BooleanOptions;
+pub use complex::operation::{Contact, Operation, UnknownName};
+pub use complex::origin::Origin;
+pub use many::options::BooleanOptions;
 pub use result::certificate::{Certificate, OperandState};
-pub use result::outcome::{Origin, Outcome};
+pub use result::outcome::Outcome;
 
 use crate::{Error, Solid};
 

@@ -7,7 +7,8 @@ use serde_json::Value;
 use trisect::io::Format;
 use trisect::{BooleanOptions, Operation, Outcome};
 
-use super::arguments::{Colours, Combine};
+use super::argument_groups::Colours;
+use super::arguments::Combine;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Operand};
 use super::output::{self, Product, Target};
@@ -22,8 +23,8 @@ pub(crate) fn run(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
-    let requests = requests::requests(matches, arguments.reading.format)?;
-    let targets = output::targets(&arguments.writing, &arguments.drawing, session.common)?;
+    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
     refuse_pointless(operation, arguments, requests.len(), &targets, session)?;
     if !arguments.dry_run {
         output::probe(&targets, &session.limits)?;
@@ -32,7 +33,7 @@ pub(crate) fn run(
     let control = session.control();
     let start = Instant::now();
     let operands =
-        operands::operands(requests, arguments.using, &session.limits, &control, &session.console)?;
+        operands::operands(requests, arguments.inputs.using, &session.limits, &control, &session.console)?;
     session.took("read", start);
     describe(&operands, session);
     if arguments.dry_run {
@@ -112,13 +113,13 @@ fn write(
     let start = Instant::now();
     session.console.stage("writing", 1.0);
     let mesh = outcome.solid().mesh();
-    let drawing = &arguments.drawing;
+    let drawing = &arguments.results.drawing;
     let picture = || {
         let operands = outcome.origins().iter().map(|origin| origin.operand as usize);
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), mesh, operands);
         trisect::render::mesh(mesh, &output::view(drawing, format), colours.as_deref())
     };
-    let options = output::write_options(&arguments.writing, &session.limits);
+    let options = output::write_options(&arguments.results.writing, &session.limits);
     let product = Product { mesh, options, picture: &picture, documents: &[] };
     let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
     session.note("outputs", outputs);

@@ -10,6 +10,7 @@
 mod bounds;
 mod contour_distance;
 mod distance;
+mod dual;
 mod error;
 mod expression;
 mod extract;

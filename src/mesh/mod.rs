@@ -21,11 +21,14 @@ mod orient;
 mod patches;
 pub(crate) mod scale;
 mod self_crossing;
+mod separate;
 mod solid;
+mod sparse_union_find;
 mod summation;
 mod topology;
 mod transform;
 mod union_find;
+mod weighted_union_find;
 mod weld;
 
 pub(crate) use bit_set::BitSet;
@@ -38,7 +41,9 @@ pub use groups::{FaceGroup, FaceGroups, Material};
 pub(crate) use manifold::{HalfEdges, Surface, make_manifold};
 pub use self_crossing::{SelfCrossing, SelfCrossings};
 pub use solid::{Cleaning, Solid};
+pub(crate) use sparse_union_find::SparseUnionFind;
 pub(crate) use union_find::UnionFind;
+pub(crate) use weighted_union_find::WeightedUnionFind;
 
 /// Whether every directed edge is met by its opposite equally often; false for indices out of range.
 pub(crate) fn is_closed(mesh: &Mesh) -> bool {

@@ -3,6 +3,7 @@
 
 use super::buckets::Buckets;
 use super::edges::EdgeTable;
+use super::weighted_union_find::WeightedUnionFind;
 
 /// The patches of a set of triangles, numbered by their first triangles.
 pub(super) struct Patches {
@@ -19,12 +20,13 @@ pub(super) struct Patches {
 impl Patches {
     /// Of the triangles the table was made of. O(n).
     pub(super) fn new(table: &EdgeTable<'_>, count: usize) -> Self {
-        let mut sets = OrientedSets::new(count);
+        // Even differences of values: oriented alike; odd ones: against each other.
+        let mut sets = WeightedUnionFind::new(count);
         let mut contradictions = Vec::new();
         for edge in table.iter().filter(|edge| edge.valence() == 2) {
             let mut both = edge.triangles();
             let (Some(a), Some(b)) = (both.next(), both.next()) else { continue };
-            if !sets.join(a, b, edge.net() != 0) {
+            if sets.join(a, b, i32::from(edge.net() != 0)) % 2 != 0 {
                 contradictions.push(a);
             }
         }
@@ -32,8 +34,8 @@ impl Patches {
         let mut reverse = vec![false; count];
         let mut patches = 0;
         for triangle in 0..count {
-            let (root, reversed) = sets.root(triangle as u32);
-            reverse[triangle] = reversed;
+            let (root, difference) = sets.root(triangle as u32);
+            reverse[triangle] = difference % 2 != 0;
             of_triangle[triangle] = if root as usize == triangle {
                 patches += 1;
                 patches - 1
@@ -73,45 +75,6 @@ impl Patches {
     /// Whether any triangle of `patch` is to be reversed.
     pub(super) fn is_mixed(&self, patch: usize) -> bool {
         self.triangles.get(patch).iter().any(|&triangle| self.reverse[triangle as usize])
-    }
-}
-
-/// Disjoint sets whose members are oriented like or against the lowest.
-struct OrientedSets {
-    /// The parent of each member, and whether it is oriented against it.
-    parents: Vec<(u32, bool)>,
-}
-
-impl OrientedSets {
-    fn new(size: usize) -> Self {
-        Self { parents: (0..size as u32).map(|index| (index, false)).collect() }
-    }
-
-    /// The lowest member of the set, and whether `index` is oriented against it.
-    fn root(&mut self, mut index: u32) -> (u32, bool) {
-        let mut against = false;
-        loop {
-            let (parent, to_parent) = self.parents[index as usize];
-            if parent == index {
-                return (index, against);
-            }
-            let (grandparent, to_grandparent) = self.parents[parent as usize];
-            let shortcut = (grandparent, to_parent ^ to_grandparent);
-            self.parents[index as usize] = shortcut;
-            against ^= shortcut.1;
-            index = grandparent;
-        }
-    }
-
-    /// Makes one set of two, `a` oriented against `b` or like it. Whether that does not contradict what is known.
-    fn join(&mut self, a: u32, b: u32, against: bool) -> bool {
-        let ((root_a, a_against), (root_b, b_against)) = (self.root(a), self.root(b));
-        let relation = against ^ a_against ^ b_against;
-        if root_a == root_b {
-            return !relation;
-        }
-        self.parents[root_a.max(root_b) as usize] = (root_a.min(root_b), relation);
-        true
     }
 }
 

@@ -3,7 +3,8 @@
 use crate::control::{Control, Limit};
 use crate::parallel::Runner;
 
-use super::box_tree::{BoxTree, LANES, for_each_bit};
+use super::box_tree::BoxTree;
+use super::pack::{LANES, for_each_bit};
 
 /// The pairs of subtrees at the top are opened until there are so many, which are shared out in about as many runs.
 const TASKS: usize = 256;

@@ -5,63 +5,16 @@
 //! nested and fan-shaped boxes, on which agglomerative builders go quadratic, cost what all others do. The boxes of a pack
 //! are laid out so that one step tests all four at once. Pairs of boxes are found by [`visit_pairs`](super::visit_pairs).
 
-use glam::{Vec3A, Vec4};
+use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use smallvec::{SmallVec, smallvec};
 
-use super::radix;
+use super::pack::{LANES, Pack, for_each_bit};
 use super::read_ahead::read_ahead;
-
-/// Boxes in a pack.
-pub(super) const LANES: usize = 4;
-/// The centres of boxes are told apart on a grid of so many bits along each axis.
-const BITS: u32 = 10;
+use super::{morton, radix};
 
 /// Items whose boxes are read at once; a multiple of [`LANES`].
 const AT_ONCE: usize = 64;
-
-/// Four boxes, coordinate by coordinate. A lane that is not used holds no numbers, and so meets nothing.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(16))]
-pub(super) struct Pack {
-    low: [[f32; LANES]; 3],
-    high: [[f32; LANES]; 3],
-}
-
-impl Pack {
-    fn new(boxes: impl Iterator<Item = Aabb>) -> Self {
-        let mut pack = Self { low: [[f32::NAN; LANES]; 3], high: [[f32::NAN; LANES]; 3] };
-        for (lane, aabb) in boxes.enumerate() {
-            let (low, high) = (aabb.min.to_array(), aabb.max.to_array());
-            for k in 0..3 {
-                pack.low[k][lane] = low[k];
-                pack.high[k][lane] = high[k];
-            }
-        }
-        pack
-    }
-
-    /// The lanes whose boxes meet a box (closed boxes), as bits.
-    #[inline(always)]
-    pub(super) fn meeting(&self, low: [f32; 3], high: [f32; 3]) -> u32 {
-        let axis = |k: usize| {
-            let (from, to) = (Vec4::from_array(self.low[k]), Vec4::from_array(self.high[k]));
-            from.cmple(Vec4::splat(high[k])) & Vec4::splat(low[k]).cmple(to)
-        };
-        (axis(0) & axis(1) & axis(2)).bitmask()
-    }
-
-    /// The pairs of lanes whose boxes meet: lanes i of this pack and j of the other as bit 4 i + j.
-    #[inline(always)]
-    pub(super) fn meeting_pack(&self, other: &Self) -> u32 {
-        let of_lane = |i: usize| {
-            let [low, high] =
-                [&self.low, &self.high].map(|corner| [corner[0][i], corner[1][i], corner[2][i]]);
-            other.meeting(low, high) << (LANES * i)
-        };
-        of_lane(0) | of_lane(1) | of_lane(2) | of_lane(3)
-    }
-}
 
 /// A balanced tree over the boxes of items: every pack of a level holds the boxes of four packs of the level below.
 #[derive(Debug)]
@@ -107,13 +60,16 @@ impl BoxTree {
             centres.max = centres.max.max(centre);
         }
         let extent = (centres.max - centres.min).max_element();
-        let scale = if extent > 0.0 { ((1 << BITS) - 1) as f32 / extent } else { 0.0 };
+        let scale = if extent > 0.0 { morton::LAST as f32 / extent } else { 0.0 };
         let mut order: Vec<u64> = unsorted
             .iter()
             .enumerate()
-            .map(|(i, aabb)| u64::from(morton((aabb.min + aabb.max - centres.min) * scale)) << 32 | i as u64)
+            .map(|(i, aabb)| {
+                let [x, y, z] = ((aabb.min + aabb.max - centres.min) * scale).to_array();
+                u64::from(morton::code([z as u32, y as u32, x as u32])) << 32 | i as u64
+            })
             .collect();
-        radix::sort(&mut order, &mut Vec::new(), |&key| (key >> 32) as u32, 3 * BITS);
+        radix::sort(&mut order, &mut Vec::new(), |&key| (key >> 32) as u32, morton::BITS);
         let items: Vec<u32> = order.iter().map(|&key| key as u32).collect();
         drop(order);
 
@@ -187,31 +143,10 @@ impl BoxTree {
     }
 }
 
-/// Calls `found` for the places of the ones, ascending.
-#[inline(always)]
-pub(super) fn for_each_bit(mut mask: u32, mut found: impl FnMut(u32)) {
-    while mask != 0 {
-        found(mask.trailing_zeros());
-        mask &= mask - 1;
-    }
-}
-
 fn union(boxes: impl Iterator<Item = Aabb>) -> Aabb {
     boxes
         .reduce(|sum, aabb| Aabb { min: sum.min.min(aabb.min), max: sum.max.max(aabb.max) })
         .unwrap_or(Aabb::INVALID)
-}
-
-/// The Morton code of a point with coordinates in 0..=1023.
-fn morton(point: Vec3A) -> u32 {
-    let spread = |x: f32| {
-        let mut bits = (x as u32).min(1023);
-        bits = (bits | bits << 16) & 0x0300_00ff;
-        bits = (bits | bits << 8) & 0x0300_f00f;
-        bits = (bits | bits << 4) & 0x030c_30c3;
-        (bits | bits << 2) & 0x0924_9249
-    };
-    spread(point.x) << 2 | spread(point.y) << 1 | spread(point.z)
 }
 
 #[cfg(test)]

@@ -10,8 +10,6 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 
-use super::SmallBox;
-
 /// Below this depth a branch is split in halves by count.
 const HEURISTIC_DEPTH: usize = 40;
 /// Bins tried per split.
@@ -20,9 +18,12 @@ const BINS: usize = 16;
 #[cfg(feature = "parallel")]
 const PARALLEL_ABOVE: usize = 8192;
 
+/// Contains nothing; the neutral element of the union.
+const EMPTY: Aabb = Aabb { min: Vec3A::INFINITY, max: Vec3A::NEG_INFINITY };
+
 /// A tree with exactly one box per leaf. `primitive_indices[first_index]` of a leaf is the index of its box.
 /// The same boxes give the same tree for any number of threads.
-pub(crate) fn binary_tree(boxes: &[SmallBox]) -> Bvh2 {
+pub(crate) fn binary_tree(boxes: &[Aabb]) -> Bvh2 {
     if boxes.is_empty() {
         return Bvh2::default();
     }
@@ -49,7 +50,7 @@ struct Branch<'a> {
 }
 
 /// Builds one branch, large halves on several threads. The explicit stack holds at most one entry per level.
-fn build(boxes: &[SmallBox], branch: Branch<'_>) {
+fn build(boxes: &[Aabb], branch: Branch<'_>) {
     let mut stack = vec![branch];
     while let Some(branch) = stack.pop() {
         if let Some((left, right)) = split(boxes, branch) {
@@ -66,10 +67,9 @@ fn build(boxes: &[SmallBox], branch: Branch<'_>) {
 }
 
 /// Fills the root of `branch` and returns its two halves, or nothing for a leaf.
-fn split<'a>(boxes: &[SmallBox], branch: Branch<'a>) -> Option<(Branch<'a>, Branch<'a>)> {
+fn split<'a>(boxes: &[Aabb], branch: Branch<'a>) -> Option<(Branch<'a>, Branch<'a>)> {
     let Branch { order, first, root, below, below_first, depth } = branch;
-    let bounds = order.iter().fold(SmallBox::EMPTY, |all, &index| all.joined(&boxes[index as usize]));
-    let aabb = Aabb::new(Vec3A::from_array(bounds.low), Vec3A::from_array(bounds.high));
+    let aabb = order.iter().fold(EMPTY, |all, &index| all.union(&boxes[index as usize]));
     if order.len() == 1 {
         *root = Bvh2Node::new(aabb, 1, first);
         return None;
@@ -102,23 +102,18 @@ fn split<'a>(boxes: &[SmallBox], branch: Branch<'a>) -> Option<(Branch<'a>, Bran
 }
 
 /// Rearranges `order` in two parts and returns where the second begins (never at an end).
-fn divide(boxes: &[SmallBox], order: &mut [u32], heuristic: bool) -> usize {
-    let mut low = [f32::INFINITY; 3];
-    let mut high = [f32::NEG_INFINITY; 3];
+fn divide(boxes: &[Aabb], order: &mut [u32], heuristic: bool) -> usize {
+    // Twice the centres, which are compared with each other only.
+    let centre = |index: u32| boxes[index as usize].min + boxes[index as usize].max;
+    let (mut low, mut high) = (Vec3A::splat(f32::INFINITY), Vec3A::splat(f32::NEG_INFINITY));
     for &index in order.iter() {
-        for axis in 0..3 {
-            let centre = boxes[index as usize].doubled_centre(axis);
-            low[axis] = low[axis].min(centre);
-            high[axis] = high[axis].max(centre);
-        }
+        (low, high) = (low.min(centre(index)), high.max(centre(index)));
     }
-    let extent: [f32; 3] = std::array::from_fn(|axis| high[axis] - low[axis]);
+    let extent = (high - low).to_array();
     let axis = (0..3).fold(0, |best, axis| if extent[axis] > extent[best] { axis } else { best });
     if heuristic && order.len() > 4 && extent[axis] > 0.0 && extent[axis].is_finite() {
         let scale = BINS as f32 * 0.999 / extent[axis];
-        let bin_of = |index: u32| {
-            (((boxes[index as usize].doubled_centre(axis) - low[axis]) * scale) as usize).min(BINS - 1)
-        };
+        let bin_of = |index: u32| (((centre(index)[axis] - low[axis]) * scale) as usize).min(BINS - 1);
         if let Some(cut) = best_cut(boxes, order, bin_of) {
             let middle = partition(order, |index| bin_of(index) < cut);
             if middle > 0 && middle < order.len() {
@@ -127,43 +122,47 @@ fn divide(boxes: &[SmallBox], order: &mut [u32], heuristic: bool) -> usize {
         }
     }
     let middle = order.len() / 2;
-    order.select_nth_unstable_by(middle, |&a, &b| {
-        let centre = |index: u32| boxes[index as usize].doubled_centre(axis);
-        centre(a).total_cmp(&centre(b)).then(a.cmp(&b))
-    });
+    order
+        .select_nth_unstable_by(middle, |&a, &b| centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.cmp(&b)));
     middle
 }
 
 /// The bin before which to cut, by least expected cost of a query.
-fn best_cut(boxes: &[SmallBox], order: &[u32], bin_of: impl Fn(u32) -> usize) -> Option<usize> {
+fn best_cut(boxes: &[Aabb], order: &[u32], bin_of: impl Fn(u32) -> usize) -> Option<usize> {
     let mut counts = [0usize; BINS];
-    let mut bounds = [SmallBox::EMPTY; BINS];
+    let mut bounds = [EMPTY; BINS];
     for &index in order {
         let bin = bin_of(index);
         counts[bin] += 1;
-        bounds[bin] = bounds[bin].joined(&boxes[index as usize]);
+        bounds[bin] = bounds[bin].union(&boxes[index as usize]);
     }
     let mut right_cost = [0f32; BINS];
-    let (mut count, mut joined) = (0, SmallBox::EMPTY);
+    let (mut count, mut joined) = (0, EMPTY);
     for bin in (1..BINS).rev() {
         count += counts[bin];
-        joined = joined.joined(&bounds[bin]);
-        right_cost[bin] = count as f32 * joined.half_area();
+        joined = joined.union(&bounds[bin]);
+        right_cost[bin] = count as f32 * half_area(&joined);
     }
-    let (mut count, mut joined) = (0, SmallBox::EMPTY);
+    let (mut count, mut joined) = (0, EMPTY);
     let mut best = None;
     for cut in 1..BINS {
         count += counts[cut - 1];
-        joined = joined.joined(&bounds[cut - 1]);
+        joined = joined.union(&bounds[cut - 1]);
         if count == 0 || count == order.len() {
             continue;
         }
-        let cost = count as f32 * joined.half_area() + right_cost[cut];
+        let cost = count as f32 * half_area(&joined) + right_cost[cut];
         if best.is_none_or(|(least, _)| cost < least) {
             best = Some((cost, cut));
         }
     }
     best.map(|(_, cut)| cut)
+}
+
+/// Half the surface area of a box.
+fn half_area(aabb: &Aabb) -> f32 {
+    let [x, y, z] = aabb.diagonal().to_array();
+    x * y + y * z + z * x
 }
 
 /// Moves the indices that satisfy `first_part` to the front and returns how many there are.
@@ -195,17 +194,16 @@ mod tests {
         deepest
     }
 
-    fn check(boxes: &[SmallBox]) {
+    fn check(boxes: &[Aabb]) {
         let tree = binary_tree(boxes);
-        let aabbs: Vec<Aabb> =
-            boxes.iter().map(|b| Aabb::new(Vec3A::from_array(b.low), Vec3A::from_array(b.high))).collect();
-        let report = tree.validate(&aabbs, false, true);
+        let report = tree.validate(boxes, false, true);
         assert_eq!(report.prim_count, boxes.len());
         assert!(depth(&tree) <= tree.max_depth, "{} > {}", depth(&tree), tree.max_depth);
     }
 
-    fn cube(centre: [f32; 3], half: f32) -> SmallBox {
-        SmallBox { low: centre.map(|x| x - half), high: centre.map(|x| x + half) }
+    fn cube(centre: [f32; 3], half: f32) -> Aabb {
+        let centre = Vec3A::from_array(centre);
+        Aabb { min: centre - half, max: centre + half }
     }
 
     #[test]
@@ -218,7 +216,7 @@ mod tests {
         check(&(0..n).map(|i| cube([i as f32, 0.0, 0.0], 0.5)).collect::<Vec<_>>());
         let fan = |i: usize| {
             let (sine, cosine) = (i as f32 / n as f32).sin_cos();
-            SmallBox { low: [0.0; 3], high: [cosine, sine, 0.0] }
+            Aabb { min: Vec3A::ZERO, max: Vec3A::new(cosine, sine, 0.0) }
         };
         check(&(0..n).map(fan).collect::<Vec<_>>());
         check(&(0..n).map(|i| cube([(i as f32).exp2(), 0.0, 0.0], 0.1)).take(100).collect::<Vec<_>>());

@@ -73,7 +73,7 @@ impl TriangleTree {
                 continue;
             }
             let node = &self.tree.nodes[index as usize];
-            let distances = node.squared_distances(&around.low, &around.high);
+            let distances = node.boxes.squared_distances(&around);
             // Triangles at once, other nodes later, the nearest first.
             for (lane, &distance) in distances.iter().enumerate() {
                 if let Child::Leaf(leaf) = node.child(lane)
@@ -89,7 +89,7 @@ impl TriangleTree {
 
     /// As [`search`](Self::search), with double-precision distances to the boxes.
     fn search_far(&self, query: DVec3, best: &mut Closest) {
-        let local = self.frame.local(query).to_array();
+        let local = self.frame.local(query);
         let unit = self.frame.scale();
         // Boxes are rounded outward by at least half a single-precision step of their size; the query's own
         // rounding is relative to its distance.
@@ -109,12 +109,10 @@ impl TriangleTree {
                     let node = &self.tree.nodes[index as usize];
                     let first = stack.len();
                     for lane in 0..LANES {
-                        let gap: [f64; 3] = std::array::from_fn(|axis| {
-                            let below = f64::from(node.low[axis][lane]) - local[axis];
-                            let above = local[axis] - f64::from(node.high[axis][lane]);
-                            below.max(above).max(0.0)
-                        });
-                        let distance = DVec3::from_array(gap).length();
+                        let aabb = node.boxes.lane(lane);
+                        let below = aabb.min.as_dvec3() - local;
+                        let above = local - aabb.max.as_dvec3();
+                        let distance = below.max(above).max(DVec3::ZERO).length();
                         if node.child(lane) != Child::None && distance <= bound {
                             stack.push((distance, node.child(lane)));
                         }

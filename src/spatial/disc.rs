@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::wide::{Child, WideTree};
-use super::{LANES, LocalFrame};
+use super::{Frame, LANES};
 
 /// Parts of more triangles than this have no disc: they are hardly ever flat.
 const MOST: u32 = 512;
@@ -69,7 +69,7 @@ impl Disc {
 }
 
 /// A disc for every node of a tree over triangles.
-pub(super) fn discs(tree: &WideTree, frame: &LocalFrame, corners: impl Fn(u32) -> [DVec3; 3]) -> Vec<Disc> {
+pub(super) fn discs(tree: &WideTree, frame: &Frame, corners: impl Fn(u32) -> [DVec3; 3]) -> Vec<Disc> {
     // Children come after their parents.
     let mut counts = vec![0u32; tree.nodes.len()];
     for index in (0..tree.nodes.len()).rev() {

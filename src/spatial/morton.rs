@@ -1,6 +1,12 @@
 //! Order of points along a space-filling curve: neighbours in the order are neighbours in space.
 
 use glam::DVec3;
+use obvhs::ploc::morton::morton_encode_u32;
+
+/// The last cell along an axis.
+pub(crate) const LAST: u32 = 1023;
+/// Bits of a code.
+pub(crate) const BITS: u32 = 30;
 
 /// Indices of `points` along a Morton curve over their bounds; points that are not finite come last.
 pub(crate) fn coherent_order(points: &[[f64; 3]]) -> Vec<u32> {
@@ -12,13 +18,13 @@ pub(crate) fn coherent_order(points: &[[f64; 3]]) -> Vec<u32> {
     }
     let size = high * 0.5 - low * 0.5;
     let scale = DVec3::from_array(size.to_array().map(|side| if side > 0.0 { 511.5 / side } else { 0.0 }));
+    let cell_of = |point: DVec3| ((point * 0.5 - low * 0.5) * scale * 2.0).to_array().map(|x| x as u32);
     let mut keyed: Vec<(u32, u32)> = points
         .iter()
         .enumerate()
         .map(|(index, &point)| {
             let point = DVec3::from_array(point);
-            let key =
-                if point.is_finite() { key_of((point * 0.5 - low * 0.5) * scale * 2.0) } else { u32::MAX };
+            let key = if point.is_finite() { code(cell_of(point)) } else { u32::MAX };
             (key, index as u32)
         })
         .collect();
@@ -26,18 +32,12 @@ pub(crate) fn coherent_order(points: &[[f64; 3]]) -> Vec<u32> {
     keyed.into_iter().map(|(_, index)| index).collect()
 }
 
-/// Interleaves ten bits of each coordinate in `0..1024`.
-fn key_of(cell: DVec3) -> u32 {
-    let [x, y, z] = cell.to_array().map(|value| spread((value as u32).min(1023)));
-    x | y << 1 | z << 2
-}
-
-/// Puts two zero bits between the ten low bits of `bits`.
-fn spread(bits: u32) -> u32 {
-    let bits = (bits | bits << 16) & 0x0300_00ff;
-    let bits = (bits | bits << 8) & 0x0300_f00f;
-    let bits = (bits | bits << 4) & 0x030c_30c3;
-    (bits | bits << 2) & 0x0924_9249
+/// The code of a cell of a grid with 1024 cells along each axis: ten bits of each coordinate, interleaved, those of the first
+/// in the lowest places. Larger coordinates count as the last one.
+#[inline]
+pub(crate) fn code(cell: [u32; 3]) -> u32 {
+    let [x, y, z] = cell.map(|coordinate| coordinate.min(LAST) as u16);
+    morton_encode_u32(x, y, z)
 }
 
 #[cfg(test)]
@@ -45,11 +45,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn spread_leaves_two_zeros_between_bits() {
+    fn codes_interleave_bits() {
         for bit in 0..10 {
-            assert_eq!(spread(1 << bit), 1 << (3 * bit));
+            for axis in 0..3 {
+                let mut cell = [0; 3];
+                cell[axis] = 1 << bit;
+                assert_eq!(code(cell), 1 << (3 * bit + axis));
+            }
         }
-        assert_eq!(spread(0x3ff).count_ones(), 10);
+        assert_eq!(code([LAST, LAST + 1, u32::MAX]), (1 << BITS) - 1);
     }
 
     #[test]

@@ -3,10 +3,11 @@
 use std::cell::Cell;
 
 use glam::DVec3;
+use obvhs::aabb::Aabb;
 
 use super::disc::{Disc, discs};
 use super::triangle::is_needle;
-use super::{LocalFrame, SmallBox, WideTree, binary_tree};
+use super::{Frame, LANES, WideTree, binary_tree};
 use crate::Mesh;
 
 /// A hierarchy over the triangles of a mesh, for nearest points, exact ray crossings and winding numbers.
@@ -18,16 +19,13 @@ pub struct TriangleTree {
     pub(super) tree: WideTree,
     /// What every node of `tree` holds, as a flat disc.
     pub(super) discs: Vec<Disc>,
-    pub(super) frame: LocalFrame,
+    pub(super) frame: Frame,
     /// The triangles in leaf order.
     pub(super) leaves: Vec<Leaf>,
     /// For every triangle of the mesh its position in `leaves`.
     pub(super) leaf_of_triangle: Vec<u32>,
     pub(super) low: DVec3,
     pub(super) high: DVec3,
-    /// A power of two that brings coordinates near 1, so that products in the exact predicates neither overflow nor
-    /// underflow.
-    pub(super) unit: f64,
 }
 
 /// A triangle as stored in a leaf.
@@ -61,15 +59,15 @@ impl TriangleTree {
             }
         }
         let frame = if triangles.is_empty() {
-            LocalFrame::of(DVec3::ZERO, DVec3::ZERO)
+            Frame::of([0.0; 3], [0.0; 3])
         } else {
-            LocalFrame::of(low, high)
+            Frame::of(low.to_array(), high.to_array())
         };
-        let boxes: Vec<SmallBox> = triangles
+        let boxes: Vec<Aabb> = triangles
             .iter()
             .map(|leaf| {
                 let [a, b, c] = leaf.corners.map(|corner| frame.around(corner));
-                a.joined(&b).joined(&c)
+                a.union(&b).union(&c)
             })
             .collect();
         let binary = binary_tree(&boxes);
@@ -80,13 +78,7 @@ impl TriangleTree {
         for (position, leaf) in leaves.iter().enumerate() {
             leaf_of_triangle[leaf.triangle as usize] = position as u32;
         }
-        let largest = low.abs().max_element().max(high.abs().max_element());
-        let unit = if largest > 0.0 && largest.is_finite() {
-            2f64.powi(-(largest.log2().ceil().clamp(-1000.0, 1000.0) as i32))
-        } else {
-            1.0
-        };
-        Self { tree, discs, frame, leaves, leaf_of_triangle, low, high, unit }
+        Self { tree, discs, frame, leaves, leaf_of_triangle, low, high }
     }
 
     /// Whether there are no triangles.
@@ -130,7 +122,10 @@ impl TriangleTree {
         let radius = (radius * self.frame.scale()) as f32;
         let bound = (radius * radius).next_up() * (1.0 + 1e-5);
         self.tree.visit(
-            |node, lane| go_on.get() && node.squared_distances(&query.low, &query.high)[lane] <= bound,
+            |pack| {
+                let near = pack.squared_distances(&query).map(|distance| u32::from(distance <= bound));
+                if go_on.get() { (0..LANES).map(|lane| near[lane] << lane).sum() } else { 0 }
+            },
             |leaf| go_on.set(go_on.get() && visit(self.leaves[leaf as usize].triangle)),
         );
     }

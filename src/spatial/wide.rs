@@ -1,18 +1,19 @@
 //! The tree that queries walk: four boxes per node, laid out so that one step tests all four at once.
 
+use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
+use smallvec::{SmallVec, smallvec};
 
-/// Children per node.
-pub(crate) const LANES: usize = 4;
+use super::pack::{LANES, Pack, for_each_bit};
+
 /// Marks a child that is a single primitive.
 const LEAF: u32 = 1 << 31;
 
-/// Up to four children with their boxes, coordinate by coordinate.
+/// Up to four children with their boxes.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(crate) struct WideNode {
-    pub(crate) low: [[f32; LANES]; 3],
-    pub(crate) high: [[f32; LANES]; 3],
+    pub(super) boxes: Pack,
     child: [u32; LANES],
 }
 
@@ -28,11 +29,7 @@ pub(crate) enum Child {
 }
 
 impl WideNode {
-    const EMPTY: Self = Self {
-        low: [[f32::INFINITY; LANES]; 3],
-        high: [[f32::NEG_INFINITY; LANES]; 3],
-        child: [u32::MAX; LANES],
-    };
+    const EMPTY: Self = Self { boxes: Pack::EMPTY, child: [u32::MAX; LANES] };
 
     /// The child in `lane`.
     pub(crate) fn child(&self, lane: usize) -> Child {
@@ -41,21 +38,6 @@ impl WideNode {
             child if child & LEAF == 0 => Child::Node(child),
             child => Child::Leaf(child & !LEAF),
         }
-    }
-
-    /// Squared distances from the point bounded by `low..high` to the four boxes, never more than the true ones
-    /// by more than the rounding of a few single-precision operations; infinite for unused lanes.
-    pub(crate) fn squared_distances(&self, low: &[f32; 3], high: &[f32; 3]) -> [f32; LANES] {
-        let mut sum = [0f32; LANES];
-        for axis in 0..3 {
-            for lane in 0..LANES {
-                let below = self.low[axis][lane] - high[axis];
-                let above = low[axis] - self.high[axis][lane];
-                let gap = below.max(above).max(0.0);
-                sum[lane] += gap * gap;
-            }
-        }
-        sum
     }
 }
 
@@ -91,11 +73,7 @@ impl WideTree {
             }
             for (lane, &node) in lanes[..used].iter().enumerate() {
                 let node = &tree.nodes[node];
-                let (low, high) = (node.aabb().min.to_array(), node.aabb().max.to_array());
-                for axis in 0..3 {
-                    nodes[target].low[axis][lane] = low[axis];
-                    nodes[target].high[axis][lane] = high[axis];
-                }
+                nodes[target].boxes.set(lane, node.aabb());
                 nodes[target].child[lane] = if node.is_leaf() {
                     LEAF | node.first_index
                 } else {
@@ -112,23 +90,25 @@ impl WideTree {
         Self { nodes }
     }
 
-    /// Calls `visit` for every primitive whose box `wanted` accepts on the way down.
-    pub(crate) fn visit(&self, wanted: impl Fn(&WideNode, usize) -> bool, mut visit: impl FnMut(u32)) {
+    /// Calls `visit` for every primitive whose box meets `query` (closed boxes).
+    pub(crate) fn visit_meeting(&self, query: &Aabb, visit: impl FnMut(u32)) {
+        let (low, high) = (query.min.to_array(), query.max.to_array());
+        self.visit(|boxes| boxes.meeting(low, high), visit);
+    }
+
+    /// Calls `visit` for every primitive whose box `wanted` accepts on the way down: it returns the lanes of a pack, as bits.
+    pub(crate) fn visit(&self, wanted: impl Fn(&Pack) -> u32, mut visit: impl FnMut(u32)) {
         if self.nodes.is_empty() {
             return;
         }
-        let mut stack: smallvec::SmallVec<[u32; 96]> = smallvec::smallvec![0];
+        let mut stack: SmallVec<[u32; 96]> = smallvec![0];
         while let Some(index) = stack.pop() {
             let node = &self.nodes[index as usize];
-            for lane in 0..LANES {
-                if wanted(node, lane) {
-                    match node.child(lane) {
-                        Child::Node(child) => stack.push(child),
-                        Child::Leaf(primitive) => visit(primitive),
-                        Child::None => {}
-                    }
-                }
-            }
+            for_each_bit(wanted(&node.boxes), |lane| match node.child(lane as usize) {
+                Child::Node(child) => stack.push(child),
+                Child::Leaf(primitive) => visit(primitive),
+                Child::None => {}
+            });
         }
     }
 }

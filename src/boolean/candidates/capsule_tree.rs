@@ -12,6 +12,7 @@ use crate::boolean::candidates::capsule::Capsule;
 use crate::boolean::candidates::refined_boxes::{Corners, box_of};
 use crate::control::Control;
 use crate::parallel::Runner;
+use crate::spatial::morton_code;
 
 /// Items per leaf.
 const LEAF: usize = 4;
@@ -95,9 +96,8 @@ fn round(capsules: &[Capsule]) -> Capsule {
 /// where they are.
 fn order_key(capsule: &Capsule) -> u64 {
     // In units of a 1024th of the frame's region.
-    let cell = |x: f32| (512.0 * (0.5 * x + 1.0)).clamp(0.0, 1023.0) as u64;
-    let spread = |x: u64| (0..10).fold(0, |bits, i| bits | (x >> i & 1) << (3 * i));
-    let morton = |p: Vec3A| spread(cell(p.x)) | spread(cell(p.y)) << 1 | spread(cell(p.z)) << 2;
+    let cell = |x: f32| (512.0 * (0.5 * x + 1.0)).clamp(0.0, 1023.0) as u32;
+    let morton = |p: Vec3A| u64::from(morton_code(p.to_array().map(cell)));
     if !capsule.is_slender() {
         return morton(capsule.middle());
     }
@@ -113,7 +113,7 @@ fn order_key(capsule: &Capsule) -> u64 {
     let part = |x: f32| (8.0 * (x + 1.0)).clamp(0.0, 15.0) as u64;
     let along = capsule.middle().dot(capsule.direction());
     let foot = capsule.middle() - along * capsule.direction();
-    1 << 63 | face << 60 | part(u) << 56 | part(v) << 52 | morton(foot) << 20 | cell(along)
+    1 << 63 | face << 60 | part(u) << 56 | part(v) << 52 | morton(foot) << 20 | u64::from(cell(along))
 }
 
 /// Calls `visit` for all pairs of an item of `a` and an item of `b` whose boxes meet and whose capsules are not apart, some

@@ -10,7 +10,7 @@ use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
 use crate::Error;
-use crate::boolean::complex::operands::Operands;
+use crate::boolean::complex::Complex;
 use crate::control::{Limit, Reservation};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Cell, Frame, Occupancy, read_ahead, visit_pairs};
@@ -57,7 +57,7 @@ impl Candidates {
     ///
     /// # Errors
     /// Only limits.
-    pub(crate) fn new(operands: &Operands<'_>, overlap: &Overlap, runner: Runner<'_>) -> Result<Self, Error> {
+    pub(crate) fn new(complex: &Complex<'_>, overlap: &Overlap, runner: Runner<'_>) -> Result<Self, Error> {
         runner.control.check()?;
         let Some(common) = overlap.common else {
             let trees = [BoxTree::empty(), BoxTree::empty()];
@@ -65,13 +65,13 @@ impl Candidates {
             return Ok(Self { hierarchies, _memory: runner.control.reserve(0)? });
         };
         let frame = Frame::of(common.low, common.high);
-        let near = [operands.near(0), operands.near(1)];
+        let near = [complex.near(0), complex.near(1)];
         let culled = (near[0].len().min(near[1].len()) >= CULL_FROM)
-            .then(|| cull(operands, &frame, overlap.cell_length, runner))
+            .then(|| cull(complex, &frame, overlap.cell_length, runner))
             .transpose()?
             .flatten();
         let items = [0, 1].map(|side| culled.as_ref().map_or(near[side], |culled| &culled[side]));
-        let corners = |side: usize, t: u32| corners(operands, &frame, side, t);
+        let corners = |side: usize, t: u32| corners(complex, &frame, side, t);
         let many = items[0].len().saturating_mul(items[1].len()) >= CAPSULES_FROM_PAIRS;
         if many && (0..2).any(|side| has_needles(items[side], |t| corners(side, t))) {
             let bytes = (items[0].len() + items[1].len()) * CapsuleTree::BYTES_PER_ITEM;
@@ -122,8 +122,8 @@ fn has_needles(triangles: &[u32], corners: impl Fn(u32) -> Corners) -> bool {
     needles * NEEDLES_FROM >= sample.len()
 }
 
-fn corners(operands: &Operands<'_>, frame: &Frame, side: usize, triangle: u32) -> Corners {
-    let operand = &operands.sides[side];
+fn corners(complex: &Complex<'_>, frame: &Frame, side: usize, triangle: u32) -> Corners {
+    let operand = &complex.operands[side];
     operand.triangles[triangle as usize].map(|v| frame.point(&operand.positions[v as usize]))
 }
 
@@ -157,13 +157,13 @@ impl UsualSize {
 /// The near triangles of each side that pass a grid cell which the other side passes, too; `None` where that would be
 /// nearly all, or the grid no finer than that of the overlap, whose cells are `coarse_cell` long.
 fn cull(
-    operands: &Operands<'_>,
+    complex: &Complex<'_>,
     frame: &Frame,
     coarse_cell: f32,
     runner: Runner<'_>,
 ) -> Result<Option<[Vec<u32>; 2]>, Error> {
-    let near = [operands.near(0), operands.near(1)];
-    let corners = |side: usize, t: u32| corners(operands, frame, side, t);
+    let near = [complex.near(0), complex.near(1)];
+    let corners = |side: usize, t: u32| corners(complex, frame, side, t);
     // Cells up to two triangles wide: most triangles are in one or two of them.
     let usual = [0, 1].map(|side| UsualSize::new(near[side], |t| corners(side, t)));
     let grid = Occupancy::new((CELLS_PER_LENGTH / usual[0].length.min(usual[1].length)) as u32);
@@ -177,7 +177,7 @@ fn cull(
     }
     // Each vertex once, unless most of them belong to no near triangle.
     let cells_of_vertices = |side: usize| -> Vec<Cell> {
-        let positions = operands.sides[side].positions;
+        let positions = complex.operands[side].positions;
         if 3 * near[side].len() < positions.len() {
             return Vec::new();
         }
@@ -189,7 +189,7 @@ fn cull(
         if of_vertices[side].is_empty() {
             return corners(side, t).map(|corner| grid.cell(corner));
         }
-        operands.sides[side].triangles[t as usize].map(|v| of_vertices[side][v as usize])
+        complex.operands[side].triangles[t as usize].map(|v| of_vertices[side][v as usize])
     };
     // Calls `visit` with the cells of some triangles, a batch at a time, so that cache misses overlap.
     let with_cells =
@@ -197,7 +197,7 @@ fn cull(
             let mut batch = Vec::with_capacity(TRIANGLES_AT_ONCE);
             for triangles in triangles.chunks(TRIANGLES_AT_ONCE) {
                 if of_vertices[side].is_empty() {
-                    let operand = &operands.sides[side];
+                    let operand = &complex.operands[side];
                     let corners = triangles.iter().flat_map(|&t| operand.triangles[t as usize]);
                     read_ahead(corners.map(|v| operand.positions[v as usize][0].to_bits() as u32));
                 }

@@ -3,24 +3,24 @@
 use rustc_hash::FxHashSet;
 
 use super::patch::Face;
+use super::source::Source;
 use crate::boolean::classify::multiplicity::Part;
-use crate::boolean::cut::Cutter;
-use crate::boolean::result::outcome::Origin;
+use crate::boolean::complex::origin::Origin;
 use crate::mesh::BitSet;
 
 /// Calls `found` for every kept uncut triangle: part, triangle, its points, and how often it counts (negative where it is
 /// turned over once more).
-fn for_kept(cutter: &Cutter<'_>, parts: &[Part], mut found: impl FnMut(Part, u32, [u32; 3], i32)) {
+fn for_kept(cutter: &Source<'_>, parts: &[Part], mut found: impl FnMut(Part, u32, [u32; 3], i32)) {
     for &part in parts {
-        let first = cutter.operands.first_vertex(part.side);
-        let windings = &cutter.windings[part.side];
-        for (t, corners) in cutter.operands.sides[part.side].triangles.iter().enumerate() {
-            if cutter.faces[part.side].is_cut(t as u32) {
+        let windings = cutter.body.windings.of_operand(part.operand);
+        let complex = cutter.body.complex();
+        for (t, corners) in complex.operands[part.operand].triangles.iter().enumerate() {
+            if cutter.body.arrangement.curve.faces[part.operand].is_cut(t as u32) {
                 continue;
             }
             let count = part.multiplicity(windings[corners[0] as usize]);
             if count != 0 {
-                let points = corners.map(|v| cutter.identification.representative(first + v));
+                let points = corners.map(|v| cutter.representative(complex.vertex(part.operand, v)));
                 found(part, t as u32, points, count);
             }
         }
@@ -29,7 +29,7 @@ fn for_kept(cutter: &Cutter<'_>, parts: &[Part], mut found: impl FnMut(Part, u32
 
 /// The kept triangles at points that are to be complete, as faces and, by side, as numbers.
 pub(super) fn kept_triangles(
-    cutter: &Cutter<'_>,
+    cutter: &Source<'_>,
     parts: &[Part],
     complete: &BitSet,
 ) -> (Vec<Face>, [Vec<u32>; 2]) {
@@ -39,12 +39,12 @@ pub(super) fn kept_triangles(
         if !points.iter().any(|&point| complete.contains(point)) {
             return;
         }
-        taken[part.side].push(t);
+        taken[part.operand].push(t);
         let reversed = part.reversed != (count < 0);
         let [a, b, c] = points;
         let face = Face {
             corners: if reversed { [a, c, b] } else { [a, b, c] },
-            origin: Origin { operand: part.side as u32, triangle: t, reversed },
+            origin: Origin { operand: part.operand as u32, triangle: t, reversed },
             untouched: count == 1,
             flat: false,
             alive: true,
@@ -56,7 +56,7 @@ pub(super) fn kept_triangles(
 
 /// The directed edges, by the patch's numbers, of kept triangles outside the patch between points of the patch.
 pub(super) fn edges_beyond(
-    cutter: &Cutter<'_>,
+    cutter: &Source<'_>,
     parts: &[Part],
     complete: &BitSet,
     numbers: &Renumbering,

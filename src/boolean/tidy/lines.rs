@@ -9,7 +9,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::patch::Patch;
 use super::split_faces::{Edge, Splits, split_faces};
 use super::zero_area::{identify, is_exactly_flat};
-use crate::boolean::complex::planes::Planes;
+use crate::boolean::complex::Complex;
 use crate::exact::collinear;
 use crate::mesh::BitSet;
 use crate::mesh::Surface;
@@ -19,7 +19,7 @@ use crate::mesh::UnionFind;
 const ROUNDS: usize = 8;
 
 /// Removes the triangles without area all of whose corners are complete.
-pub(super) fn straighten(patch: &mut Patch<'_>, planes: Option<&Planes<'_>>) {
+pub(super) fn straighten(patch: &mut Patch<'_>, planes: Option<&Complex<'_>>) {
     for _ in 0..ROUNDS {
         // No triangle has a corner twice then.
         patch.cancel();

@@ -13,26 +13,27 @@ mod point_grid;
 mod remove;
 mod shared_edges;
 mod short_edges;
+mod source;
 mod split_faces;
 mod zero_area;
 
-use crate::boolean::classify::multiplicity::Part;
-use crate::boolean::complex::planes::Planes;
-use crate::boolean::cut::Cutter;
-use crate::boolean::result::assemble::NewTriangle;
+use crate::boolean::classify::body::Body;
+use crate::boolean::complex::Complex;
+use crate::boolean::cut::piece::Piece;
 use crate::mesh::BitSet;
 use crate::mesh::{HalfEdges, make_manifold};
 use crate::parallel::Runner;
 use crate::{Control, Error};
 use patch::Patch;
 use rustc_hash::FxHashSet;
+use source::Source;
 
 /// How often all steps are repeated while triangles without area are left.
 const ROUNDS: usize = 3;
 
 /// What tidying made of the pieces.
 pub(super) struct Tidied {
-    pub(super) new: Vec<NewTriangle>,
+    pub(super) new: Vec<Piece>,
     /// Uncut triangles that are replaced, by side.
     pub(super) replaced: [BitSet; 2],
     /// Positions of points made here; they are numbered after the nodes.
@@ -48,29 +49,38 @@ pub(super) struct Settings {
     pub(super) rounding: f64,
     /// Whether points at the same place become one where operands touch.
     pub(super) glue: bool,
+    /// How many decisions plain coordinates left open: without any, nothing touches.
+    pub(super) contacts: u64,
     /// Whether to look even where nothing points to work.
     pub(super) always: bool,
 }
 
-/// Tidies the pieces of a result; `None` where there is nothing to do.
+/// Tidies the pieces of a body; `None` where there is nothing to do.
+///
+/// # Errors
+/// Only limits.
 pub(super) fn tidy(
-    cutter: &Cutter<'_>,
-    planes: &Planes<'_>,
-    parts: &[Part],
-    pieces: &[NewTriangle],
+    body: Body<'_>,
+    pieces: &[Piece],
     settings: &Settings,
     runner: Runner<'_>,
 ) -> Result<Option<Tidied>, Error> {
-    let first_node = cutter.operands.vertex_count();
-    let mut candidates: Vec<u32> = cutter.plane_faces.left().iter().map(|node| first_node + node).collect();
-    let regular =
-        !settings.always && cutter.identification.is_empty() && candidates.is_empty() && !has_repeats(cutter);
+    let cutter = &Source { body, rounding: settings.rounding, contacts: settings.contacts };
+    let (planes, parts) = (body.complex(), body.parts);
+    let arrangement = body.arrangement;
+    let on_coplanar = arrangement.plane_faces.nodes_on_coplanar_edges();
+    let mut candidates: Vec<u32> =
+        on_coplanar.iter().map(|&node| arrangement.points.of_node(node).number()).collect();
+    let regular = !settings.always
+        && arrangement.identification.is_empty()
+        && candidates.is_empty()
+        && !body.windings.have_repeats(&arrangement.curve);
     if regular {
         return Ok(None);
     }
     runner.control.check()?;
     if settings.remove_vertices {
-        candidates.extend(cutter.identification.representatives());
+        candidates.extend(cutter.representatives());
     }
     // Where an operand touches itself, triangles may come apart at points that are not wholly in the patch. Then all starts
     // again with those; each is taken in but once.
@@ -87,15 +97,15 @@ pub(super) fn tidy(
 /// Runs all steps on a patch; or the points that must be wholly in it.
 fn tidied(
     mut patch: Patch<'_>,
-    cutter: &Cutter<'_>,
+    cutter: &Source<'_>,
     settings: &Settings,
-    planes: &Planes<'_>,
+    planes: &Complex<'_>,
     mut candidates: Vec<u32>,
     runner: Runner<'_>,
 ) -> Result<Result<Tidied, FxHashSet<u32>>, Error> {
     // By the patch's own numbers; those that are not in it need no look.
     candidates = candidates.into_iter().filter_map(|point| patch.here(point)).collect();
-    if cutter.operands.ties() > 0 {
+    if cutter.contacts > 0 {
         zero_area::mark_flat(&mut patch, cutter);
     }
     let mergeable = settings.remove_vertices.then_some(planes);
@@ -125,20 +135,20 @@ fn tidied(
 /// of.
 fn separate(
     patch: &mut Patch<'_>,
-    cutter: &Cutter<'_>,
+    cutter: &Source<'_>,
     glue: bool,
-    planes: Option<&Planes<'_>>,
+    planes: Option<&Complex<'_>>,
     control: &Control,
 ) -> Result<Vec<(u32, u32)>, Error> {
     lines::straighten(patch, planes);
     zero_area::split_chain(patch);
     patch.cancel();
-    if glue && cutter.operands.ties() > 0 {
+    if glue && cutter.contacts > 0 {
         shared_edges::identify(patch);
     }
     #[cfg(debug_assertions)]
     let boundary = patch.boundary();
-    let half_edges = if cutter.operands.ties() > 0 {
+    let half_edges = if cutter.contacts > 0 {
         shared_edges::split(patch, cutter, planes, control)?
     } else {
         HalfEdges::of(patch)
@@ -148,17 +158,4 @@ fn separate(
     let copied_from = make_manifold(patch, &half_edges);
     patch.connect();
     Ok(copied_from)
-}
-
-/// Whether some piece of an edge counts more than once or negatively: rounded surfaces that cross themselves.
-fn has_repeats(cutter: &Cutter<'_>) -> bool {
-    cutter.windings.iter().flatten().any(|&winding| !(0..=1).contains(&winding))
-        || cutter.edges.edges.iter().enumerate().any(|(index, edge)| {
-            let side = cutter.operands.side_of(edge.low);
-            let mut winding = cutter.windings[side][(edge.low - cutter.operands.first_vertex(side)) as usize];
-            cutter.edges.nodes(index as u32).iter().any(|&node| {
-                winding += if cutter.crossings.nodes[node as usize].leaves { -1 } else { 1 };
-                !(0..=1).contains(&winding)
-            })
-        })
 }

@@ -5,11 +5,12 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::Tidied;
 use super::adjacency::Adjacency;
 use super::kept::{Renumbering, edges_beyond, kept_triangles};
+use super::source::Source;
 use crate::boolean::classify::multiplicity::Part;
-use crate::boolean::complex::planes::source_and_projection;
-use crate::boolean::cut::Cutter;
-use crate::boolean::result::assemble::NewTriangle;
-use crate::boolean::result::outcome::Origin;
+use crate::boolean::complex::ids::PointId;
+use crate::boolean::complex::origin::Origin;
+use crate::boolean::cut::piece::Piece;
+use crate::exact::Projection;
 use crate::exact::{Sign, orient2d};
 use crate::mesh::BitSet;
 use crate::mesh::Buckets;
@@ -32,7 +33,7 @@ pub(super) struct Face {
 /// The patch has numbers of its own for its points, without gaps and in the order of the others: what is kept for each point
 /// is then a list, and points near each other are so in memory.
 pub(super) struct Patch<'a> {
-    cutter: &'a Cutter<'a>,
+    cutter: &'a Source<'a>,
     pub(super) faces: Vec<Face>,
     /// For each point which vertex or node it is, ascending; copies are not among them.
     numbers: Vec<u32>,
@@ -53,23 +54,23 @@ pub(super) struct Patch<'a> {
 impl<'a> Patch<'a> {
     /// The pieces and all kept triangles round their points, and round some others.
     pub(super) fn new(
-        cutter: &'a Cutter<'a>,
+        cutter: &'a Source<'a>,
         parts: &[Part],
-        pieces: &[NewTriangle],
+        pieces: &[Piece],
         others: &FxHashSet<u32>,
     ) -> Self {
-        let count = cutter.operands.vertex_count() as usize + cutter.edges.positions.len();
+        let count = cutter.point_count() as usize;
         let mut complete = BitSet::new(count);
         for point in pieces.iter().flat_map(|piece| piece.corners) {
-            complete.insert(point);
+            complete.insert(point.number());
         }
         // Kept triangles of both operands may share a point where all that was cut cancelled.
-        for point in cutter.identification.representatives().into_iter().chain(others.iter().copied()) {
+        for point in cutter.representatives().chain(others.iter().copied()) {
             complete.insert(point);
         }
         let (mut faces, taken) = kept_triangles(cutter, parts, &complete);
         faces.extend(pieces.iter().map(|piece| Face {
-            corners: piece.corners,
+            corners: piece.corners.map(PointId::number),
             origin: piece.origin,
             untouched: false,
             flat: piece.flat,
@@ -90,7 +91,7 @@ impl<'a> Patch<'a> {
         Self {
             cutter,
             faces,
-            vertices: numbers.partition_point(|&point| point < cutter.operands.vertex_count()) as u32,
+            vertices: numbers.partition_point(|&point| point < cutter.body.complex().vertex_count()) as u32,
             positions: numbers.iter().map(|&point| *cutter.position(point)).collect(),
             numbers,
             complete: complete_here,
@@ -115,7 +116,7 @@ impl<'a> Patch<'a> {
 
     /// The number outside the patch of the first copy.
     fn first_copy(&self) -> u32 {
-        self.cutter.operands.vertex_count() + self.cutter.edges.positions.len() as u32
+        self.cutter.point_count()
     }
 
     /// Whether all triangles at a point are in the patch.
@@ -162,13 +163,13 @@ impl<'a> Patch<'a> {
 
     /// Points along the axis a face looks along most, so that it is seen counter-clockwise.
     pub(super) fn projected(&self, points: &[u32], origin: Origin) -> Vec<[f64; 2]> {
-        let (_, seen) = source_and_projection(self.cutter.operands, origin);
+        let seen = Projection::of(&self.cutter.body.complex().source(origin));
         points.iter().map(|&point| seen.project(self.position(point))).collect()
     }
 
     /// Whether a triangle looks the way of the face it was cut from.
     pub(super) fn is_sound(&self, corners: &[u32; 3], origin: Origin) -> bool {
-        let (_, seen) = source_and_projection(self.cutter.operands, origin);
+        let seen = Projection::of(&self.cutter.body.complex().source(origin));
         let [a, b, c] = corners.map(|point| seen.project(self.position(point)));
         orient2d(a, b, c) == Sign::Positive
     }
@@ -282,8 +283,8 @@ impl<'a> Patch<'a> {
 
     /// The new triangles, and which uncut ones they replace.
     pub(super) fn collect(self) -> Tidied {
-        let operands = self.cutter.operands;
-        let mut replaced = [0, 1].map(|side| BitSet::new(operands.sides[side].triangles.len()));
+        let operands = &self.cutter.body.complex().operands;
+        let mut replaced = [0, 1].map(|side| BitSet::new(operands[side].triangles.len()));
         for side in 0..2 {
             self.taken[side].iter().for_each(|&t| replaced[side].insert(t));
         }
@@ -293,8 +294,8 @@ impl<'a> Patch<'a> {
                 // It stays as it was.
                 replaced[face.origin.operand as usize].remove(face.origin.triangle);
             } else {
-                let corners = face.corners.map(|point| self.number(point));
-                new.push(NewTriangle { corners, origin: face.origin, flat: face.flat });
+                let corners = face.corners.map(|point| PointId::new(self.number(point)));
+                new.push(Piece { corners, origin: face.origin, flat: face.flat });
             }
         }
         new.sort_by_key(|triangle| (triangle.origin.operand, triangle.origin.triangle));
@@ -331,7 +332,8 @@ impl Surface for Patch<'_> {
     fn left_of_side(&self, triangle: u32, side: usize) -> [f64; 3] {
         let face = &self.faces[triangle as usize];
         let corners = [0, 1, 2].map(|k| *self.position(face.corners[(side + k) % 3]));
-        let (source, seen) = source_and_projection(self.cutter.operands, face.origin);
+        let source = self.cutter.body.complex().source(face.origin);
+        let seen = Projection::of(&source);
         let [p, q] = [corners[0], corners[1]].map(|point| seen.project(&point));
         let left = |c: &[f64; 3]| {
             let [x, y] = seen.project(c);

@@ -5,8 +5,8 @@
 //! all new triangles are sound and no edge would occur twice.
 
 use super::patch::Patch;
-use crate::boolean::complex::planes::Planes;
-use crate::boolean::result::outcome::Origin;
+use crate::boolean::complex::Complex;
+use crate::boolean::complex::origin::Origin;
 use crate::exact::collinear;
 use crate::polygon::{Shape, Triangulator};
 use crate::{Control, Error};
@@ -14,7 +14,7 @@ use crate::{Control, Error};
 /// Removes all candidates that can go.
 pub(super) fn remove(
     patch: &mut Patch<'_>,
-    planes: &Planes<'_>,
+    planes: &Complex<'_>,
     mut candidates: Vec<u32>,
     control: &Control,
 ) -> Result<(), Error> {
@@ -51,7 +51,7 @@ enum Verdict {
 }
 
 struct Remover<'a> {
-    planes: &'a Planes<'a>,
+    planes: &'a Complex<'a>,
     triangulator: Triangulator,
 }
 
@@ -62,7 +62,7 @@ impl Remover<'_> {
         let origin = |i: usize| patch.faces[star[i % n].0 as usize].origin;
         // Where the plane changes from one triangle to the next; the ring vertex there is a crease's end.
         let changes: Vec<usize> =
-            (0..n).filter(|&i| !self.planes.mergeable(origin(i + n - 1), origin(i))).collect();
+            (0..n).filter(|&i| !self.planes.are_mergeable(origin(i + n - 1), origin(i))).collect();
         let ring: Vec<u32> = star.iter().map(|&(_, vertex)| vertex).collect();
         let arcs: Vec<(Vec<u32>, Origin)> = match changes.as_slice() {
             [] => vec![(ring.clone(), origin(0))],
@@ -98,7 +98,7 @@ impl Remover<'_> {
         let ahead: f64 =
             (0..3).map(|k| (p[k] - q[k]).signum() * (r[k] - q[k]).signum() * weight(&p, &q, &r, k)).sum();
         // Two different planes meet in one line, which holds all three points; in one plane that must be looked at.
-        ahead < 0.0 && (!self.planes.coplanar(planes[0], planes[1]) || collinear(&p, &q, &r))
+        ahead < 0.0 && (!self.planes.are_coplanar(planes[0], planes[1]) || collinear(&p, &q, &r))
     }
 
     /// Triangulates an outline in the plane of its face; false if that is not possible soundly.

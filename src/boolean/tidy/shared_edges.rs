@@ -11,10 +11,10 @@ use obvhs::aabb::Aabb;
 
 use super::patch::Patch;
 use super::point_grid::PointGrid;
+use super::source::Source;
 use super::split_faces::{Edge, Splits, split_faces};
 use super::zero_area::is_low;
-use crate::boolean::complex::planes::Planes;
-use crate::boolean::cut::Cutter;
+use crate::boolean::complex::Complex;
 use crate::exact::collinear;
 use crate::mesh::Buckets;
 use crate::mesh::{HalfEdges, Surface};
@@ -32,8 +32,8 @@ const MOST_GROWTH: usize = 4;
 /// Returns the half-edges of what has become of the patch.
 pub(super) fn split(
     patch: &mut Patch<'_>,
-    cutter: &Cutter<'_>,
-    planes: Option<&Planes<'_>>,
+    cutter: &Source<'_>,
+    planes: Option<&Complex<'_>>,
     control: &Control,
 ) -> Result<HalfEdges, Error> {
     let half_edges = HalfEdges::of(patch);
@@ -52,7 +52,7 @@ const MOST_CELLS: usize = 64;
 fn split_by(
     patch: &mut Patch<'_>,
     mut half_edges: HalfEdges,
-    planes: Option<&Planes<'_>>,
+    planes: Option<&Complex<'_>>,
     splits: impl Fn(&Patch<'_>, &HalfEdges) -> Result<Splits, Error>,
 ) -> Result<HalfEdges, Error> {
     let most = MOST_GROWTH * patch.faces.len();
@@ -93,7 +93,7 @@ fn points(patch: &Patch<'_>) -> Vec<u32> {
 fn splits_between_faces(
     patch: &Patch<'_>,
     half_edges: &HalfEdges,
-    cutter: &Cutter<'_>,
+    cutter: &Source<'_>,
     control: &Control,
 ) -> Result<Splits, Error> {
     let points = points(patch);
@@ -152,7 +152,7 @@ fn sort_along(patch: &Patch<'_>, u: u32, on: &mut [u32]) {
 fn splits_along_edges(
     patch: &Patch<'_>,
     half_edges: &HalfEdges,
-    cutter: &Cutter<'_>,
+    cutter: &Source<'_>,
     control: &Control,
 ) -> Result<Splits, Error> {
     // With a bit for each operand whose faces are there.
@@ -224,7 +224,7 @@ const BOTH: u8 = 3;
 
 /// Whether `x` lies on the segment from `u` to `v`, not at its ends: exactly as given, or before it was rounded. Both parts
 /// are shorter than the whole, so splitting comes to an end.
-fn lies_between(patch: &Patch<'_>, cutter: &Cutter<'_>, u: u32, x: u32, v: u32) -> bool {
+fn lies_between(patch: &Patch<'_>, cutter: &Source<'_>, u: u32, x: u32, v: u32) -> bool {
     let (p, at, q) = (patch.position(u), patch.position(x), patch.position(v));
     // Nearly always one look says no: rounding moves a point by less than a unit in the last place.
     if !(0..3).all(|k| p[k].min(q[k]) <= at[k] && at[k] <= p[k].max(q[k])) {

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 
 use super::patch::{Face, Patch};
 use super::zero_area::is_low;
-use crate::boolean::complex::planes::Planes;
+use crate::boolean::complex::Complex;
 use crate::mesh::BitSet;
 use crate::mesh::Surface;
 use crate::mesh::{Buckets, UnionFind};
@@ -62,7 +62,7 @@ impl Splits {
 /// Splits the sides of all faces that are to be split. Diagonals are left alone, whatever else runs along them: they bound two
 /// triangles of one face and so do not matter to others. Faces are put together where `planes` says that the border between
 /// them means nothing.
-pub(super) fn split_faces(patch: &mut Patch<'_>, splits: &Splits, planes: Option<&Planes<'_>>) {
+pub(super) fn split_faces(patch: &mut Patch<'_>, splits: &Splits, planes: Option<&Complex<'_>>) {
     let faces: Vec<u32> = (0..patch.faces.len() as u32)
         .filter(|&index| splits.is_split(&patch.faces[index as usize]))
         .collect();
@@ -78,7 +78,7 @@ pub(super) fn split_faces(patch: &mut Patch<'_>, splits: &Splits, planes: Option
 }
 
 /// The faces that are to be split, those of one plane side by side together.
-fn strips(patch: &Patch<'_>, faces: &[u32], splits: &Splits, planes: &Planes<'_>) -> Buckets<u32> {
+fn strips(patch: &Patch<'_>, faces: &[u32], splits: &Splits, planes: &Complex<'_>) -> Buckets<u32> {
     // Every side that is not to be split: its ends, whether it runs from the lower one, and the place of its face.
     let mut sides: Vec<(Edge, bool, u32)> = Vec::with_capacity(2 * faces.len());
     for (place, &index) in (0..).zip(faces) {
@@ -103,7 +103,7 @@ fn strips(patch: &Patch<'_>, faces: &[u32], splits: &Splits, planes: &Planes<'_>
     let origin = |place: u32| patch.faces[faces[place as usize] as usize].origin;
     let mut together = UnionFind::new(faces.len());
     for (&(_, one, other), is_crowded) in borders.iter().zip(is_crowded) {
-        if !is_crowded && planes.mergeable(origin(one), origin(other)) {
+        if !is_crowded && planes.are_mergeable(origin(one), origin(other)) {
             together.join(one, other);
         }
     }

@@ -7,8 +7,9 @@ use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use super::patch::{Face, Patch};
-use crate::boolean::cut::Cutter;
+use super::source::Source;
 use crate::exact::collinear;
+use crate::mesh::SparseUnionFind;
 
 /// A flip: the two triangles that share the longest side from `c` to `a` of the flat triangle `a, b, c`.
 struct Flip {
@@ -61,7 +62,7 @@ pub(super) fn is_low([a, b, c]: [&[f64; 3]; 3], height: f64) -> bool {
 }
 
 /// Marks the triangles whose corners lay on one line before they were rounded, but do not now.
-pub(super) fn mark_flat(patch: &mut Patch<'_>, cutter: &Cutter<'_>) {
+pub(super) fn mark_flat(patch: &mut Patch<'_>, cutter: &Source<'_>) {
     for index in 0..patch.faces.len() as u32 {
         let corners = patch.faces[index as usize].corners;
         let is_low = is_lower(patch, index, cutter.rounding) && !is_exactly_flat(patch, index);
@@ -218,21 +219,12 @@ fn split_round(patch: &mut Patch<'_>) -> Vec<(u32, u32)> {
 
 /// Makes one point of each pair.
 pub(super) fn identify(patch: &mut Patch<'_>, pairs: &[(u32, u32)]) {
-    let mut stands_for: FxHashMap<u32, u32> = FxHashMap::default();
-    let root = |stands_for: &FxHashMap<u32, u32>, mut point: u32| {
-        while let Some(&other) = stands_for.get(&point) {
-            point = other;
-        }
-        point
-    };
+    let mut points = SparseUnionFind::default();
     for &(x, y) in pairs {
-        let (x, y) = (root(&stands_for, x), root(&stands_for, y));
-        if x != y {
-            stands_for.insert(x.max(y), x.min(y));
-        }
+        points.join(x, y);
     }
     for face in patch.faces.iter_mut().filter(|face| face.alive) {
-        let corners = face.corners.map(|point| root(&stands_for, point));
+        let corners = face.corners.map(|point| points.root(point));
         if corners != face.corners {
             face.corners = corners;
             face.untouched = false;
