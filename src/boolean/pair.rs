@@ -118,15 +118,15 @@ fn build(
     let tidied = tidy(body, &pieces, &tidy_settings, runner)?;
     runner.control.check()?;
     // 9. The result: untouched triangles in their order, then the pieces.
-    let assembled = match tidied {
-        None => assemble(body, &pieces, None, runner)?,
+    let (assembled, clean_up_stopped) = match tidied {
+        None => (assemble(body, &pieces, None, runner)?, 0),
         Some(tidied) => {
             arrangement.points.add(tidied.copies.into_iter().map(AddedPoint::Copy));
             let body = Body { arrangement, windings, parts };
-            assemble(body, &tidied.new, Some(&tidied.replaced), runner)?
+            (assemble(body, &tidied.new, Some(&tidied.replaced), runner)?, tidied.stopped)
         }
     };
-    Ok(Assembled { has_inverted: cut.has_inverted, ..assembled })
+    Ok(Assembled { has_inverted: cut.has_inverted, clean_up_stopped, ..assembled })
 }
 
 /// The parts that are summed up together. The halves of a symmetric difference share no inside and touch in the curve, so

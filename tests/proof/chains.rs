@@ -4,9 +4,9 @@ use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use trisect::Operation::{Difference, Intersection, Union};
-use trisect::{BooleanOptions, Mesh, Operation, Solid, primitives};
+use trisect::{Mesh, Operation, Solid, primitives};
 
-use crate::common::{cuboid, solid};
+use crate::common::{cuboid, same_bits, solid};
 use crate::judge::cells::Cells;
 use crate::judge::oracle;
 use crate::judge::placement::{moved, rotated, rotation};
@@ -19,7 +19,7 @@ fn steps(usual: usize) -> usize {
 }
 
 fn run(operation: Operation, operands: &[&Solid]) -> Solid {
-    BooleanOptions::new().run(operation, operands.iter().copied()).expect("no limits").into_solid()
+    same_bits::run(operation, operands).into_solid()
 }
 
 fn assert_sound(found: &Properties, context: &str) {
@@ -28,6 +28,7 @@ fn assert_sound(found: &Properties, context: &str) {
 
 #[test]
 fn drilling_square_holes() {
+    let _bits = same_bits::group("chain of drilling");
     let steps = steps(250);
     // Places in a grid of 40 columns, in any order; the drill is flush with both faces of the plate.
     let mut places: Vec<usize> = (0..steps).collect();
@@ -51,6 +52,7 @@ fn drilling_square_holes() {
 
 #[test]
 fn stacking_bricks() {
+    let _bits = same_bits::group("chain of stacking");
     let steps = steps(300);
     // Bricks of one by two by one, crosswise and half off one another, as a child would: each touches what is there.
     let mut random = ChaCha8Rng::seed_from_u64(2);
@@ -95,6 +97,7 @@ fn tool(random: &mut ChaCha8Rng, size: f64, at: [f64; 3]) -> Mesh {
 
 #[test]
 fn carving_with_tools_that_do_not_meet() {
+    let _bits = same_bits::group("chain of carving");
     let steps = steps(150);
     let mut random = ChaCha8Rng::seed_from_u64(3);
     let block = solid(primitives::geodesic_sphere(10.0, 8).expect("a ball"));
@@ -137,6 +140,7 @@ fn carving_with_tools_that_do_not_meet() {
 
 #[test]
 fn milling_along_a_path() {
+    let _bits = same_bits::group("chain of milling");
     let steps = steps(150);
     let mut random = ChaCha8Rng::seed_from_u64(4);
     let block = cuboid([0.0; 3], [20.0, 20.0, 2.0]);

@@ -8,6 +8,7 @@ mod battery;
 mod chains;
 #[path = "../common/mod.rs"]
 mod common;
+mod contacts;
 #[allow(dead_code, reason = "shared with the driver of the live comparison")]
 mod judge;
 mod minimiser;
@@ -16,4 +17,5 @@ mod named;
 mod properties;
 mod recorded;
 mod regressions;
+mod same_bits;
 mod trial;

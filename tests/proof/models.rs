@@ -5,6 +5,7 @@ use std::path::Path;
 use trisect::Operation::{self, Difference, Intersection, Union};
 use trisect::{Mesh, Solid};
 
+use crate::common::same_bits;
 use crate::judge::oracle;
 use crate::trial::{Expected, Trial};
 
@@ -58,6 +59,7 @@ const RESULTS: [Row; 18] = [
 
 #[test]
 fn models_by_others() {
+    let _bits = same_bits::group("models by others");
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folder = root.ancestors().find(|folder| folder.join("fixtures/solids").is_dir()).expect("fixtures");
     let load = |name: &str| {

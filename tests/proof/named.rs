@@ -3,7 +3,7 @@
 use trisect::Operation::{Difference, Intersection, Union};
 use trisect::{Mesh, Operation, Solid, primitives};
 
-use crate::common::{assert_sound, cube, cuboid, run, solid};
+use crate::common::{assert_sound, cube, cuboid, run, same_bits, solid};
 use crate::judge::surface::Properties;
 
 fn result(operation: Operation, operands: &[&Solid]) -> (Solid, Properties) {
@@ -30,6 +30,7 @@ fn moved(solid: &Solid, by: [f64; 3]) -> Solid {
 
 #[test]
 fn cubes_that_overlap_by_a_half() {
+    let _bits = same_bits::group("named cubes that overlap by a half");
     let a = cube([-0.5; 3], 1.0);
     let b = moved(&a, [0.5, 0.0, 0.0]);
     assert_eq!([Difference, Union, Intersection].map(|operation| volume(operation, &a, &b)), [0.5, 1.5, 0.5]);
@@ -37,6 +38,7 @@ fn cubes_that_overlap_by_a_half() {
 
 #[test]
 fn three_boxes_with_faces_in_one_plane() {
+    let _bits = same_bits::group("named three boxes with faces in one plane");
     let a = cuboid([-0.6, -1.0, 0.0], [0.6, 0.0, 1.0]);
     let b = cuboid([-0.5, 0.0, 0.5], [0.5, 0.8, 1.0]);
     let c = cuboid([-0.6, -0.1, 0.0], [0.6, 0.0, 0.5]);
@@ -46,6 +48,7 @@ fn three_boxes_with_faces_in_one_plane() {
 
 #[test]
 fn mirrored_cubes() {
+    let _bits = same_bits::group("named mirrored cubes");
     let unit = primitives::cuboid([0.0; 3], [1.0; 3]).expect("a cube");
     let scaled = |factors| solid(unit.clone().scaled(factors).expect("a scale"));
     let (solid, found) = result(Difference, &[&scaled([1.0, -1.0, 1.0]), &scaled([0.5, -1.0, 0.5])]);
@@ -55,6 +58,7 @@ fn mirrored_cubes() {
 
 #[test]
 fn a_solid_minus_itself() {
+    let _bits = same_bits::group("named a solid minus itself");
     let corner = primitives::tetrahedron([[0., 0., 0.], [0., 1., 0.], [1., 0., 0.], [0., 0., 1.]]);
     for a in [cube([0.0; 3], 1.0), solid(corner.expect("a tetrahedron"))] {
         assert!(run(Difference, &[&a, &a]).solid().is_empty());
@@ -64,6 +68,7 @@ fn a_solid_minus_itself() {
 
 #[test]
 fn cubes_that_share_a_face_an_edge_or_a_corner() {
+    let _bits = same_bits::group("named cubes that share a face an edge or a corner");
     let a = cube([0.0; 3], 1.0);
     let (_, face) = result(Union, &[&a, &moved(&a, [1.0, 0.0, 0.0])]);
     assert_eq!((face.volume, face.area, face.components, face.euler), (2.0, 10.0, 1, 2));
@@ -76,6 +81,7 @@ fn cubes_that_share_a_face_an_edge_or_a_corner() {
 
 #[test]
 fn cuts_in_the_shape_of_an_l() {
+    let _bits = same_bits::group("named cuts in the shape of an l");
     let a = cube([0.0; 3], 1.0);
     let (_, found) = result(Difference, &[&a, &moved(&a, [0.3, 0.3, 0.0]), &moved(&a, [-0.3, -0.3, 0.0])]);
     assert!(near(found.volume, 0.18) && near(found.area, 2.76), "{found:?}");
@@ -84,6 +90,7 @@ fn cuts_in_the_shape_of_an_l() {
 
 #[test]
 fn disjoint_cubes() {
+    let _bits = same_bits::group("named disjoint cubes");
     let (a, b) = (cube([0.0; 3], 1.0), cube([3.0, 0.0, 0.0], 2.0));
     assert_eq!([Union, Difference, Intersection].map(|operation| volume(operation, &a, &b)), [9.0, 1.0, 0.0]);
     assert!(run(Intersection, &[&a, &b]).solid().is_empty());
@@ -91,6 +98,7 @@ fn disjoint_cubes() {
 
 #[test]
 fn a_cube_with_a_void_inside() {
+    let _bits = same_bits::group("named a cube with a void inside");
     let (hollow, found) = result(Difference, &[&cube([-2.0; 3], 4.0), &cube([0.0; 3], 1.0)]);
     assert_eq!((found.volume, found.components), (63.0, 2));
     let (_, cut) = result(Intersection, &[&hollow, &cuboid([-9.0, -9.0, -1.0], [9.0; 3])]);
@@ -99,6 +107,7 @@ fn a_cube_with_a_void_inside() {
 
 #[test]
 fn a_cube_and_an_octahedron() {
+    let _bits = same_bits::group("named a cube and an octahedron");
     let (a, b) = (cube([-0.5; 3], 1.0), solid(primitives::octahedron(1.0).expect("an octahedron")));
     // The cube less its eight corners, each a tetrahedron with three edges of a half.
     assert!(near(volume(Intersection, &a, &b), 1.0 - 8.0 * 0.125 / 6.0));
@@ -106,6 +115,7 @@ fn a_cube_and_an_octahedron() {
 
 #[test]
 fn stacked_blocks_with_a_hole() {
+    let _bits = same_bits::group("named stacked blocks with a hole");
     let drill = solid(primitives::cylinder(0.5, 1.0, 32).expect("a cylinder"));
     let (block, one) = result(Difference, &[&cube([-0.5; 3], 1.0), &drill]);
     let (_, two) = result(Union, &[&block, &moved(&block, [0.0, 0.0, 1.0])]);
@@ -116,6 +126,7 @@ fn stacked_blocks_with_a_hole() {
 
 #[test]
 fn boxes_as_bits() {
+    let _bits = same_bits::group("named boxes as bits");
     let bar = |from: f64, length: f64| cuboid([from, 0.0, 0.0], [from + length, 1.0, 1.0]);
     let (m1, m2, m4, m3, m7) = (bar(0.0, 1.0), bar(1.0, 2.0), bar(3.0, 4.0), bar(0.0, 3.0), bar(0.0, 7.0));
     let of = |operation, operands: &[&Solid]| result(operation, operands).0;
@@ -137,6 +148,7 @@ fn boxes_as_bits() {
 
 #[test]
 fn bicylinder() {
+    let _bits = same_bits::group("named bicylinder");
     let lying = |turn: fn([f64; 3]) -> [f64; 3]| {
         let mut mesh = primitives::cylinder(1.0, 4.0, 400).expect("a cylinder").translated([0.0, 0.0, -2.0]);
         mesh.positions.iter_mut().for_each(|p| *p = turn(*p));
@@ -151,6 +163,7 @@ fn bicylinder() {
 
 #[test]
 fn nested_balls() {
+    let _bits = same_bits::group("named nested balls");
     let ball = |radius| solid(primitives::uv_sphere(radius, 24, 12).expect("a ball"));
     let (outer, inner) = (ball(2.0), ball(1.0));
     let counts = |mesh: &Mesh| (mesh.positions.len(), mesh.triangles.len());
@@ -166,6 +179,7 @@ fn nested_balls() {
 
 #[test]
 fn the_same_cut_repeated() {
+    let _bits = same_bits::group("named the same cut repeated");
     let a = solid(primitives::uv_sphere(10.0, 40, 40).expect("a ball"));
     let at = a.mesh().positions[a.mesh().positions.len() / 2];
     let b = solid(primitives::uv_sphere(0.5, 20, 20).expect("a ball").translated(at));
@@ -193,6 +207,7 @@ fn the_same_cut_repeated() {
 
 #[test]
 fn three_balls_in_a_row() {
+    let _bits = same_bits::group("named three balls in a row");
     let ball = |z| solid(primitives::icosphere(1.0, 3).expect("a ball").translated([0.0, 0.0, z]));
     let balls = [ball(0.0), ball(0.75), ball(1.5)];
     let operands: Vec<&Solid> = balls.iter().collect();
@@ -208,6 +223,7 @@ fn three_balls_in_a_row() {
 
 #[test]
 fn far_from_the_origin() {
+    let _bits = same_bits::group("named far from the origin");
     let at = [500_000.0, 4_649_776.0, 120.0];
     let a = cube(at, 1.0);
     // A third of a unit is no sum of powers of two: the coordinates themselves are rounded, the boolean of them is exact.
@@ -219,6 +235,7 @@ fn far_from_the_origin() {
 
 #[test]
 fn an_operand_that_crosses_itself_is_told() {
+    let _bits = same_bits::group("named an operand that crosses itself is told");
     let mut mesh = primitives::cuboid([0.5; 3], [1.5; 3]).expect("a cube");
     mesh.append(&primitives::cuboid([1.0; 3], [2.0; 3]).expect("a cube")).expect("small");
     let (big, doubled) = (cube([0.0; 3], 3.0), solid(mesh));

@@ -1,7 +1,8 @@
 //! What manifold3d finds of the first few thousand random cases, as `compare.py record` wrote it. See `docs/proof.md`.
 
-use trisect::{BooleanOptions, Solid};
+use trisect::Solid;
 
+use crate::common::same_bits;
 use crate::judge::cases::{Case, Family, models};
 use crate::judge::surface::{Properties, volume};
 use crate::judge::vector::extent;
@@ -12,6 +13,7 @@ const EQUAL: f64 = 1e-9;
 
 #[test]
 fn results_of_manifold3d() {
+    let _bits = same_bits::group("recorded cases");
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
         .ancestors()
         .find(|folder| folder.join("fixtures/manifold3d.txt").is_file())
@@ -35,10 +37,7 @@ fn results_of_manifold3d() {
             );
         }
         let solids = [&case.a, &case.b].map(|mesh| Solid::try_from(mesh.clone()).expect("closed"));
-        let outcome = BooleanOptions::new()
-            .threads(1)
-            .run(case.operation, [&solids[0], &solids[1]])
-            .expect("no limits");
+        let outcome = same_bits::run(case.operation, &[&solids[0], &solids[1]]);
         let found = Properties::of(outcome.solid().mesh());
         let [low, high] = extent(case.a.positions.iter().chain(&case.b.positions));
         let [x, y, z] = [0, 1, 2].map(|k| high[k] - low[k]);

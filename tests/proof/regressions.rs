@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use trisect::{Mesh, Solid};
 
+use crate::common::same_bits;
 use crate::judge::cases::OPERATIONS;
 use crate::judge::minimise::Pair;
 use crate::judge::oracle;
@@ -32,6 +33,7 @@ pub(crate) fn written_and_read(pair: &Pair, name: &str) -> Pair {
 
 #[test]
 fn pairs_that_once_failed() {
+    let _bits = same_bits::group("pairs that once failed");
     let mut names: Vec<String> = std::fs::read_dir(folder())
         .expect("a folder")
         .filter_map(|entry| {

@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use trisect::{BooleanOptions, Mesh, Operation, Solid};
+use trisect::{Mesh, Operation, Solid};
 
+use super::common::same_bits;
 use super::judge::surface::Properties;
 
 /// How much of a systematic battery to try: one case in `usual`, or as the environment says.
@@ -50,7 +51,7 @@ impl Trial {
         expected: &Expected,
     ) -> Option<Solid> {
         self.tried += 1;
-        let run = || BooleanOptions::new().threads(1).run(operation, operands).expect("no limits");
+        let run = || same_bits::run(operation, &operands);
         let Ok(outcome) = catch_unwind(AssertUnwindSafe(run)) else {
             self.fail(context, operation, operands, None, "panic");
             return None;

@@ -43,11 +43,13 @@ struct Partial<'a> {
     contacts: u64,
     /// Whether rounding turned over some triangle on the way.
     may_be_inverted: bool,
+    /// How often a step of the clean-up stopped at its bound on the way.
+    clean_up_stopped: u64,
 }
 
 impl<'a> Partial<'a> {
     fn new(solid: Cow<'a, Solid>, origins: Origins, groups: Vec<u32>) -> Self {
-        Self { solid, origins, groups, contacts: 0, may_be_inverted: false }
+        Self { solid, origins, groups, contacts: 0, may_be_inverted: false, clean_up_stopped: 0 }
     }
 
     /// The middle of its box.
@@ -101,6 +103,7 @@ pub(crate) fn run(
     let notes = Notes {
         contacts: result.contacts,
         inverted: if result.may_be_inverted { count_inverted(&result, operands) } else { 0 },
+        clean_up_stopped: result.clean_up_stopped,
         operands: operands.iter().map(|solid| OperandState::of(solid)).collect(),
     };
     Ok(finish(result, groups.list, notes))
@@ -178,6 +181,7 @@ impl Engine<'_> {
             groups,
             contacts: a.contacts + b.contacts + contacts,
             may_be_inverted: a.may_be_inverted || b.may_be_inverted || made.has_inverted,
+            clean_up_stopped: a.clean_up_stopped + b.clean_up_stopped + made.clean_up_stopped,
         })
     }
 }

@@ -22,6 +22,8 @@ pub(crate) struct Assembled {
     pub(crate) origins: Origins,
     /// Whether rounding turned over some triangle.
     pub(crate) has_inverted: bool,
+    /// How often a step of the clean-up stopped at its bound with work left.
+    pub(crate) clean_up_stopped: u64,
 }
 
 impl Assembled {
@@ -31,7 +33,8 @@ impl Assembled {
     /// [`Error::TooLarge`] where the vertices of both cannot be numbered.
     pub(crate) fn append(mut self, other: Self) -> Result<Self, Error> {
         if self.triangles.is_empty() {
-            return Ok(other);
+            let clean_up_stopped = self.clean_up_stopped + other.clean_up_stopped;
+            return Ok(Self { clean_up_stopped, ..other });
         }
         let vertices = self.positions.len() + other.positions.len();
         if vertices > u32::MAX as usize {
@@ -42,6 +45,7 @@ impl Assembled {
         self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|v| v + offset)));
         self.origins.append(other.origins);
         self.has_inverted |= other.has_inverted;
+        self.clean_up_stopped += other.clean_up_stopped;
         Ok(self)
     }
 }

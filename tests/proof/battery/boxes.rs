@@ -3,7 +3,7 @@
 use trisect::Operation;
 use trisect::Operation::{Difference, Intersection, SymmetricDifference, Union};
 
-use crate::common::cuboid;
+use crate::common::{cuboid, same_bits};
 use crate::judge::cells::Cells;
 use crate::trial::{Expected, Trial, one_in};
 
@@ -27,6 +27,7 @@ pub(crate) const BOTH_WAYS: [(Operation, bool); 8] = [
 
 #[test]
 fn boxes_in_every_relation_along_every_axis() {
+    let _bits = same_bits::group("battery boxes");
     let relations: Vec<[f64; 2]> =
         RELATIONS.iter().map(|interval| interval.map(|x| x as f64)).chain([WITHIN]).collect();
     let mut trial = Trial::default();

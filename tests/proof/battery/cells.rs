@@ -3,6 +3,7 @@
 use trisect::{Mesh, Solid};
 
 use super::boxes::BOTH_WAYS;
+use crate::common::same_bits;
 use crate::judge::cells::Cells;
 use crate::trial::{Expected, Trial, one_in};
 
@@ -43,6 +44,7 @@ fn run(trial: &mut Trial, context: &str, of: [&Cells; 2], solids: [&Solid; 2]) {
 
 #[test]
 fn every_set_of_eight_cells_with_every_other() {
+    let _bits = same_bits::group("battery cells");
     let mut trial = Trial::default();
     for index in (0..256 * 257 / 2).step_by(one_in(29)) {
         // Pairs a <= b, numbered row by row.
@@ -56,6 +58,7 @@ fn every_set_of_eight_cells_with_every_other() {
 
 #[test]
 fn cells_shifted_by_halves() {
+    let _bits = same_bits::group("battery cells off by halves");
     // Every set against itself and its mirror image, half a cell off: edges cross in the middle of faces.
     let mut trial = Trial::default();
     for bits in (1..256usize).step_by(one_in(7)) {

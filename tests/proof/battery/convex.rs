@@ -6,7 +6,7 @@ use trisect::Operation::{Intersection, Union};
 use trisect::{Mesh, Operation, Solid, primitives};
 
 use super::boxes::BOTH_WAYS;
-use crate::common::solid;
+use crate::common::{same_bits, solid};
 use crate::judge::exact::{Exact, Facts};
 use crate::trial::{Expected, Trial, one_in};
 
@@ -92,6 +92,7 @@ fn tetrahedra(side: usize) -> Vec<Mesh> {
 
 #[test]
 fn tetrahedra_of_a_cube_with_one_another() {
+    let _bits = same_bits::group("battery tetrahedra of a cube");
     // All tetrahedra over the corners of a cube: every pair shares corners, edges or planes.
     let twins: Vec<Twin> = tetrahedra(2).into_iter().map(Twin::convex).collect();
     let mut trial = Trial::default();
@@ -104,6 +105,7 @@ fn tetrahedra_of_a_cube_with_one_another() {
 
 #[test]
 fn tetrahedra_of_a_grid() {
+    let _bits = same_bits::group("battery tetrahedra of a grid");
     // Against one tetrahedron, every one over the 27 points of its grid.
     let corner = [[0., 0., 0.], [2., 0., 0.], [0., 2., 0.], [0., 0., 2.]];
     let fixed = [
@@ -125,6 +127,7 @@ fn tetrahedra_of_a_grid() {
 
 #[test]
 fn triangular_prisms_in_all_places_and_directions() {
+    let _bits = same_bits::group("battery prisms");
     const TRIANGLES: [[[f64; 2]; 3]; 4] = [
         [[0., 0.], [2., 0.], [0., 2.]],
         [[0., 0.], [2., 1.], [1., 2.]],
@@ -161,6 +164,7 @@ fn triangular_prisms_in_all_places_and_directions() {
 
 #[test]
 fn star_prisms_on_one_another() {
+    let _bits = same_bits::group("battery star prisms");
     // Concave prisms with corners on a grid: faces overlap partly, edges cross in faces.
     const DIRECTIONS: [[f64; 2]; 8] =
         [[2., 1.], [1., 1.], [0., 1.], [-1., 2.], [-1., 0.], [-2., -1.], [0., -1.], [1., -1.]];

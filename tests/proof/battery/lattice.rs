@@ -4,10 +4,10 @@ use rand::rngs::ChaCha8Rng;
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
 use trisect::Operation::{Difference, Union};
-use trisect::{BooleanOptions, Mesh, Solid};
+use trisect::{Mesh, Solid};
 
 use super::convex::{Twin, run};
-use crate::common::{cube, cuboid};
+use crate::common::{cube, cuboid, same_bits};
 use crate::judge::cells::{CellSurface, Cells};
 use crate::judge::surface::Properties;
 use crate::trial::{Expected, Trial, one_in};
@@ -42,6 +42,7 @@ fn in_sponge(mut p: [i64; 3]) -> bool {
 
 #[test]
 fn menger_sponges_bored_one_bar_at_a_time() {
+    let _bits = same_bits::group("battery sponges");
     for depth in 1..=2u32 {
         let size = 3i64.pow(depth);
         let mut sponge = cube([0.0; 3], size as f64);
@@ -65,7 +66,7 @@ fn menger_sponges_bored_one_bar_at_a_time() {
                 high[k] = (x + width) as f64;
             }
             let bar = cuboid(low, high);
-            sponge = BooleanOptions::new().run(Difference, [&sponge, &bar]).expect("no limits").into_solid();
+            sponge = same_bits::run(Difference, &[&sponge, &bar]).into_solid();
         }
         assert_is(&sponge, &Cells::new([0; 3], [size; 3], in_sponge), &format!("depth {depth}"));
     }
@@ -73,6 +74,7 @@ fn menger_sponges_bored_one_bar_at_a_time() {
 
 #[test]
 fn the_menger_sponge_of_depth_three_in_one_operation() {
+    let _bits = same_bits::group("battery sponge of depth 3");
     let size = 27i64;
     let mut operands = vec![cube([0.0; 3], size as f64)];
     for axis in 0..3 {
@@ -88,12 +90,14 @@ fn the_menger_sponge_of_depth_three_in_one_operation() {
         });
         operands.push(Solid::try_from(cells.surface().mesh).expect("closed"));
     }
-    let sponge = BooleanOptions::new().run(Difference, &operands).expect("no limits");
+    let operands: Vec<&Solid> = operands.iter().collect();
+    let sponge = same_bits::run(Difference, &operands);
     assert_is(sponge.solid(), &Cells::new([0; 3], [size; 3], in_sponge), "depth 3");
 }
 
 #[test]
 fn cubes_of_a_grid_united_in_sampled_orders() {
+    let _bits = same_bits::group("battery cubes in sampled orders");
     // Not all 27: after each step the union is some set of cubes, which touch in edges and vertices.
     for seed in (0..40u64).step_by(one_in(4)) {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
@@ -103,7 +107,7 @@ fn cubes_of_a_grid_united_in_sampled_orders() {
         for (step, &place) in places.iter().enumerate() {
             let one = cube(place.map(|x| x as f64), 1.0);
             let operands = if random.random() { [&sum, &one] } else { [&one, &sum] };
-            sum = BooleanOptions::new().run(Union, operands).expect("no limits").into_solid();
+            sum = same_bits::run(Union, &operands).into_solid();
             let so_far = Cells::new([0; 3], [3; 3], |cell| places[..=step].contains(&cell));
             assert_is(&sum, &so_far, &format!("seed {seed}, step {step}"));
         }
@@ -113,18 +117,22 @@ fn cubes_of_a_grid_united_in_sampled_orders() {
 
 #[test]
 fn cubes_of_a_grid_united_in_a_tree_and_all_at_once() {
+    let _bits = same_bits::group("battery cubes in trees");
     let cubes: Vec<Solid> =
         (0..27).map(|i| cube([f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)], 1.0)).collect();
     let whole = Cells::new([0; 3], [3; 3], |_| true);
     for seed in 0..6 {
         let mut parts = cubes.clone();
         parts.shuffle(&mut ChaCha8Rng::seed_from_u64(seed));
-        let at_once = BooleanOptions::new().run(Union, &parts).expect("no limits");
+        let operands: Vec<&Solid> = parts.iter().collect();
+        let at_once = same_bits::run(Union, &operands);
         assert_is(at_once.solid(), &whole, &format!("seed {seed}, at once"));
         assert_eq!(at_once.solid().mesh().triangles.len(), 12, "seed {seed}");
         while parts.len() > 1 {
-            let united =
-                |pair: &[Solid]| BooleanOptions::new().run(Union, pair).expect("no limits").into_solid();
+            let united = |pair: &[Solid]| {
+                let operands: Vec<&Solid> = pair.iter().collect();
+                same_bits::run(Union, &operands).into_solid()
+            };
             parts = parts.chunks(2).map(united).collect();
         }
         assert_is(&parts[0], &whole, &format!("seed {seed}, tree"));
@@ -133,6 +141,7 @@ fn cubes_of_a_grid_united_in_a_tree_and_all_at_once() {
 
 #[test]
 fn checkerboards_touch_everywhere() {
+    let _bits = same_bits::group("battery checkerboards");
     // Cells that touch one another along edges and in vertices only, against their complement.
     let board = |parity: i64| Cells::new([0; 3], [4; 3], |[x, y, z]| (x + y + z) % 2 == parity);
     let solid = |cells: &Cells| Solid::try_from(cells.surface().mesh).expect("closed");
@@ -166,6 +175,7 @@ fn gear(teeth: usize, turned: bool) -> Vec<[f64; 2]> {
 
 #[test]
 fn gears() {
+    let _bits = same_bits::group("battery gears");
     let mut trial = Trial::default();
     for (teeth, height, by) in [
         (6, 200.0, [0.0, 0.0, 0.0]),

@@ -3,7 +3,7 @@
 use trisect::Operation::{Difference, Intersection, SymmetricDifference, Union};
 use trisect::{Mesh, Solid, primitives};
 
-use crate::common::{cuboid, solid};
+use crate::common::{cuboid, same_bits, solid};
 use crate::judge::oracle;
 use crate::judge::surface::volume;
 use crate::trial::{Expected, Trial};
@@ -41,6 +41,7 @@ fn overlap(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 #[test]
 fn boxes_nearly_flush() {
+    let _bits = same_bits::group("battery boxes nearly flush");
     let mut trial = Trial::default();
     let a = cuboid([0.0; 3], [1.0; 3]);
     // Beside one another, on one another, nearly the same; moved along one axis or all.
@@ -64,6 +65,7 @@ fn boxes_nearly_flush() {
 
 #[test]
 fn boxes_nearly_parallel() {
+    let _bits = same_bits::group("battery boxes nearly parallel");
     let mut trial = Trial::default();
     let mesh = primitives::cuboid([-0.5; 3], [0.5; 3]).expect("a cube");
     let a = solid(mesh.clone());
@@ -84,6 +86,7 @@ fn boxes_nearly_parallel() {
 
 #[test]
 fn slopes_nearly_flush() {
+    let _bits = same_bits::group("battery slopes nearly flush");
     // A wedge on the slope of another: the contact is in a plane in which no coordinates are equal.
     let mut trial = Trial::default();
     let profile = [[0.0, 0.0], [3.0, 0.0], [0.0, 1.0]];
@@ -103,6 +106,7 @@ fn slopes_nearly_flush() {
 
 #[test]
 fn round_bodies_nearly_the_same() {
+    let _bits = same_bits::group("battery round bodies nearly the same");
     let mut trial = Trial::default();
     let bodies = [
         primitives::geodesic_sphere(1.0, 3).expect("a ball"),

@@ -1,12 +1,11 @@
 //! Operands that touch, are flush, or coincide: the answers of regularised set operations, with minimal results.
 
-mod common;
-
-use common::{assert_sound, run, solid};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use trisect::Operation::{Difference, Intersection, Union};
 use trisect::{BooleanOptions, Contact, Mesh, Operation, Solid, primitives};
+
+use crate::common::{self, assert_sound, run, same_bits, solid};
 
 /// What a result must be: volume, vertices, triangles.
 #[derive(Clone, Copy)]
@@ -89,6 +88,7 @@ fn arranged(mesh: &Mesh, order: [usize; 3], scale: f64) -> Solid {
 
 #[test]
 fn the_contact_table_in_every_axis_order_and_at_three_scales() {
+    let _bits = same_bits::group("contact table");
     let orders = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [1, 0, 2], [2, 1, 0]];
     for scale in [1.0, 2f64.powi(-40), 3.0 * 2f64.powi(50)] {
         for order in orders {
@@ -123,6 +123,7 @@ fn the_contact_table_in_every_axis_order_and_at_three_scales() {
 
 #[test]
 fn contacts_after_a_shared_rotation_stay_closed_and_right() {
+    let _bits = same_bits::group("contact table turned");
     // The planes are then only nearly equal.
     for (axis, degrees) in [([1.0, 2.0, 3.0], 37.0), ([0.3, -1.0, 0.2], 123.4), ([0.0, 0.0, 1.0], 45.0)] {
         let turned = |low, high| {
@@ -151,14 +152,16 @@ fn contacts_after_a_shared_rotation_stay_closed_and_right() {
 
 #[test]
 fn separate_contacts_keep_both_bodies() {
+    let _bits = same_bits::group("contacts kept apart");
     let (a, b) = (common::cube([0.0; 3], 1.0), common::cube([1.0, 0.0, 0.0], 1.0));
-    let outcome = BooleanOptions::new().contact(Contact::Separate).run(Union, [&a, &b]).expect("no limits");
+    let outcome = same_bits::run_with(&BooleanOptions::new().contact(Contact::Separate), Union, &[&a, &b]);
     assert_sound(&outcome, "separate");
     assert_eq!((outcome.certificate().components, outcome.solid().volume()), (2, 2.0));
 }
 
 #[test]
 fn twenty_seven_cubes_in_any_order_become_one_box() {
+    let _bits = same_bits::group("contacts of 27 cubes");
     use rand::seq::SliceRandom;
     use rand::{SeedableRng, rngs::ChaCha8Rng};
     let mut rng = ChaCha8Rng::seed_from_u64(27);
@@ -185,6 +188,7 @@ fn twenty_seven_cubes_in_any_order_become_one_box() {
 
 #[test]
 fn menger_sponges() {
+    let _bits = same_bits::group("contacts of sponges");
     for depth in 1..=3u32 {
         let sponge = run(Difference, &menger(depth).iter().collect::<Vec<_>>());
         assert_sound(&sponge, &format!("depth {depth}"));
@@ -268,6 +272,7 @@ fn menger_genus(depth: u32) -> usize {
 /// Where a body counts twice its surface does, and what was made of it is cut again.
 #[test]
 fn results_that_count_twice_are_operands_like_others() -> Result<(), trisect::Error> {
+    let _bits = same_bits::group("contacts of results that count twice");
     let cube = |low: f64, high: f64| primitives::cuboid([low; 3], [high; 3]);
     let inner = Solid::try_from(cube(0.0, 1.0)?)?;
     let mut both = cube(-1.0, 2.0)?;
@@ -276,9 +281,8 @@ fn results_that_count_twice_are_operands_like_others() -> Result<(), trisect::Er
     // Its faces cut the diagonals of the inner cube's faces in general position.
     let ball = primitives::geodesic_sphere(0.7, 4)?.rotated([1.0, 2.0, 3.0], 20.0)?;
     let ball = Solid::try_from(ball.translated([0.51, 0.47, 0.62]))?;
-    let options = BooleanOptions::new();
-    let once = options.run(Intersection, [&inner, &ball])?;
-    let found = options.run(Intersection, [&inner, &twice, &ball])?;
+    let once = run(Intersection, &[&inner, &ball]);
+    let found = run(Intersection, &[&inner, &twice, &ball]);
     let mesh = found.solid().mesh();
     assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()));
     assert!(found.certificate().closed, "{}", found.certificate());
@@ -321,6 +325,7 @@ fn an_edge_with_many_triangles_some_of_them_flat_is_parted() {
 /// fans of needles instead of strips the next operation would meet all of them at every place.
 #[test]
 fn a_wall_beside_which_many_end_is_a_strip() -> Result<(), trisect::Error> {
+    let _bits = same_bits::group("contacts of a wall");
     const UPRIGHT: u32 = 20;
     let length = f64::from(2 * UPRIGHT + 1);
     let bar = Solid::try_from(primitives::cuboid([0.0, 0.0, 0.0], [1.0, length, 1.0])?)?;
