@@ -46,10 +46,10 @@
 //!
 //! | Feature | Default | Adds | Crates (30 without any) |
 //! |---|---|---|---|
-//! | `cli` | yes | the program; brings `field`, `formats`, `model`, `render`, `serde` | 44 |
+//! | `cli` | yes | the program; brings `field`, `formats`, `model`, `render`, `serde` | 51 |
 //! | `field` | yes | the module `field`: signed distances, formulas, R-functions, and their surfaces as meshes | 1 |
-//! | `formats` | yes | the module `io`, `Mesh::load` and `Mesh::save`: OBJ, glTF, STL, PLY, OFF | 9 |
-//! | `model` | yes | the module `model`: trees of operations in JSON; brings `field` and `formats` | 10 |
+//! | `formats` | yes | the module `io`, `Mesh::load` and `Mesh::save`: OBJ, glTF, STL, PLY, OFF | 16 |
+//! | `model` | yes | the module `model`: trees of operations in JSON; brings `field` and `formats` | 17 |
 //! | `parallel` | yes | loops on rayon's current pool | 6 |
 //! | `parametric` | yes | the module `parametric`: curves, regions, patches, solids of them | 31 |
 //! | `render` | with `cli` | the module `render`: pictures of meshes as PNG | 9 |
