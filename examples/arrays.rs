@@ -34,7 +34,7 @@ fn main() -> Result<(), Error> {
 
 /// A solid of two arrays.
 fn solid((positions, triangles): Arrays) -> Result<Solid, Error> {
-    Solid::try_from(Mesh::new(positions, triangles))
+    Ok(Solid::try_from(Mesh::new(positions, triangles))?)
 }
 
 /// The arrays of a solid; nothing is copied.

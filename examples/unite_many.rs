@@ -6,7 +6,7 @@
 
 use std::time::{Duration, Instant};
 
-use trisect::{BooleanOptions, CancelToken, Control, Error, Operation, Solid, primitives};
+use trisect::{BooleanOptions, CancelToken, Control, Error, Limit, MeshError, Operation, Solid, primitives};
 
 fn main() -> Result<(), Error> {
     let side: u32 = match std::env::args().nth(1) {
@@ -17,7 +17,7 @@ fn main() -> Result<(), Error> {
     let at = |i: u32| [i % side, i / side % side, i / side / side].map(f64::from);
     let spheres: Vec<Solid> = (0..side.pow(3))
         .map(|i| Solid::try_from(sphere.clone().translated(at(i))))
-        .collect::<Result<_, Error>>()?;
+        .collect::<Result<_, MeshError>>()?;
 
     // Another thread, a signal handler or a button may hold a clone of the token and call `cancel`.
     let token = CancelToken::new();
@@ -29,14 +29,14 @@ fn main() -> Result<(), Error> {
 
     match BooleanOptions::new().control(control.clone()).run(Operation::Union, &spheres) {
         Ok(united) => println!("{} spheres: {}", spheres.len(), united.certificate()),
-        Err(Error::DeadlineExceeded) => println!("no time left"),
+        Err(Error::Limit(Limit::DeadlineExceeded)) => println!("no time left"),
         Err(other) => return Err(other),
     }
 
     // A cancelled operation stops within milliseconds, with an error of its own; nothing is left behind.
     token.cancel();
     match BooleanOptions::new().control(control).run(Operation::Union, &spheres) {
-        Err(Error::Cancelled) => println!("cancelled"),
+        Err(Error::Limit(Limit::Cancelled)) => println!("cancelled"),
         other => println!("not cancelled: {other:?}"),
     }
     Ok(())

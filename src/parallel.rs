@@ -13,9 +13,9 @@ use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::{AtomicUsize, Ordering};
 #[cfg(feature = "parallel")]
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::{Control, Error};
+use crate::control::{Control, Limit};
 
 /// How loops run: on how many threads, and under which limits.
 #[derive(Clone, Copy, Debug)]
@@ -66,18 +66,18 @@ impl<'a> Runner<'a> {
         count: usize,
         grain: usize,
         piece: impl Fn(Range<usize>) -> T + Sync,
-    ) -> Result<Vec<T>, Error> {
+    ) -> Result<Vec<T>, Limit> {
         self.each(cut(count, grain), piece)
     }
 
     /// The same for work that may fail. After every piece the fraction that is done is reported as that of `stage`.
-    pub(crate) fn staged_pieces<T: Send>(
+    pub(crate) fn staged_pieces<T: Send, E: From<Limit> + Send>(
         self,
         count: usize,
         grain: usize,
         stage: &str,
-        piece: impl Fn(Range<usize>) -> Result<T, Error> + Sync,
-    ) -> Result<Vec<T>, Error> {
+        piece: impl Fn(Range<usize>) -> Result<T, E> + Sync,
+    ) -> Result<Vec<T>, E> {
         let pieces = cut(count, grain);
         let (total, done) = (pieces.len(), AtomicUsize::new(0));
         self.try_each(pieces, |range| {
@@ -96,7 +96,7 @@ impl<'a> Runner<'a> {
         grain: usize,
         room: usize,
         fill: impl Fn(Range<usize>, &mut Vec<T>) + Sync,
-    ) -> Result<Vec<T>, Error> {
+    ) -> Result<Vec<T>, Limit> {
         if self.is_parallel() {
             let pieces = self.pieces(count, grain, |range| {
                 let mut piece = Vec::new();
@@ -118,17 +118,17 @@ impl<'a> Runner<'a> {
         self,
         items: Vec<T>,
         work: impl Fn(T) -> R + Sync,
-    ) -> Result<Vec<R>, Error> {
+    ) -> Result<Vec<R>, Limit> {
         self.try_each(items, |item| Ok(work(item)))
     }
 
     /// The same for work that may fail.
-    fn try_each<T: Send, R: Send>(
+    fn try_each<T: Send, R: Send, E: From<Limit> + Send>(
         self,
         items: Vec<T>,
-        work: impl Fn(T) -> Result<R, Error> + Sync,
-    ) -> Result<Vec<R>, Error> {
-        let run = |item: T| {
+        work: impl Fn(T) -> Result<R, E> + Sync,
+    ) -> Result<Vec<R>, E> {
+        let run = |item: T| -> Result<R, E> {
             self.control.check()?;
             work(item)
         };
@@ -142,7 +142,7 @@ impl<'a> Runner<'a> {
         items: &mut [T],
         grain: usize,
         fill: impl Fn(usize, &mut [T]) + Sync,
-    ) -> Result<(), Error> {
+    ) -> Result<(), Limit> {
         let grain = grain.max(1);
         let pieces = items.chunks_mut(grain).enumerate().map(|(i, piece)| (i * grain, piece)).collect();
         self.each(pieces, |(first, piece)| fill(first, piece)).map(drop)
@@ -152,7 +152,7 @@ impl<'a> Runner<'a> {
     pub(crate) fn concat<T: Copy + Default + Send + Sync>(
         self,
         mut lists: Vec<Vec<T>>,
-    ) -> Result<Vec<T>, Error> {
+    ) -> Result<Vec<T>, Limit> {
         if lists.len() < 2 {
             return Ok(lists.pop().unwrap_or_default());
         }
@@ -184,6 +184,43 @@ impl<'a> Runner<'a> {
     ) -> (A, B) {
         if self.is_parallel() { join(usize::MAX, first, second) } else { (first(), second()) }
     }
+}
+
+/// How many pools are kept, of different sizes. Programs use one or two; the tests three.
+#[cfg(feature = "parallel")]
+const POOLS: usize = 4;
+
+/// Pools made so far, the last used at the end. Their threads sleep while nobody uses them.
+#[cfg(feature = "parallel")]
+static KEPT_POOLS: Mutex<Vec<Arc<rayon::ThreadPool>>> = Mutex::new(Vec::new());
+
+/// Runs `work` in a pool of `threads` threads, [`most_threads`](crate::control::most_threads) at most. Pools are kept
+/// for the next call, and callers at the same time share one.
+///
+/// # Errors
+/// What the system says if it makes no further threads.
+#[cfg(feature = "parallel")]
+pub(crate) fn run_in_pool<R: Send>(
+    threads: usize,
+    work: impl FnOnce() -> R + Send,
+) -> Result<R, rayon::ThreadPoolBuildError> {
+    let threads = threads.clamp(1, crate::control::most_threads());
+    Ok(pool(threads)?.install(work))
+}
+
+#[cfg(feature = "parallel")]
+fn pool(threads: usize) -> Result<Arc<rayon::ThreadPool>, rayon::ThreadPoolBuildError> {
+    let mut kept = KEPT_POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let pool = match kept.iter().position(|pool| pool.current_num_threads() == threads) {
+        Some(place) => kept.remove(place),
+        None => Arc::new(rayon::ThreadPoolBuilder::new().num_threads(threads).build()?),
+    };
+    if kept.len() == POOLS {
+        // Its threads end when the last who uses it is done.
+        drop(kept.remove(0));
+    }
+    kept.push(Arc::clone(&pool));
+    Ok(pool)
 }
 
 /// Units of work (triangles, say) below which waking another thread costs more than it saves.
@@ -360,6 +397,20 @@ mod tests {
             assert!(all(&built, |&item| item < count as u64));
             assert!(count == 0 || !all(&built, |&item| item != count as u64 / 2));
         }
+    }
+
+    #[test]
+    #[cfg(feature = "parallel")]
+    fn pools_have_the_threads_asked_for_and_are_kept() {
+        for _ in 0..2 {
+            for threads in [8, 2, 3, 5, 7] {
+                assert_eq!(run_in_pool(threads, rayon::current_num_threads).unwrap(), threads);
+            }
+        }
+        let most = crate::control::most_threads();
+        assert!(most >= 16);
+        assert_eq!(run_in_pool(100_000, rayon::current_num_threads).unwrap(), most);
+        assert!(KEPT_POOLS.lock().unwrap().len() <= POOLS);
     }
 
     #[test]

@@ -175,7 +175,7 @@ fn wires(outcome: &Outcome, radius: f64, dots: f64) -> Result<Scene, Error> {
 }
 
 fn boxed(low: Point, high: Point) -> Result<Solid, Error> {
-    Solid::try_from(primitives::cuboid(low, high)?)
+    Ok(Solid::try_from(primitives::cuboid(low, high)?)?)
 }
 
 /// Step 5: what the perturbation kept apart, and the limit.
@@ -210,7 +210,7 @@ pub(crate) fn cut() -> Result<Picture, Error> {
         primitives::cylinder(0.5, 3.0, 6)?.translated([3.1, 1.0, -1.0]),
         primitives::geodesic_sphere(1.1, 6)?.translated([5.6, 0.4, 1.2]),
     ];
-    let tools: Vec<Solid> = tools.into_iter().map(Solid::try_from).collect::<Result<_, Error>>()?;
+    let tools: Vec<Solid> = tools.into_iter().map(Solid::try_from).collect::<Result<_, _>>()?;
     let operands = std::iter::once(&plate).chain(&tools);
     let outcome = BooleanOptions::new().remove_vertices(false).run(Operation::Difference, operands)?;
     let mesh = outcome.solid().mesh();

@@ -25,9 +25,8 @@ pub(crate) fn table() -> Result<Picture, Error> {
     ];
     let mut all = Picture::new(4 * WIDTH, contacts.len() as u32 * HEIGHT, [255; 3]);
     for (row, &b) in contacts.iter().enumerate() {
-        let solids = [a, b].map(|(low, high)| primitives::cuboid(low, high).and_then(Solid::try_from));
-        let [solid_a, solid_b] = solids;
-        let (solid_a, solid_b) = (solid_a?, solid_b?);
+        let [solid_a, solid_b] = [a, b].map(|(low, high)| primitives::cuboid(low, high));
+        let (solid_a, solid_b) = (Solid::try_from(solid_a?)?, Solid::try_from(solid_b?)?);
         let mut view = view(WIDTH, HEIGHT, [1.0, -1.6, 1.1]);
         view.frame = Some([[0.0; 3], [0, 1, 2].map(|k| b.1[k].max(4.0))]);
         let top = i64::from(HEIGHT) * row as i64;

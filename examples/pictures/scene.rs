@@ -140,5 +140,5 @@ fn rod(from: Point, to: Point, radii: [f64; 2]) -> Result<Mesh, Error> {
         (matrix[4 * k + 2], matrix[4 * k + 3]) = (along[k], from[k]);
     }
     matrix[15] = 1.0;
-    rod.transformed(&matrix)
+    Ok(rod.transformed(&matrix)?)
 }

@@ -32,7 +32,7 @@ pub(crate) struct Common {
     /// Exit with code 5 if there were warnings (outputs are still written)
     #[arg(long, global = true, help_heading = "Reports")]
     pub(crate) strict: bool,
-    /// Use this many threads [default: all processors]
+    /// Use this many threads, or as many as the machine can use [default: all processors]
     #[arg(
         long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024),
         help_heading = "Limits", allow_hyphen_values = true

@@ -2,13 +2,13 @@
 
 use clap::ArgMatches;
 use serde_json::{Value, json};
-use trisect::Error;
 use trisect::mesh::Diagnosis;
+use trisect::{Error, MeshError};
 
 use super::arguments::Check;
 use super::fault::{self, Exit, Fault};
 use super::operands::{self, Input, Usable};
-use super::report::{self, Measures, into_map};
+use super::report::{self, Measures, into_map, json_of};
 use super::requests::{self, Request};
 use super::session::Session;
 use super::stream;
@@ -62,14 +62,14 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     let mut object = Measures::of_mesh(&mesh).to_json();
     object.insert("format".into(), format.extension().into());
     object.insert("warnings".into(), json!(warnings));
-    object.insert("diagnosis".into(), diagnosis.to_json());
+    object.insert("diagnosis".into(), json_of(&diagnosis));
     let Usable { solid, turned, welded, crossings } =
         match operands::usable(mesh, arguments.inputs.using, &control) {
             Ok(usable) => usable,
             Err(error) => {
-                if let Error::SelfCrossing(found) = &error {
+                if let Error::Mesh(MeshError::SelfCrossing(found)) = &error {
                     diagnosis.self_crossings = Some((&**found).into());
-                    object.insert("diagnosis".into(), diagnosis.to_json());
+                    object.insert("diagnosis".into(), json_of(&diagnosis));
                 }
                 let mut verdict = refused(&name, error, Some(&diagnosis))?;
                 object.extend(into_map(verdict.object));
@@ -101,7 +101,7 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     }
     text.push_str(&cleaning.map(|cleaning| format!("  {cleaning}\n")).unwrap_or_default());
     if diagnosis.to_string() != Diagnosis::default().to_string() {
-        text.push_str(&indented(&format!("{diagnosis:#}")));
+        text.push_str(&indented(&listed(&diagnosis)));
     }
     Ok(Verdict { exit: Exit::Fine, text, object: object.into(), warnings })
 }
@@ -115,11 +115,13 @@ fn refused(name: &str, error: Error, diagnosis: Option<&Diagnosis>) -> Result<Ve
     let answer = if exit == Exit::Unreadable { "unreadable" } else { "not usable" };
     // The places are listed below, so the first line does without them.
     let (reason, diagnosis) = match &error {
-        Error::NotClosed(found) => ("the mesh is not a closed surface".into(), Some(&**found)),
-        Error::SelfCrossing(_) => {
+        Error::Mesh(MeshError::NotClosed(found)) => {
+            ("the mesh is not a closed surface".into(), Some(&**found))
+        }
+        Error::Mesh(MeshError::SelfCrossing(_)) => {
             ("the surface crosses itself; unite its parts one by one, or repair it".into(), diagnosis)
         }
-        Error::InsideOutShells(found) => {
+        Error::Mesh(MeshError::InsideOutShells(found)) => {
             let shells = match found.count {
                 1 => "one of its shells faces".to_owned(),
                 count => format!("{count} of its shells face"),
@@ -128,12 +130,17 @@ fn refused(name: &str, error: Error, diagnosis: Option<&Diagnosis>) -> Result<Ve
                           it), or unite bodies that lie inside others one by one";
             (format!("{shells} {reason}"), diagnosis)
         }
-        other => (fault::one_line(&other.to_string()), diagnosis),
+        other => (fault::text_of(other), diagnosis),
     };
     let mut text = format!("{name}: {answer}: {reason}\n");
-    text.push_str(&diagnosis.map(|found| indented(&format!("{found:#}"))).unwrap_or_default());
+    text.push_str(&diagnosis.map(|found| indented(&listed(found))).unwrap_or_default());
     let object = json!({ "file": name, "usable": false, "error": Fault::from(error).to_json() });
     Ok(Verdict { exit, text, object, warnings: Vec::new() })
+}
+
+/// A line for each kind of fault, and which option mends them.
+fn listed(diagnosis: &Diagnosis) -> String {
+    format!("{diagnosis:#}{}", fault::option_for(diagnosis))
 }
 
 fn indented(text: &str) -> String {

@@ -51,7 +51,7 @@ pub(crate) fn run(
 
     let measures = Measures::of_solid(outcome.solid());
     let mut result = measures.to_json();
-    result.insert("certificate".into(), outcome.certificate().to_json());
+    result.insert("certificate".into(), report::certificate(outcome.certificate()));
     session.note("result", result);
     let format = operands.first().map(|operand| operand.format);
     write(arguments, &targets, &outcome, format, session)?;

@@ -55,7 +55,11 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     }
     // Contours alone need no mesh.
     let found = if wanted || drawn.is_empty() { Some(evaluation.run(&model)?) } else { None };
-    let solid = found.as_ref().map(|found| Solid::try_from(found.mesh.clone())).transpose()?;
+    let solid = found
+        .as_ref()
+        .map(|found| Solid::try_from(found.mesh.clone()))
+        .transpose()
+        .map_err(trisect::Error::from)?;
     let seconds = session.took("run", start);
     if let (Some(found), Some(solid)) = (&found, &solid) {
         parts.push(note_result(found, solid, session));
@@ -120,7 +124,7 @@ fn note_result(found: &Evaluated, solid: &Solid, session: &mut Session<'_>) -> S
 fn dry_run(model: &Model, name: &str, session: &mut Session<'_>) -> Result<Exit, Fault> {
     for file in model.files() {
         std::fs::metadata(&file).map_err(|source| trisect::Error::File {
-            action: "read",
+            action: trisect::FileAction::Read,
             path: file.clone(),
             source,
         })?;

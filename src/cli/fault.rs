@@ -3,7 +3,11 @@
 use std::io;
 
 use serde_json::{Map, Value, json};
-use trisect::{Error, Failure};
+use trisect::io::FormatError;
+use trisect::mesh::Diagnosis;
+use trisect::{Error, Failure, FileAction, MeshError};
+
+use super::report::json_of;
 
 /// The version of the JSON objects' layout. It rises when a key changes its meaning or goes; new keys may come
 /// without.
@@ -64,6 +68,11 @@ impl Fault {
         Self { exit: Exit::Usage, message: message.into(), error: None }
     }
 
+    /// Inputs that cannot be used as asked.
+    pub(crate) fn unusable(message: impl Into<String>) -> Self {
+        Self { exit: Exit::Unusable, message: message.into(), error: None }
+    }
+
     /// A fault of the program itself.
     pub(crate) fn internal(message: impl Into<String>) -> Self {
         Self { exit: Exit::Internal, message: message.into(), error: None }
@@ -71,7 +80,7 @@ impl Fault {
 
     /// An output that cannot be written.
     pub(crate) fn output(path: impl Into<std::path::PathBuf>, source: io::Error) -> Self {
-        Error::File { action: "write", path: path.into(), source }.into()
+        Error::File { action: FileAction::Write, path: path.into(), source }.into()
     }
 
     /// This fault, said to have come while `what` was done.
@@ -82,7 +91,7 @@ impl Fault {
 
     /// Whether the reader of our standard output went away, which is no failure.
     pub(crate) fn is_broken_pipe(&self) -> bool {
-        matches!(self.error.as_deref(), Some(Error::File { action: "write", source, .. })
+        matches!(self.error.as_deref(), Some(Error::File { action: FileAction::Write, source, .. })
             if source.kind() == io::ErrorKind::BrokenPipe)
     }
 
@@ -104,18 +113,18 @@ impl Fault {
                     object.insert("node".into(), node.as_str().into());
                     error = Some(source);
                 }
-                Error::Malformed { format, place, .. } => {
+                Error::Format(FormatError::Malformed { format, place, .. }) => {
                     object.insert("format".into(), format.to_string().to_lowercase().into());
                     object.insert("place".into(), place.as_str().into());
                 }
-                Error::NotClosed(diagnosis) => {
-                    object.insert("diagnosis".into(), diagnosis.to_json());
+                Error::Mesh(MeshError::NotClosed(diagnosis)) => {
+                    object.insert("diagnosis".into(), json_of(diagnosis));
                 }
-                Error::InsideOutShells(shells) => {
-                    object.insert("inside_out_shells".into(), shells.to_json());
+                Error::Mesh(MeshError::InsideOutShells(shells)) => {
+                    object.insert("inside_out_shells".into(), json_of(shells));
                 }
-                Error::SelfCrossing(crossings) => {
-                    object.insert("self_crossings".into(), crossings.to_json());
+                Error::Mesh(MeshError::SelfCrossing(crossings)) => {
+                    object.insert("self_crossings".into(), json_of(crossings));
                 }
                 _ => {}
             }
@@ -131,7 +140,34 @@ impl Fault {
 
 impl From<Error> for Fault {
     fn from(error: Error) -> Self {
-        Self { exit: exit_of(&error), message: one_line(&error.to_string()), error: Some(Box::new(error)) }
+        Self { exit: exit_of(&error), message: text_of(&error), error: Some(Box::new(error)) }
+    }
+}
+
+/// What is printed of a library error: its text in one line, and which option of the program does what it advises.
+pub(crate) fn text_of(error: &Error) -> String {
+    let mut cause = error;
+    while let Error::Operand { source, .. } | Error::InNode { source, .. } = cause {
+        cause = source;
+    }
+    let option = match cause {
+        Error::Mesh(MeshError::NotClosed(diagnosis)) => option_for(diagnosis),
+        Error::Mesh(MeshError::InsideOut { .. }) => " (--orient does it)".into(),
+        Error::Mesh(MeshError::InsideOutShells(_)) => " (--orient turns them)".into(),
+        _ => String::new(),
+    };
+    one_line(&error.to_string()) + &option
+}
+
+/// Which option does what a diagnosis advises at its end.
+pub(crate) fn option_for(diagnosis: &Diagnosis) -> String {
+    let turned = !diagnosis.misoriented_edges.is_none();
+    match diagnosis.closing_distance {
+        Some(distance) => format!(" (--weld {distance:e})"),
+        None if turned && diagnosis.open_edges.is_none() && diagnosis.unbalanced_edges.is_none() => {
+            " (--orient turns them)".into()
+        }
+        None => String::new(),
     }
 }
 
@@ -157,11 +193,11 @@ mod tests {
 
     #[test]
     fn faults_tell_the_operand_and_the_place() {
-        let inner = Error::Malformed {
+        let inner = Error::from(FormatError::Malformed {
             format: trisect::io::Format::Obj,
             place: "line 12".into(),
             what: "a face has two corners".into(),
-        };
+        });
         let fault = Fault::from(inner.of_operand(1, "tool.obj"));
         assert_eq!(fault.exit, Exit::Unreadable);
         assert_eq!(fault.message, "operand 2 (tool.obj): damaged OBJ file, line 12: a face has two corners");

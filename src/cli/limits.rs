@@ -47,7 +47,7 @@ impl Limits {
             cancel.cancel();
             let again = handler.interrupts.fetch_add(1, Ordering::SeqCst) > 0;
             if again || handler.waiting.load(Ordering::SeqCst) > 0 {
-                handler.end(Error::Cancelled);
+                handler.end(Error::Limit(trisect::Limit::Cancelled));
             }
         })
         .map_err(|error| Fault::internal(format!("cannot listen for signals: {error}")))?;
@@ -60,7 +60,7 @@ impl Limits {
                 if watched.waiting.load(Ordering::SeqCst) == 0 {
                     thread::sleep(GRACE);
                 }
-                watched.end(Error::DeadlineExceeded);
+                watched.end(Error::Limit(trisect::Limit::DeadlineExceeded));
             });
         }
         Ok(Self { token, deadline, memory: common.memory, shared })
@@ -83,7 +83,7 @@ impl Limits {
         self.shared.waiting.fetch_add(1, Ordering::SeqCst);
         // A signal that came just before would otherwise be noticed only after the read.
         if self.token.is_cancelled() {
-            self.shared.end(Error::Cancelled);
+            self.shared.end(Error::Limit(trisect::Limit::Cancelled));
         }
         let result = read();
         self.shared.waiting.fetch_sub(1, Ordering::SeqCst);

@@ -128,7 +128,7 @@ fn set_threads(threads: Option<u16>) -> Result<(), Fault> {
     match threads {
         None => Ok(()),
         Some(threads) => rayon::ThreadPoolBuilder::new()
-            .num_threads(usize::from(threads))
+            .num_threads(usize::from(threads).min(trisect::control::most_threads()))
             .build_global()
             .map_err(|error| Fault::internal(format!("cannot start {threads} threads: {error}"))),
     }

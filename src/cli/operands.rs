@@ -9,11 +9,12 @@ use rayon::prelude::*;
 use serde_json::Value;
 use trisect::control::Reservation;
 use trisect::io::Format;
-use trisect::{Control, Error, Mesh, Solid};
+use trisect::{Control, Error, Mesh, MeshError, Solid};
 
 use super::argument_groups::Using;
 use super::limits::Limits;
 use super::progress::Console;
+use super::report::json_of;
 use super::requests::Request;
 use trisect::io;
 
@@ -87,7 +88,11 @@ fn name_option(error: Error) -> Error {
 fn file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Error> {
     let endless = std::fs::metadata(path).is_ok_and(|file| !file.is_file());
     let bytes = if endless { limits.while_waiting(|| std::fs::read(path)) } else { std::fs::read(path) };
-    bytes.map_err(|source| Error::File { action: "read", path: path.to_path_buf(), source })
+    bytes.map_err(|source| Error::File {
+        action: trisect::FileAction::Read,
+        path: path.to_path_buf(),
+        source,
+    })
 }
 
 /// A text file, or standard input.
@@ -95,7 +100,7 @@ pub(crate) fn text(path: &Path, limits: &Limits) -> Result<String, Error> {
     let standard = path == Path::new(super::requests::STANDARD);
     let bytes = if standard { limits.while_waiting(standard_input)? } else { file(path, limits)? };
     String::from_utf8(bytes).map_err(|_| Error::File {
-        action: "read",
+        action: trisect::FileAction::Read,
         path: if standard { "standard input".into() } else { path.to_path_buf() },
         source: std::io::Error::new(std::io::ErrorKind::InvalidData, "it is not text (UTF-8)"),
     })
@@ -105,7 +110,9 @@ fn standard_input() -> Result<Vec<u8>, Error> {
     let mut bytes = Vec::new();
     match std::io::stdin().lock().read_to_end(&mut bytes) {
         Ok(_) => Ok(bytes),
-        Err(source) => Err(Error::File { action: "read", path: "standard input".into(), source }),
+        Err(source) => {
+            Err(Error::File { action: trisect::FileAction::Read, path: "standard input".into(), source })
+        }
     }
 }
 
@@ -142,7 +149,7 @@ pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usab
                 place.triangles = place.triangles.map(|triangle| solid.source_triangle(triangle));
             }
             if !found.is_clean() {
-                return Err(Error::SelfCrossing(Box::new(found)));
+                return Err(MeshError::SelfCrossing(Box::new(found)).into());
             }
             let mut misplaced = solid.inside_out_shells();
             for place in &mut misplaced.places {
@@ -153,9 +160,9 @@ pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usab
                 place.vertices.clear();
             }
             if !misplaced.is_none() {
-                return Err(Error::InsideOutShells(Box::new(misplaced)));
+                return Err(MeshError::InsideOutShells(Box::new(misplaced)).into());
             }
-            Some(Crossings { tolerated: found.tolerated, object: found.to_json() })
+            Some(Crossings { tolerated: found.tolerated, object: json_of(&found) })
         }
     };
     Ok(Usable { solid, turned, welded, crossings })

@@ -244,7 +244,7 @@ fn failed(target: &Target, error: Error) -> Fault {
 }
 
 fn file_error(path: &Path, source: std::io::Error) -> Error {
-    Error::File { action: "write", path: path.to_path_buf(), source }
+    Error::File { action: trisect::FileAction::Write, path: path.to_path_buf(), source }
 }
 
 /// How the picture of something that was read as `format` is taken.

@@ -1,7 +1,8 @@
 //! What a run says about meshes: one summary line for people, one JSON object for programs.
 
+use serde::Serialize;
 use serde_json::{Map, Value, json};
-use trisect::{Mesh, Solid};
+use trisect::{Certificate, Mesh, OperandState, Solid};
 
 use super::operands::Operand;
 use trisect::mesh::Bounds;
@@ -174,6 +175,24 @@ pub(crate) fn welded(vertices: usize) -> String {
         1 => ", 1 vertex welded".into(),
         several => format!(", {several} vertices welded"),
     }
+}
+
+/// What the library has to say of something, as JSON; numbers that are not finite are null.
+pub(crate) fn json_of(value: &impl Serialize) -> Value {
+    // Nothing of the library fails to serialize: it has no maps with strange keys.
+    serde_json::to_value(value).unwrap_or_default()
+}
+
+/// The certificate of a result as JSON.
+pub(crate) fn certificate(certificate: &Certificate) -> Value {
+    let operands = certificate.operands.iter().map(|state| match state {
+        OperandState::Clean { tolerated } => json!({ "self_crossings": 0, "tolerated": tolerated }),
+        OperandState::Crossing { count } => json!({ "self_crossings": count }),
+        _ => json!({ "self_crossings": null }),
+    });
+    let mut object = into_map(json_of(certificate));
+    object.insert("operands".into(), operands.collect());
+    object.into()
 }
 
 /// The keys of a JSON object.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
 use trisect::io::Format;
-use trisect::{Error, Mesh};
+use trisect::{Mesh, MeshError};
 
 use super::fault::Fault;
 
@@ -25,7 +25,7 @@ pub(crate) enum Transform {
 
 impl Transform {
     /// The mesh, moved.
-    pub(crate) fn apply(&self, mesh: Mesh) -> Result<Mesh, Error> {
+    pub(crate) fn apply(&self, mesh: Mesh) -> Result<Mesh, MeshError> {
         match self {
             Self::Translate(by) => Ok(mesh.translated(*by)),
             Self::Rotate([x, y, z]) => {

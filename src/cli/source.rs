@@ -66,7 +66,7 @@ pub(crate) fn field(
         (None, None) => {
             let found = expression.positive_bounds(None, control)?;
             widened(found.ok_or_else(|| {
-                trisect::Error::Field(format!("{name} is positive nowhere: say by --bounds where to look"))
+                Fault::unusable(format!("{name} is positive nowhere: say by --bounds where to look"))
             })?)
         }
     };

@@ -52,8 +52,11 @@ impl<'a> Stage<'a> {
     /// Puts everything in the folder in place; the output itself last, after what it refers to. Returns the bytes
     /// written.
     fn commit(&self) -> Result<u64, Error> {
-        let failed =
-            |path: &Path, source| Error::File { action: "replace", path: path.to_path_buf(), source };
+        let failed = |path: &Path, source| Error::File {
+            action: trisect::FileAction::Replace,
+            path: path.to_path_buf(),
+            source,
+        };
         let entries = fs::read_dir(&self.folder).map_err(|error| failed(&self.place, error))?;
         let mut names: Vec<_> = entries.flatten().map(|entry| entry.file_name()).collect();
         names.sort_by_key(|name| (Some(name.as_os_str()) == self.place.file_name(), name.clone()));

@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::Expression;
 use super::expression::Scratch;
+use super::{Expression, FieldError};
 use crate::{Control, Error};
 
 /// Half the side of the cube searched, in units of length: 2^20, so that halvings are exact.
@@ -73,11 +73,7 @@ impl Expression {
             }
             let unbounded = (0..axes).find(|&axis| low[axis] <= -REGION || high[axis] >= REGION);
             if let Some(axis) = unbounded {
-                let name = ["x", "y", "z"][axis];
-                return Err(Error::Field(format!(
-                    "cannot tell where the solid ends along {name}: it may be unbounded; give it bounds, or cut it \
-                     off with another shape"
-                )));
+                return Err(FieldError::Unbounded { axis: ['x', 'y', 'z'][axis] }.into());
             }
         }
         // A little room, so that surfaces are inside.

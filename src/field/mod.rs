@@ -11,6 +11,7 @@ mod bounds;
 mod contour_distance;
 mod distance;
 mod dual;
+mod error;
 mod expression;
 mod extract;
 mod extrude;
@@ -28,6 +29,7 @@ mod work;
 
 pub use contour_distance::{ContourDistance, Contours};
 pub use distance::{SignRule, SignedDistance, SignedDistanceAt};
+pub use error::FieldError;
 pub use expression::{Expression, Graph, Leaf, NodeId};
 pub use extract::{ContourExtraction, Extracted, Extraction};
 pub use extrude::extrude;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::scan::Scanner;
-use super::{Format, malformed};
+use super::{Format, FormatError, malformed};
 use crate::Error;
 
 /// The format of a file, and a warning if its name says otherwise.
@@ -21,7 +21,7 @@ impl Format {
     /// over the name.
     ///
     /// # Errors
-    /// [`Error::UnknownFormat`] if neither tells; [`Error::Malformed`] if the content is of a kind that is not read
+    /// [`FormatError::Unknown`] if neither tells; [`FormatError::Malformed`] if the content is of a kind that is not read
     /// here, such as an archive.
     pub fn detect(path: Option<&Path>, bytes: &[u8]) -> Result<Detected, Error> {
         let named = path.and_then(Self::from_path);
@@ -35,9 +35,9 @@ impl Format {
             (named, None) => match (named, foreign(bytes)) {
                 (Some(format), None) => Ok(Detected { format, warning: None }),
                 (Some(format), Some(what)) => Err(malformed(format, "byte 0", format!("the file is {what}"))),
-                (None, None) => Err(Error::UnknownFormat { name: display() }),
+                (None, None) => Err(FormatError::Unknown { name: display() }.into()),
                 (None, Some(what)) => {
-                    Err(Error::UnknownFormat { name: format!("{}, which is {what}", display()) })
+                    Err(FormatError::Unknown { name: format!("{}, which is {what}", display()) }.into())
                 }
             },
         }
@@ -149,8 +149,8 @@ mod tests {
     fn the_name_decides_where_content_does_not() {
         assert_eq!(detect("a.obj", b"hello").unwrap().format, Format::Obj);
         assert_eq!(detect("a.off", b"3 1 0\n0 0 0").unwrap().format, Format::Off);
-        assert!(matches!(detect("a.txt", b"hello"), Err(Error::UnknownFormat { .. })));
-        assert!(matches!(Format::detect(None, b""), Err(Error::UnknownFormat { .. })));
+        assert!(matches!(detect("a.txt", b"hello"), Err(Error::Format(FormatError::Unknown { .. }))));
+        assert!(matches!(Format::detect(None, b""), Err(Error::Format(FormatError::Unknown { .. }))));
     }
 
     #[test]

@@ -5,15 +5,15 @@ use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::{Format, Loaded, ReadOptions, WriteOptions, obj, read, write};
-use crate::{Error, Mesh};
+use super::{Format, FormatError, Loaded, ReadOptions, WriteOptions, obj, read, write};
+use crate::{Error, FileAction, Mesh};
 
 impl Mesh {
     /// Reads a mesh file; its content, or where that does not tell its name, decides the format. Warnings of the
     /// reader are dropped: [`io::load`](crate::io::load) returns them.
     ///
     /// # Errors
-    /// [`Error::File`], [`Error::UnknownFormat`], and those of [`io::read`](crate::io::read).
+    /// [`Error::File`], [`FormatError::Unknown`], and those of [`io::read`](crate::io::read).
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
         load(path, &ReadOptions::new()).map(|loaded| loaded.mesh)
     }
@@ -23,7 +23,7 @@ impl Mesh {
     /// [`io::save`](crate::io::save) returns them.
     ///
     /// # Errors
-    /// [`Error::File`], [`Error::UnknownFormat`], and those of [`io::write`](crate::io::write()).
+    /// [`Error::File`], [`FormatError::Unknown`], and those of [`io::write`](crate::io::write()).
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         save(self, path, &WriteOptions::new()).map(|_| ())
     }
@@ -32,10 +32,10 @@ impl Mesh {
 /// Reads a mesh file. Files that it names are looked for in its folder, unless the options name another.
 ///
 /// # Errors
-/// [`Error::File`], [`Error::UnknownFormat`], and those of [`read`].
+/// [`Error::File`], [`FormatError::Unknown`], and those of [`read`].
 pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Error> {
     let path = path.as_ref();
-    let fail = |source| Error::File { action: "read", path: path.to_path_buf(), source };
+    let fail = |source| Error::File { action: FileAction::Read, path: path.to_path_buf(), source };
     let length = fs::metadata(path).map_err(fail)?.len();
     let _reservation = options.control.reserve(length)?;
     let bytes = fs::read(path).map_err(fail)?;
@@ -54,11 +54,11 @@ pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Err
 /// materials, a material library is written beside it.
 ///
 /// # Errors
-/// [`Error::File`], [`Error::UnknownFormat`], and those of [`write()`].
+/// [`Error::File`], [`FormatError::Unknown`], and those of [`write()`].
 pub fn save(mesh: &Mesh, path: impl AsRef<Path>, options: &WriteOptions) -> Result<Vec<String>, Error> {
     let path = path.as_ref();
     let format =
-        Format::from_path(path).ok_or_else(|| Error::UnknownFormat { name: path.display().to_string() })?;
+        Format::from_path(path).ok_or_else(|| FormatError::Unknown { name: path.display().to_string() })?;
     let mut options = options.clone();
     let mut library = None;
     if let (Format::Obj, Some(text)) = (format, obj::library(mesh)) {
@@ -66,7 +66,7 @@ pub fn save(mesh: &Mesh, path: impl AsRef<Path>, options: &WriteOptions) -> Resu
         let beside = beside(path.parent().unwrap_or(Path::new("")), name)
             .map_err(|reason| Error::InvalidArgument(format!("the material library {name:?}: {reason}")))?;
         let mut new = NewFile::create(&beside)?;
-        io::Write::write_all(&mut new.file, &text).map_err(|source| new.error("write", source))?;
+        io::Write::write_all(&mut new.file, &text).map_err(|source| new.error(FileAction::Write, source))?;
         library = Some(new);
     }
     let mut new = NewFile::create(path)?;
@@ -142,19 +142,21 @@ impl NewFile {
         let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
         if let Ok(metadata) = fs::metadata(&target) {
             if metadata.is_dir() {
-                return Err(fail("write", io::ErrorKind::IsADirectory.into()));
+                return Err(fail(FileAction::Write, io::ErrorKind::IsADirectory.into()));
             }
             if !metadata.is_file() {
-                let file =
-                    File::options().write(true).open(&target).map_err(|source| fail("write", source))?;
+                let file = File::options()
+                    .write(true)
+                    .open(&target)
+                    .map_err(|source| fail(FileAction::Write, source))?;
                 return Ok(Self { file, target, temporary: None });
             }
             if metadata.permissions().readonly() {
-                return Err(fail("replace", io::ErrorKind::PermissionDenied.into()));
+                return Err(fail(FileAction::Replace, io::ErrorKind::PermissionDenied.into()));
             }
         }
         let temporary = temporary_name(&target);
-        let file = File::create_new(&temporary).map_err(|source| fail("create", source))?;
+        let file = File::create_new(&temporary).map_err(|source| fail(FileAction::Create, source))?;
         if let Ok(metadata) = fs::metadata(&target) {
             // Best effort: a file with usual permissions is better than none.
             let _ = file.set_permissions(metadata.permissions());
@@ -162,14 +164,14 @@ impl NewFile {
         Ok(Self { file, target, temporary: Some(temporary) })
     }
 
-    fn error(&self, action: &'static str, source: io::Error) -> Error {
+    fn error(&self, action: FileAction, source: io::Error) -> Error {
         Error::File { action, path: self.target.clone(), source }
     }
 
     /// Puts the file in its place.
     fn commit(mut self) -> Result<(), Error> {
         if let Some(temporary) = &self.temporary {
-            fs::rename(temporary, &self.target).map_err(|source| self.error("replace", source))?;
+            fs::rename(temporary, &self.target).map_err(|source| self.error(FileAction::Replace, source))?;
             self.temporary = None;
         }
         Ok(())
@@ -184,7 +186,7 @@ impl NewFile {
             let old = temporary_name(&target);
             fs::hard_link(&target, &old)
                 .or_else(|_| fs::copy(&target, &old).map(|_| ()))
-                .map_err(|source| self.error("replace", source))?;
+                .map_err(|source| self.error(FileAction::Replace, source))?;
             Undo::Restore { target, old }
         } else {
             Undo::Remove { target }

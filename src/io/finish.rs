@@ -2,6 +2,7 @@
 
 use super::notes::Notes;
 use super::{Format, malformed};
+use crate::mesh::{GroupFault, MeshError};
 use crate::{Error, Mesh};
 
 /// The vertices whose coordinates are not all finite; usually none.
@@ -79,28 +80,20 @@ pub(super) fn check_for_writing(mesh: &Mesh) -> Result<(), Error> {
     if largest.into_iter().any(|index| index as usize >= vertices) {
         for (triangle, corners) in mesh.triangles.iter().enumerate() {
             if let Some(&index) = corners.iter().find(|&&index| index as usize >= vertices) {
-                return Err(Error::IndexOutOfRange { triangle, index, vertices });
+                return Err(MeshError::IndexOutOfRange { triangle, index, vertices }.into());
             }
         }
     }
     if let Some(&vertex) = not_finite(&mesh.positions).first() {
-        return Err(Error::NotFinite { vertex, position: mesh.positions[vertex] });
+        return Err(MeshError::NotFinite { vertex, position: mesh.positions[vertex] }.into());
     }
-    let groups = &mesh.groups;
-    let expected = if groups.list.is_empty() { 0 } else { mesh.triangles.len() };
-    if groups.of_triangle.len() != expected {
-        return Err(Error::InvalidArgument(format!(
-            "the mesh has {} triangles but names groups for {}",
-            mesh.triangles.len(),
-            groups.of_triangle.len()
-        )));
+    let (groups, triangles) = (&mesh.groups, mesh.triangles.len());
+    let assigned = groups.of_triangle.len();
+    if assigned != if groups.list.is_empty() { 0 } else { triangles } {
+        return Err(MeshError::Groups(GroupFault::Count { assigned, triangles }).into());
     }
-    if let Some(triangle) = groups.of_triangle.iter().position(|&group| group as usize >= groups.list.len()) {
-        return Err(Error::InvalidArgument(format!(
-            "triangle {triangle} is in group {}, but there are only {} groups",
-            groups.of_triangle[triangle],
-            groups.list.len()
-        )));
+    if let Some(fault) = groups.fault(triangles) {
+        return Err(MeshError::Groups(fault).into());
     }
     Ok(())
 }
@@ -133,7 +126,7 @@ mod tests {
         let place = |vertex: usize| format!("line {vertex}");
         let error = check_finite(&mut mesh, Format::Obj, &mut Notes::default(), place).unwrap_err();
         assert!(error.to_string().contains("line 2"), "{error}");
-        assert!(matches!(check_for_writing(&mesh), Err(Error::NotFinite { vertex: 2, .. })));
+        assert!(matches!(check_for_writing(&mesh), Err(Error::Mesh(MeshError::NotFinite { vertex: 2, .. }))));
     }
 
     #[test]
@@ -141,12 +134,15 @@ mod tests {
         let mut mesh = triangle();
         mesh.triangles.push([0, 1, 3]);
         let error = check_for_writing(&mesh).unwrap_err();
-        assert!(matches!(error, Error::IndexOutOfRange { triangle: 1, index: 3, vertices: 3 }));
+        assert!(matches!(
+            error,
+            Error::Mesh(MeshError::IndexOutOfRange { triangle: 1, index: 3, vertices: 3 })
+        ));
         let mut mesh = triangle();
         mesh.groups.list.push(FaceGroup::default());
-        assert!(matches!(check_for_writing(&mesh), Err(Error::InvalidArgument(_))));
+        assert!(matches!(check_for_writing(&mesh), Err(Error::Mesh(MeshError::Groups(_)))));
         mesh.groups.of_triangle.push(1);
-        assert!(matches!(check_for_writing(&mesh), Err(Error::InvalidArgument(_))));
+        assert!(matches!(check_for_writing(&mesh), Err(Error::Mesh(MeshError::Groups(_)))));
         mesh.groups.of_triangle[0] = 0;
         check_for_writing(&mesh).unwrap();
         check_for_writing(&Mesh::default()).unwrap();

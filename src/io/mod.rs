@@ -24,6 +24,7 @@
 //! there before memory is taken for it.
 
 mod detect;
+mod error;
 mod faces;
 mod file;
 mod finish;
@@ -41,9 +42,10 @@ mod text;
 
 use std::io::Write;
 
-use crate::{Error, Mesh};
+use crate::{Error, FileAction, Mesh};
 
 pub use detect::Detected;
+pub use error::FormatError;
 pub use file::{load, save};
 pub use format::Format;
 pub use options::{Encoding, Precision, ReadOptions, WriteOptions};
@@ -63,7 +65,7 @@ pub struct Loaded {
 /// Reads a mesh from the bytes of a file of the given format.
 ///
 /// # Errors
-/// [`Error::Malformed`] with the place, [`Error::Unsupported`] with the way out, [`Error::TooLarge`], and the limits
+/// [`FormatError::Malformed`] with the place, [`FormatError::Unsupported`] with the way out, [`Error::TooLarge`], and the limits
 /// of the options' [`Control`](crate::Control).
 pub fn read(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Loaded, Error> {
     if bytes.is_empty() {
@@ -89,8 +91,8 @@ pub fn read(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Loade
 /// The stream gets few large pieces; it needs no buffering.
 ///
 /// # Errors
-/// [`Error::IndexOutOfRange`], [`Error::NotFinite`] or [`Error::InvalidArgument`] when the mesh itself is at fault,
-/// [`Error::Unsupported`] when the format cannot hold it, [`Error::File`] when the stream refuses the bytes, and the
+/// [`Error::Mesh`] when the mesh itself is at fault,
+/// [`FormatError::Unsupported`] when the format cannot hold it, [`Error::File`] when the stream refuses the bytes, and the
 /// limits of the options' [`Control`](crate::Control).
 pub fn write(
     mesh: &Mesh,
@@ -120,15 +122,15 @@ fn write_to(
 
 /// The error for a damaged file.
 fn malformed(format: Format, place: impl Into<String>, what: impl Into<String>) -> Error {
-    Error::Malformed { format, place: place.into(), what: what.into() }
+    FormatError::Malformed { format, place: place.into(), what: what.into() }.into()
 }
 
 /// The error for a sound file that needs something the reader or writer cannot do.
 fn unsupported(format: Format, what: impl Into<String>) -> Error {
-    Error::Unsupported { format, what: what.into() }
+    FormatError::Unsupported { format, what: what.into() }.into()
 }
 
 /// The error for a stream that refuses bytes.
 fn write_error(source: std::io::Error) -> Error {
-    Error::File { action: "write", path: "the output".into(), source }
+    Error::File { action: FileAction::Write, path: "the output".into(), source }
 }

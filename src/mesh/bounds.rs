@@ -2,6 +2,7 @@
 
 /// An axis-aligned box, closed: `low[k] <= x[k] <= high[k]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bounds {
     /// The corner with the least coordinates.
     pub low: [f64; 3],

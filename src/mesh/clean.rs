@@ -1,8 +1,7 @@
 //! From the triangles as given to the chain they stand for: without the triangles that count for nothing, with
 //! seams welded.
 
-use super::{Mesh, chain, duplicates, weld};
-use crate::Error;
+use super::{Mesh, MeshError, chain, duplicates, weld};
 
 /// The triangles of a mesh that count, and what was done to get them.
 #[derive(Debug, Default)]
@@ -34,15 +33,15 @@ pub(super) enum Weld {
 
 /// Refuses triangles out of range, and vertices that are not finite unless only triangles that count for nothing
 /// use them.
-pub(super) fn check_corners(mesh: &Mesh) -> Result<(), Error> {
+pub(super) fn check_corners(mesh: &Mesh) -> Result<(), MeshError> {
     for (triangle, &[a, b, c]) in mesh.triangles.iter().enumerate() {
         for index in [a, b, c] {
             let Some(&position) = mesh.positions.get(index as usize) else {
-                return Err(Error::IndexOutOfRange { triangle, index, vertices: mesh.positions.len() });
+                return Err(MeshError::IndexOutOfRange { triangle, index, vertices: mesh.positions.len() });
             };
             let counts = a != b && b != c && c != a;
             if counts && !position.iter().all(|x| x.is_finite()) {
-                return Err(Error::NotFinite { vertex: index as usize, position });
+                return Err(MeshError::NotFinite { vertex: index as usize, position });
             }
         }
     }

@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use serde_json::{Value, json};
-
 use super::Bounds;
 
 /// At most this many places are kept of each kind of fault.
@@ -19,6 +17,7 @@ pub(super) const PLACES: usize = 5;
 /// [`Display`](fmt::Display) writes the faults in one line with up to two places each; `{:#}` one line for each
 /// kind with all the places kept.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Diagnosis {
     /// Number of vertices.
@@ -79,6 +78,7 @@ pub struct Diagnosis {
 
 /// Faults of one kind.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Fault {
     /// How many there are.
     pub count: usize,
@@ -88,6 +88,7 @@ pub struct Fault {
 
 /// Where a fault is.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Place {
     /// The triangles concerned (of an edge with many, the first few).
     pub triangles: Vec<u32>,
@@ -112,62 +113,33 @@ impl Fault {
     pub fn is_none(&self) -> bool {
         self.count == 0
     }
-
-    /// The faults as a JSON object: `{"count", "places"}`, places as `{"triangles", "vertices", "position"}`.
-    #[must_use]
-    pub fn to_json(&self) -> Value {
-        let place = |place: &Place| json!({"triangles": place.triangles, "vertices": place.vertices, "position": place.position});
-        json!({"count": self.count, "places": self.places.iter().map(place).collect::<Vec<_>>()})
-    }
 }
 
 impl Diagnosis {
-    /// The kinds of fault with the key of each, and its name for one and for several.
-    fn faults(&self) -> [(&'static str, &'static str, &'static str, &Fault); 13] {
+    /// The kinds of fault, each with its name for one and for several.
+    fn faults(&self) -> [(&'static str, &'static str, &Fault); 13] {
         [
             (
-                "index_out_of_range",
                 "triangle with an index out of range",
                 "triangles with an index out of range",
                 &self.index_out_of_range,
             ),
-            ("not_finite", "vertex that is not finite", "vertices that are not finite", &self.not_finite),
-            ("open_edges", "open edge", "open edges", &self.open_edges),
-            ("misoriented_edges", "misoriented edge", "misoriented edges", &self.misoriented_edges),
+            ("vertex that is not finite", "vertices that are not finite", &self.not_finite),
+            ("open edge", "open edges", &self.open_edges),
+            ("misoriented edge", "misoriented edges", &self.misoriented_edges),
             (
-                "unbalanced_edges",
                 "edge with more than two triangles in unequal directions",
                 "edges with more than two triangles in unequal directions",
                 &self.unbalanced_edges,
             ),
-            ("inside_out_shells", "inside-out shell", "inside-out shells", &self.inside_out_shells),
-            ("duplicates", "duplicate triangle", "duplicate triangles", &self.duplicates),
-            ("non_manifold_edges", "non-manifold edge", "non-manifold edges", &self.non_manifold_edges),
-            (
-                "pinched_vertices",
-                "vertex with several fans",
-                "vertices with several fans",
-                &self.pinched_vertices,
-            ),
-            ("zero_area", "zero-area triangle", "zero-area triangles", &self.zero_area),
-            (
-                "repeated_corners",
-                "triangle with a repeated corner",
-                "triangles with a repeated corner",
-                &self.repeated_corners,
-            ),
-            (
-                "opposite_duplicates",
-                "pair of opposite triangles",
-                "pairs of opposite triangles",
-                &self.opposite_duplicates,
-            ),
-            (
-                "unreferenced_vertices",
-                "unreferenced vertex",
-                "unreferenced vertices",
-                &self.unreferenced_vertices,
-            ),
+            ("inside-out shell", "inside-out shells", &self.inside_out_shells),
+            ("duplicate triangle", "duplicate triangles", &self.duplicates),
+            ("non-manifold edge", "non-manifold edges", &self.non_manifold_edges),
+            ("vertex with several fans", "vertices with several fans", &self.pinched_vertices),
+            ("zero-area triangle", "zero-area triangles", &self.zero_area),
+            ("triangle with a repeated corner", "triangles with a repeated corner", &self.repeated_corners),
+            ("pair of opposite triangles", "pairs of opposite triangles", &self.opposite_duplicates),
+            ("unreferenced vertex", "unreferenced vertices", &self.unreferenced_vertices),
         ]
     }
 
@@ -177,35 +149,10 @@ impl Diagnosis {
         match (open, turned) {
             (true, false) => Some("its holes must be filled first"),
             (false, true) if self.unbalanced_edges.is_none() => {
-                Some("triangles that face the wrong way can be turned (--orient), if they are not many")
+                Some("triangles that face the wrong way can be turned, if they are not many")
             }
             _ => None,
         }
-    }
-
-    /// The diagnosis as a JSON object: a key for each field, faults as `{"count", "places"}`, places as
-    /// `{"triangles", "vertices", "position"}`, numbers that are not finite as null. Keys are only ever added.
-    #[must_use]
-    pub fn to_json(&self) -> Value {
-        let fault = Fault::to_json;
-        let mut object = json!({
-            "vertices": self.vertices,
-            "triangles": self.triangles,
-            "closed": self.closed,
-            "closing_distance": self.closing_distance,
-            "split_vertices": fault(&self.split_vertices),
-            "self_crossings": self.self_crossings.as_ref().map(fault),
-            "shells": self.shells,
-            "bounds": self.bounds.map(|bounds| json!({"low": bounds.low, "high": bounds.high})),
-            "area": self.area,
-            "volume": self.volume,
-            "euler_characteristic": self.euler_characteristic,
-            "genus": self.genus,
-        });
-        for (key, _, _, found) in self.faults() {
-            object[key] = fault(found);
-        }
-        object
     }
 }
 
@@ -216,9 +163,8 @@ impl fmt::Display for Diagnosis {
         let mut separate = |f: &mut fmt::Formatter<'_>| {
             if std::mem::take(&mut first) { Ok(()) } else { f.write_str(separator) }
         };
-        let crossings =
-            self.self_crossings.as_ref().map(|fault| ("", "crossing pair", "crossing pairs", fault));
-        for (_, one, several, fault) in self.faults().into_iter().chain(crossings) {
+        let crossings = self.self_crossings.as_ref().map(|fault| ("crossing pair", "crossing pairs", fault));
+        for (one, several, fault) in self.faults().into_iter().chain(crossings) {
             if fault.is_none() {
                 continue;
             }
@@ -233,7 +179,7 @@ impl fmt::Display for Diagnosis {
         }
         if let Some(distance) = self.closing_distance {
             separate(f)?;
-            write!(f, "welding vertices within {distance:e} would close it (--weld {distance:e})")?;
+            write!(f, "welding vertices within {distance:e} would close it")?;
         } else if let Some(advice) = self.advice() {
             separate(f)?;
             f.write_str(advice)?;
@@ -295,16 +241,17 @@ mod tests {
         let expected = "7 open edges: triangle 0 vertices 0-1 at (0, -1e-9, 0), \
             triangle 1 vertices 1-2 at (0.3333333, -1e-9, 0), ...; \
             1 zero-area triangle: triangle 0 vertices 0-1 at (0, -1e-9, 0); \
-            welding vertices within 1e-7 would close it (--weld 1e-7)";
+            welding vertices within 1e-7 would close it";
         assert_eq!(diagnosis.to_string(), expected);
         assert_eq!(format!("{diagnosis:#}").lines().count(), 3);
         assert_eq!(format!("{diagnosis:#}").matches(" at ").count(), 6);
     }
 
     #[test]
-    fn json_has_every_field() {
+    #[cfg(feature = "serde")]
+    fn numbers_that_are_none_are_null() {
         let diagnosis = Diagnosis { not_finite: fault(2), area: f64::NAN, ..Diagnosis::default() };
-        let json = diagnosis.to_json();
+        let json = serde_json::to_value(&diagnosis).unwrap();
         assert_eq!(json["not_finite"]["count"], 2);
         assert_eq!(json["not_finite"]["places"][1]["vertices"][1], 2);
         assert!(json["area"].is_null() && json["self_crossings"].is_null());

@@ -1,7 +1,10 @@
 //! Face groups: which object, group and material of its file a triangle came from.
 
+use super::GroupFault;
+
 /// Colour and name of a surface material.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Material {
     /// Name as in the file.
     pub name: String,
@@ -11,6 +14,7 @@ pub struct Material {
 
 /// A named set of triangles with one material.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FaceGroup {
     /// Name of the object, group or node; may be empty.
     pub name: String,
@@ -20,6 +24,7 @@ pub struct FaceGroup {
 
 /// The groups of a mesh. A mesh without any has `list` empty and `of_triangle` empty.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FaceGroups {
     /// The groups.
     pub list: Vec<FaceGroup>,
@@ -35,14 +40,14 @@ impl FaceGroups {
     }
 
     /// What is wrong with the groups of a mesh of `triangles` triangles, if anything.
-    pub(super) fn fault(&self, triangles: usize) -> Option<String> {
+    pub(crate) fn fault(&self, triangles: usize) -> Option<GroupFault> {
         let count = self.of_triangle.len();
         if count != triangles && count != 0 {
-            return Some(format!("{count} triangles have a group, but there are {triangles} triangles"));
+            return Some(GroupFault::Count { assigned: count, triangles });
         }
         let wrong = self.of_triangle.iter().position(|&group| group as usize >= self.list.len())?;
         let (group, groups) = (self.of_triangle[wrong], self.list.len());
-        Some(format!("triangle {wrong} is in group {group}, but there are only {groups} groups"))
+        Some(GroupFault::OutOfRange { triangle: wrong, group, groups })
     }
 
     /// Keeps of the assignment what the triangles `kept` have, in that order. The list stays as it is.
@@ -101,8 +106,8 @@ mod tests {
     fn faults_are_named() {
         assert_eq!(named("a", 2).fault(2), None);
         assert_eq!(FaceGroups::default().fault(2), None);
-        assert!(named("a", 2).fault(3).unwrap().contains("2 triangles have a group"));
+        assert!(named("a", 2).fault(3).unwrap().to_string().contains("2 triangles have a group"));
         let bad = FaceGroups { of_triangle: vec![0, 7], ..named("a", 0) };
-        assert!(bad.fault(2).unwrap().contains("triangle 1 is in group 7"));
+        assert!(bad.fault(2).unwrap().to_string().contains("triangle 1 is in group 7"));
     }
 }

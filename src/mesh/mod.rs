@@ -12,6 +12,7 @@ mod diagnose;
 mod diagnosis;
 mod duplicates;
 mod edges;
+mod error;
 mod groups;
 mod manifold;
 mod measure;
@@ -35,6 +36,7 @@ pub use bounds::Bounds;
 pub(crate) use buckets::Buckets;
 pub use diagnose::diagnose;
 pub use diagnosis::{Diagnosis, Fault, Place};
+pub use error::{GroupFault, MeshError, TransformFault};
 pub use groups::{FaceGroup, FaceGroups, Material};
 pub(crate) use manifold::{HalfEdges, Surface, make_manifold};
 pub use self_crossing::{SelfCrossing, SelfCrossings};
@@ -42,8 +44,6 @@ pub use solid::{Cleaning, Solid};
 pub(crate) use sparse_union_find::SparseUnionFind;
 pub(crate) use union_find::UnionFind;
 pub(crate) use weighted_union_find::WeightedUnionFind;
-
-use crate::Error;
 
 /// Whether every directed edge is met by its opposite equally often; false for indices out of range.
 pub(crate) fn is_closed(mesh: &Mesh) -> bool {
@@ -53,6 +53,7 @@ pub(crate) fn is_closed(mesh: &Mesh) -> bool {
 /// A triangle mesh: positions, triangles, and the groups the triangles belong to. Plain data without invariants;
 /// [`Solid`] is the mesh that is known to be a closed surface.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Mesh {
     /// Vertex coordinates, in the units of the file.
@@ -60,6 +61,7 @@ pub struct Mesh {
     /// Triangles as vertex indices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Named groups and materials of the triangles.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub groups: FaceGroups,
 }
 
@@ -79,12 +81,13 @@ impl Mesh {
     /// Appends the vertices, triangles and groups of `other`; its vertices stay apart from those here.
     ///
     /// # Errors
-    /// [`Error::TooLarge`] if there are more vertices than 32 bits can name; this mesh is then as before.
-    pub fn append(&mut self, other: &Self) -> Result<(), Error> {
+    /// [`MeshError::TooLarge`] if there are more vertices than 32 bits can name; this mesh is then as before.
+    pub fn append(&mut self, other: &Self) -> Result<(), MeshError> {
         let first = self.positions.len();
         let vertices = first + other.positions.len();
         if vertices > u32::MAX as usize {
-            return Err(Error::TooLarge { what: format!("{vertices} vertices in one mesh") });
+            let triangles = self.triangles.len() + other.triangles.len();
+            return Err(MeshError::TooLarge { vertices, triangles });
         }
         self.groups.append(self.triangles.len(), &other.groups, other.triangles.len());
         self.positions.extend_from_slice(&other.positions);
@@ -97,8 +100,8 @@ impl Mesh {
     /// All `meshes` in one, in order; their vertices stay apart.
     ///
     /// # Errors
-    /// [`Error::TooLarge`] if there are more vertices than 32 bits can name.
-    pub fn merged<'a>(meshes: impl IntoIterator<Item = &'a Self>) -> Result<Self, Error> {
+    /// [`MeshError::TooLarge`] if there are more vertices than 32 bits can name.
+    pub fn merged<'a>(meshes: impl IntoIterator<Item = &'a Self>) -> Result<Self, MeshError> {
         let mut all = Self::default();
         meshes.into_iter().try_for_each(|mesh| all.append(mesh))?;
         Ok(all)
@@ -110,13 +113,11 @@ impl Mesh {
     /// the surface. O(n log n).
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] unless `distance` is finite and positive or zero (equal coordinates only);
-    /// [`Error::IndexOutOfRange`], [`Error::NotFinite`].
-    pub fn welded(mut self, distance: f64) -> Result<Self, Error> {
+    /// [`MeshError::WeldingDistance`] unless `distance` is finite and positive or zero (equal coordinates only);
+    /// [`MeshError::IndexOutOfRange`], [`MeshError::NotFinite`].
+    pub fn welded(mut self, distance: f64) -> Result<Self, MeshError> {
         if !(distance.is_finite() && distance >= 0.0) {
-            return Err(Error::InvalidArgument(format!(
-                "the welding distance must be finite and not negative, not {distance}"
-            )));
+            return Err(MeshError::WeldingDistance(distance));
         }
         clean::check_corners(&self)?;
         let how = if distance == 0.0 { clean::Weld::Exact } else { clean::Weld::Within(distance) };

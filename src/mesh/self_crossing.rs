@@ -2,12 +2,11 @@
 
 use std::fmt;
 
-use serde_json::{Value, json};
-
 use super::diagnosis::{Fault, Place, short};
 
 /// A pair of triangles of one surface that cross.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SelfCrossing {
     /// The two triangles, the lower index first.
     pub triangles: [u32; 2],
@@ -20,6 +19,7 @@ pub struct SelfCrossing {
 
 /// The crossings of a surface with itself.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SelfCrossings {
     /// Pairs of triangles that cross each other in earnest: the surface encloses something twice, or inside out.
@@ -48,21 +48,6 @@ impl From<&SelfCrossings> for Fault {
             position: crossing.place,
         };
         Self { count: crossings.count, places: crossings.places.iter().map(place).collect() }
-    }
-}
-
-impl SelfCrossings {
-    /// The crossings as a JSON object with stable keys.
-    #[must_use]
-    pub fn to_json(&self) -> Value {
-        let places: Vec<Value> = self
-            .places
-            .iter()
-            .map(|crossing| {
-                json!({ "triangles": crossing.triangles, "place": crossing.place, "depth": crossing.depth })
-            })
-            .collect();
-        json!({ "count": self.count, "tolerated": self.tolerated, "tolerance": self.tolerance, "places": places })
     }
 }
 

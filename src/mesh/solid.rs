@@ -6,8 +6,7 @@ use std::sync::OnceLock;
 use super::clean::{self, Weld};
 use super::measure::signed_volume;
 use super::topology::Topology;
-use super::{Bounds, FaceGroups, Mesh, SelfCrossings, chain, diagnose};
-use crate::Error;
+use super::{Bounds, FaceGroups, Mesh, MeshError, SelfCrossings, chain, diagnose};
 use crate::parallel::join;
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
@@ -26,7 +25,7 @@ use crate::parallel::join;
 /// each is. Equal copies of a triangle with the same orientation count twice: the surface bounds its volume doubly.
 ///
 /// ```
-/// use trisect::{Error, Mesh, Solid};
+/// use trisect::{Mesh, MeshError, Solid};
 ///
 /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// let mut triangles = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
@@ -35,10 +34,10 @@ use crate::parallel::join;
 ///
 /// triangles.pop();
 /// match Solid::try_from(Mesh::new(corners, triangles)) {
-///     Err(Error::NotClosed(diagnosis)) => assert_eq!(diagnosis.open_edges.count, 3),
+///     Err(MeshError::NotClosed(diagnosis)) => assert_eq!(diagnosis.open_edges.count, 3),
 ///     other => panic!("{other:?}"),
 /// }
-/// # Ok::<(), Error>(())
+/// # Ok::<(), MeshError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Solid {
@@ -55,6 +54,7 @@ pub struct Solid {
 
 /// What was left out or joined to make a [`Solid`] of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Cleaning {
     /// Triangles left out because of a repeated corner, as given or once welded.
@@ -223,21 +223,36 @@ impl From<Solid> for Mesh {
     }
 }
 
+/// Written as its mesh, and read through the gate.
+#[cfg(feature = "serde")]
+impl serde::Serialize for Solid {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.mesh.serialize(serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for Solid {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::try_from(Mesh::deserialize(deserializer)?).map_err(serde::de::Error::custom)
+    }
+}
+
 /// The gate every operand passes.
 impl TryFrom<Mesh> for Solid {
-    type Error = Error;
+    type Error = MeshError;
 
     /// # Errors
-    /// [`Error::IndexOutOfRange`], [`Error::NotFinite`], [`Error::NotClosed`], [`Error::InsideOut`];
-    /// [`Error::TooLarge`] beyond 2^31 vertices or 2^32/3 triangles; [`Error::InvalidArgument`] if the face groups
+    /// [`MeshError::IndexOutOfRange`], [`MeshError::NotFinite`], [`MeshError::NotClosed`], [`MeshError::InsideOut`];
+    /// [`MeshError::TooLarge`] beyond 2^31 vertices or 2^32/3 triangles; [`MeshError::Groups`] if the face groups
     /// do not fit the triangles.
-    fn try_from(mesh: Mesh) -> Result<Self, Error> {
+    fn try_from(mesh: Mesh) -> Result<Self, MeshError> {
         let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
         if vertices > chain::MAX_VERTICES || triangles > chain::MAX_TRIANGLES {
-            return Err(Error::TooLarge { what: format!("{vertices} vertices, {triangles} triangles") });
+            return Err(MeshError::TooLarge { vertices, triangles });
         }
         if let Some(fault) = mesh.groups.fault(triangles) {
-            return Err(Error::InvalidArgument(format!("face groups: {fault}")));
+            return Err(MeshError::Groups(fault));
         }
         let (examined, (bounds, volume)) = join(
             triangles,
@@ -257,7 +272,9 @@ impl TryFrom<Mesh> for Solid {
         }
         let solid = Self { mesh, bounds, edge_manifold: OnceLock::from(true), ..Self::default() };
         match volume {
-            Some(volume) if volume.sign == Ordering::Less => Err(Error::InsideOut { volume: volume.value }),
+            Some(volume) if volume.sign == Ordering::Less => {
+                Err(MeshError::InsideOut { volume: volume.value })
+            }
             Some(volume) => Ok(Self { volume: OnceLock::from(volume.value), ..solid }),
             None => Ok(solid),
         }
@@ -277,18 +294,18 @@ fn finite_bounds(positions: &[[f64; 3]]) -> Option<Bounds> {
 }
 
 /// The way round for a mesh that is not a solid as it is.
-fn cleaned(mesh: Mesh) -> Result<Solid, Error> {
+fn cleaned(mesh: Mesh) -> Result<Solid, MeshError> {
     let triangles = mesh.triangles.len();
     clean::check_corners(&mesh)?;
     let mut cleaned = clean::clean(&mesh.positions, &mesh.triangles, Weld::Exact);
     if !cleaned.closed {
-        return Err(Error::NotClosed(Box::new(diagnose(&mesh))));
+        return Err(MeshError::NotClosed(Box::new(diagnose(&mesh))));
     }
     let positions = clean::compact(&mesh.positions, &mut cleaned.triangles);
     let bounds = Bounds::of(&positions);
     let volume = bounds.map(|bounds| signed_volume(&positions, &cleaned.triangles, &bounds));
     if let Some(volume) = volume.filter(|volume| volume.sign == Ordering::Less) {
-        return Err(Error::InsideOut { volume: volume.value });
+        return Err(MeshError::InsideOut { volume: volume.value });
     }
     let cleaning = Cleaning {
         repeated_corners: cleaned.repeated_corners,
@@ -340,6 +357,19 @@ mod tests {
         let borrowed: &Mesh = solid.as_ref();
         assert_eq!(*borrowed, mesh);
         assert_eq!(Mesh::from(solid), mesh);
+    }
+
+    #[test]
+    #[cfg(feature = "serde")]
+    fn solids_are_read_through_the_gate() {
+        let mesh = primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
+        let solid = Solid::try_from(mesh.clone()).unwrap();
+        let text = serde_json::to_string(&solid).unwrap();
+        assert_eq!(serde_json::from_str::<Solid>(&text).unwrap(), solid);
+        let text = serde_json::to_string(&mesh.reversed()).unwrap();
+        assert!(serde_json::from_str::<Solid>(&text).unwrap_err().to_string().contains("inside out"));
+        let bare = serde_json::from_str::<Mesh>(r#"{"positions": [], "triangles": []}"#).unwrap();
+        assert_eq!(bare, Mesh::default());
     }
 
     #[test]

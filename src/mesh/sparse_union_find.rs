@@ -73,9 +73,7 @@ mod tests {
             sets
         };
         let mut sets = joined();
-        assert!(
-            !joined().into_roots().is_empty() && SparseUnionFind::<u32>::default().into_roots().is_empty()
-        );
+        assert!(!joined().into_sets().is_empty() && SparseUnionFind::<u32>::default().into_sets().is_empty());
         assert_eq!([50, 20, 7, 9, 1_000].map(|item| sets.root(item)), [10, 10, 3, 9, 1_000]);
         assert_eq!(joined().into_sets(), [vec![3, 7], vec![10, 20, 40, 50]]);
         let mut roots: Vec<(u32, u32)> = joined().into_roots().into_iter().collect();

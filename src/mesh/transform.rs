@@ -1,7 +1,6 @@
 //! Moving, turning and scaling meshes.
 
-use super::Mesh;
-use crate::Error;
+use super::{Mesh, MeshError, TransformFault};
 use crate::exact::{Sign, orient3d};
 
 impl Mesh {
@@ -20,12 +19,10 @@ impl Mesh {
     /// the triangles are then reversed to face outwards still.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if a factor is zero or not finite.
-    pub fn scaled(mut self, factors: [f64; 3]) -> Result<Self, Error> {
+    /// [`MeshError::Transform`] if a factor is zero or not finite.
+    pub fn scaled(mut self, factors: [f64; 3]) -> Result<Self, MeshError> {
         if factors.iter().any(|&factor| factor == 0.0 || !factor.is_finite()) {
-            return Err(Error::InvalidArgument(format!(
-                "scale factors must be finite and not zero, not {factors:?}"
-            )));
+            return Err(MeshError::Transform(TransformFault::Scale(factors)));
         }
         for position in &mut self.positions {
             for axis in 0..3 {
@@ -40,13 +37,11 @@ impl Mesh {
     /// where the axis points. Quarter turns about the coordinate axes are exact.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if `axis` has no direction or something is not finite.
-    pub fn rotated(self, axis: [f64; 3], degrees: f64) -> Result<Self, Error> {
+    /// [`MeshError::Transform`] if `axis` has no direction or something is not finite.
+    pub fn rotated(self, axis: [f64; 3], degrees: f64) -> Result<Self, MeshError> {
         let largest = axis.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
         if !(axis.iter().all(|x| x.is_finite()) && largest > 0.0 && degrees.is_finite()) {
-            return Err(Error::InvalidArgument(format!(
-                "a rotation needs a finite axis other than zero and a finite angle, not {axis:?} and {degrees}"
-            )));
+            return Err(MeshError::Transform(TransformFault::Rotation { axis, degrees }));
         }
         let axis = axis.map(|x| x / largest);
         let length = (axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]).sqrt();
@@ -68,7 +63,7 @@ impl Mesh {
     /// reversed to face outwards still.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if the numbers are not 12 or 16 or not finite, the last row is another, or M is
+    /// [`MeshError::Transform`] if the numbers are not 12 or 16 or not finite, the last row is another, or M is
     /// exactly singular.
     ///
     /// ```
@@ -80,24 +75,25 @@ impl Mesh {
     /// assert_eq!(moved.volume(), 2.0);
     /// # Ok::<(), trisect::Error>(())
     /// ```
-    pub fn transformed(self, matrix: &[f64]) -> Result<Self, Error> {
-        let fault = |what: String| Err(Error::InvalidArgument(format!("transformation matrix: {what}")));
+    pub fn transformed(self, matrix: &[f64]) -> Result<Self, MeshError> {
+        let refuse = |fault| Err(MeshError::Transform(fault));
         let (rows, last) = match matrix.len() {
             12 | 16 => matrix.split_at(12),
-            count => return fault(format!("12 or 16 numbers, row by row, are needed, not {count}")),
+            count => return refuse(TransformFault::MatrixLength(count)),
         };
-        if let Some(number) = matrix.iter().find(|x| !x.is_finite()) {
-            return fault(format!("its numbers must be finite, not {number}"));
+        if let Some(&number) = matrix.iter().find(|x| !x.is_finite()) {
+            return refuse(TransformFault::MatrixNumber(number));
         }
-        if !last.is_empty() && last != [0.0, 0.0, 0.0, 1.0] {
-            let hint = "if the translation is there, the matrix is given column by column: transpose it";
-            return fault(format!("the last row must be 0, 0, 0, 1, not {last:?}; {hint}"));
+        if let &[a, b, c, d] = last
+            && last != [0.0, 0.0, 0.0, 1.0]
+        {
+            return refuse(TransformFault::MatrixLastRow([a, b, c, d]));
         }
         let row = |index: usize| [0, 1, 2, 3].map(|column| rows[4 * index + column]);
         let rows = [row(0), row(1), row(2)];
         let determinant = determinant_sign(&rows);
         if determinant == Sign::Zero {
-            return fault("it is singular: it would flatten the mesh".into());
+            return refuse(TransformFault::MatrixSingular);
         }
         let mapped = self.mapped(&rows);
         Ok(if determinant == Sign::Negative { mapped.reversed() } else { mapped })
@@ -179,7 +175,7 @@ mod tests {
 
     #[test]
     fn senseless_arguments_are_refused() {
-        let refused = |result: Result<Mesh, Error>| matches!(result, Err(Error::InvalidArgument(_)));
+        let refused = |result: Result<Mesh, MeshError>| matches!(result, Err(MeshError::Transform(_)));
         assert!(refused(block().scaled([1.0, 0.0, 1.0])));
         assert!(refused(block().scaled([1.0, f64::NAN, 1.0])));
         assert!(refused(block().rotated([0.0; 3], 10.0)));

@@ -137,7 +137,7 @@ impl Model {
     /// [`Error::File`] if it cannot be read; else as [`parse`](Self::parse).
     pub fn load(path: &Path) -> Result<Self, Error> {
         let text = std::fs::read_to_string(path).map_err(|source| Error::File {
-            action: "read",
+            action: crate::FileAction::Read,
             path: path.to_owned(),
             source,
         })?;

@@ -40,7 +40,7 @@ pub(super) enum Described {
 pub(super) fn load(folder: &Path, file: &str) -> Result<Described, Error> {
     let path = folder.join(file);
     let text = std::fs::read_to_string(&path).map_err(|source| Error::File {
-        action: "read",
+        action: crate::FileAction::Read,
         path: path.clone(),
         source,
     })?;

@@ -124,7 +124,7 @@ impl Picture {
         let path = path.as_ref();
         let mut bytes = Vec::new();
         self.write_png(&mut bytes).and_then(|()| std::fs::write(path, &bytes)).map_err(|source| Error::File {
-            action: "write",
+            action: crate::FileAction::Write,
             path: path.to_path_buf(),
             source,
         })

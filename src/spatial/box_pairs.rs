@@ -1,7 +1,7 @@
 //! All pairs of boxes that meet, of two trees or within one: both are walked at once, pack against pack.
 
+use crate::control::{Control, Limit};
 use crate::parallel::Runner;
-use crate::{Control, Error};
 
 use super::box_tree::BoxTree;
 use super::pack::{LANES, for_each_bit};
@@ -43,7 +43,7 @@ pub(crate) fn visit_pairs<T: Send>(
     b: &BoxTree,
     runner: Runner<'_>,
     visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
-) -> Result<Vec<T>, Error> {
+) -> Result<Vec<T>, Limit> {
     Walk { a, b, within: false, control: runner.control }.run(runner, visit)
 }
 
@@ -53,7 +53,7 @@ pub(crate) fn self_overlapping_pairs(
     tree: &BoxTree,
     runner: Runner<'_>,
     wanted: impl Fn([u32; 2]) -> bool + Sync,
-) -> Result<Vec<[u32; 2]>, Error> {
+) -> Result<Vec<[u32; 2]>, Limit> {
     let walk = Walk { a: tree, b: tree, within: true, control: runner.control };
     walk.run(runner, |pairs, found| {
         found.extend(pairs.iter().map(|&[i, j]| [i.min(j), i.max(j)]).filter(|&pair| wanted(pair)));
@@ -74,7 +74,7 @@ impl Walk<'_> {
         &self,
         runner: Runner<'_>,
         visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
-    ) -> Result<Vec<T>, Error> {
+    ) -> Result<Vec<T>, Limit> {
         let Some((level, tasks)) = self.tasks()? else { return Ok(Vec::new()) };
         let grain = if runner.is_parallel() { tasks.len().div_ceil(TASKS) } else { tasks.len() };
         let pieces = runner.pieces(tasks.len(), grain.max(1), |range| {
@@ -86,7 +86,7 @@ impl Walk<'_> {
     }
 
     /// Pairs of packs of one level, and the level, below which all pairs of items are found.
-    fn tasks(&self) -> Result<Option<(usize, Vec<Packs>)>, Error> {
+    fn tasks(&self) -> Result<Option<(usize, Vec<Packs>)>, Limit> {
         let (a, b) = (self.a, self.b);
         if a.is_empty() || b.is_empty() {
             return Ok(None);
@@ -136,7 +136,7 @@ impl Walk<'_> {
     }
 
     /// Hands on all pairs of items below some pairs of packs.
-    fn below(&self, level: usize, tasks: &[Packs], mut found: impl FnMut(&[[u32; 2]])) -> Result<(), Error> {
+    fn below(&self, level: usize, tasks: &[Packs], mut found: impl FnMut(&[[u32; 2]])) -> Result<(), Limit> {
         let (of_a, of_b) = (self.a.items(), self.b.items());
         let mut batch = Vec::with_capacity(BATCH + LANES * LANES);
         let mut stack: Vec<(u32, Packs)> = Vec::new();
@@ -164,7 +164,7 @@ impl Walk<'_> {
     }
 }
 
-fn concatenated<T>(pieces: Vec<Result<Vec<T>, Error>>) -> Result<Vec<T>, Error> {
+fn concatenated<T>(pieces: Vec<Result<Vec<T>, Limit>>) -> Result<Vec<T>, Limit> {
     let mut pieces = pieces.into_iter();
     let mut all = pieces.next().unwrap_or(Ok(Vec::new()))?;
     for piece in pieces {

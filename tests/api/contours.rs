@@ -128,7 +128,9 @@ fn bounds_are_found_or_said_to_be_missing() {
         }
     }
     assert_eq!(bounds("-1 - x^2").expect("nowhere"), None);
-    assert!(matches!(bounds("1 - x^2 - y^2"), Err(Error::Field(what)) if what.contains("along z")));
+    assert!(
+        matches!(bounds("1 - x^2 - y^2"), Err(Error::Field(what)) if what.to_string().contains("along z"))
+    );
     assert!(matches!(bounds("x"), Err(Error::Field(_))));
 }
 
@@ -136,7 +138,9 @@ fn bounds_are_found_or_said_to_be_missing() {
 fn clipping_closes_what_does_not_end() {
     let column = field("1 - x^2 - y^2");
     let extraction = Extraction::new([-2.0, -2.0, -1.0], [2.0, 2.0, 1.0], 0.01);
-    assert!(matches!(extraction.run(&column), Err(Error::Field(what)) if what.contains("does not end")));
+    assert!(
+        matches!(extraction.run(&column), Err(Error::Field(what)) if what.to_string().contains("does not end"))
+    );
     let clipped = extraction.clip(true).run(&column).expect("a cylinder").mesh;
     let heights = clipped.positions.iter().map(|p| p[2]);
     let (low, high) = heights.fold((1.0f64, -1.0f64), |(l, h), z| (l.min(z), h.max(z)));

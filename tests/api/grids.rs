@@ -62,7 +62,7 @@ fn absurd_grids_are_refused() {
     let field = Formula::parse("x").and_then(|f| f.compile(System::R0, &[], &[])).expect("x");
     let limited = Control::new().memory_limit(100);
     let sampled = grid(0.1).and_then(|g| g.sample(&field, &limited));
-    assert!(matches!(sampled, Err(Error::MemoryLimit { .. })));
+    assert!(matches!(sampled, Err(Error::Limit(trisect::Limit::Memory { .. }))));
 }
 
 #[cfg(feature = "render")]

@@ -5,7 +5,9 @@ use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
 use crate::common::solid;
-use trisect::{BooleanOptions, CancelToken, Control, Error, Failure, Operation, Outcome, Solid, primitives};
+use trisect::{
+    BooleanOptions, CancelToken, Control, Error, Failure, Limit, Operation, Outcome, Solid, primitives,
+};
 
 /// Balls that cross almost everywhere: the operation takes far longer than a message between threads.
 fn heavy() -> [Solid; 2] {
@@ -40,7 +42,7 @@ fn a_token_stops_a_running_operation() {
         });
         let error = run(&operands, control, threads).expect_err("it was cancelled");
         canceller.join().expect("no panic");
-        assert!(matches!(error, Error::Cancelled), "{error}");
+        assert!(matches!(error, Error::Limit(Limit::Cancelled)), "{error}");
         assert_eq!(error.failure(), Failure::Limit);
     }
     // The operands are as good as before.
@@ -73,7 +75,10 @@ fn a_token_cancelled_at_any_report_of_many_operands() {
     assert!(whole.is_ok() && reports > 3, "{reports}");
     for cancel_at in 0..reports {
         let (result, seen) = reports_of(cancel_at);
-        assert!(matches!(result, Err(Error::Cancelled)), "cancelled at report {cancel_at} of {reports}");
+        assert!(
+            matches!(result, Err(Error::Limit(Limit::Cancelled))),
+            "cancelled at report {cancel_at} of {reports}"
+        );
         assert_eq!(seen, cancel_at + 1, "it went on after it was cancelled");
     }
 }
@@ -84,11 +89,11 @@ fn a_deadline_stops_a_running_operation() {
     for threads in [1, 2] {
         let control = Control::new().deadline(Instant::now() + Duration::from_millis(5));
         let error = run(&operands, control, threads).expect_err("it takes longer");
-        assert!(matches!(error, Error::DeadlineExceeded), "{error}");
+        assert!(matches!(error, Error::Limit(Limit::DeadlineExceeded)), "{error}");
         assert_eq!(error.failure(), Failure::Limit);
     }
     let passed = Control::new().deadline(Instant::now());
-    assert!(matches!(run(&light(), passed, 1), Err(Error::DeadlineExceeded)));
+    assert!(matches!(run(&light(), passed, 1), Err(Error::Limit(Limit::DeadlineExceeded))));
 }
 
 #[test]
@@ -101,7 +106,7 @@ fn a_deadline_at_any_time_gives_the_error_or_the_result() {
         let control = Control::new().deadline(Instant::now() + took * part / 40);
         match run(&operands, control, 1) {
             Ok(outcome) => assert_eq!(outcome.solid().mesh(), whole.mesh()),
-            Err(error) => assert!(matches!(error, Error::DeadlineExceeded), "{error}"),
+            Err(error) => assert!(matches!(error, Error::Limit(Limit::DeadlineExceeded)), "{error}"),
         }
     }
 }
@@ -120,7 +125,7 @@ fn a_memory_ceiling_stops_an_operation_before_it_is_exceeded() {
                 assert_eq!(outcome.solid().mesh(), whole.mesh());
                 done += 1;
             }
-            Err(Error::MemoryLimit { needed, limit: stated }) => {
+            Err(Error::Limit(Limit::Memory { needed, limit: stated })) => {
                 assert!(needed > limit && stated == limit, "{needed} {stated} {limit}");
                 assert_eq!(done, 0, "more memory is not less");
                 refused += 1;

@@ -332,9 +332,9 @@ fn errors_have_the_right_kind() {
     token.cancel();
     let model = example("w8-pawn.json");
     let cancelled = Evaluation::new().control(Control::new().cancel(&token)).run(&model);
-    assert!(matches!(cancelled, Err(Error::Cancelled)));
+    assert!(matches!(cancelled, Err(Error::Limit(trisect::Limit::Cancelled))));
     let limited = Evaluation::new().control(Control::new().memory_limit(1000)).run(&model);
-    assert!(matches!(limited, Err(Error::MemoryLimit { .. })));
+    assert!(matches!(limited, Err(Error::Limit(trisect::Limit::Memory { .. }))));
 }
 
 #[test]

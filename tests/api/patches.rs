@@ -460,6 +460,9 @@ fn bad_patches_are_named() {
     let token = CancelToken::new();
     token.cancel();
     let control = Control::new().cancel(&token);
-    assert!(matches!(PatchMeshing::new(0.1).control(control).closed(&aircraft()), Err(Error::Cancelled)));
+    assert!(matches!(
+        PatchMeshing::new(0.1).control(control).closed(&aircraft()),
+        Err(Error::Limit(trisect::Limit::Cancelled))
+    ));
     assert!(PatchMeshing::new(0.1).closed(&[]).unwrap().mesh.is_empty());
 }

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use crate::common::meshes::{chain_of, is_closed, jittered_soup, six_volumes};
 use proptest::prelude::*;
 use trisect::mesh::{Diagnosis, diagnose};
-use trisect::{Error, FaceGroup, Mesh, Solid, primitives};
+use trisect::{FaceGroup, Mesh, MeshError, Solid, primitives};
 
 /// Distinct integer places, so that volumes are known exactly.
 fn place(vertex: u32) -> [f64; 3] {
@@ -94,14 +94,14 @@ fn check_gate(mesh: &Mesh) -> Result<(), TestCaseError> {
             prop_assert_eq!(diagnosis.euler_characteristic, solid.euler_characteristic());
             prop_assert_eq!(diagnosis.opposite_duplicates.count, cleaning.opposite_pairs);
         }
-        Err(Error::NotClosed(said)) => {
+        Err(MeshError::NotClosed(said)) => {
             prop_assert!(!is_closed(&triangles));
             prop_assert!(
                 said.open_edges.count + said.misoriented_edges.count + said.unbalanced_edges.count > 0
             );
             prop_assert_eq!(*said, diagnosis);
         }
-        Err(Error::InsideOut { volume: said }) => {
+        Err(MeshError::InsideOut { volume: said }) => {
             prop_assert!(is_closed(&triangles) && volume < 0);
             prop_assert_eq!(said, volume as f64 / 6.0);
         }
@@ -139,7 +139,6 @@ proptest! {
     ) {
         let mesh = Mesh::new(positions, triangles);
         let diagnosis = diagnose(&mesh);
-        prop_assert!(diagnosis.to_json().is_object());
         let texts = format!("{diagnosis}{diagnosis:#}");
         prop_assert!(!texts.is_empty());
         let out_of_range = !diagnosis.index_out_of_range.is_none();
@@ -149,10 +148,10 @@ proptest! {
         let all_finite = positions.flatten().all(|x| x.is_finite());
         match Solid::try_from(mesh.clone()) {
             Ok(_) => prop_assert!(diagnosis.closed && !out_of_range),
-            Err(Error::IndexOutOfRange { .. }) => prop_assert!(out_of_range),
-            Err(Error::NotFinite { .. }) => prop_assert!(!diagnosis.not_finite.is_none()),
-            Err(Error::NotClosed(said)) => prop_assert_eq!(said.to_json(), diagnosis.to_json()),
-            Err(Error::InsideOut { .. }) => prop_assert!(diagnosis.closed && !diagnosis.inside_out_shells.is_none()),
+            Err(MeshError::IndexOutOfRange { .. }) => prop_assert!(out_of_range),
+            Err(MeshError::NotFinite { .. }) => prop_assert!(!diagnosis.not_finite.is_none()),
+            Err(MeshError::NotClosed(said)) => prop_assert_eq!(format!("{said:?}"), format!("{diagnosis:?}")),
+            Err(MeshError::InsideOut { .. }) => prop_assert!(diagnosis.closed && !diagnosis.inside_out_shells.is_none()),
             Err(other) => prop_assert!(false, "{other}"),
         }
         let _ = (mesh.volume(), mesh.area(), mesh.centroid(), mesh.bounds(), mesh.clone().oriented());
@@ -214,14 +213,14 @@ fn faults_are_refused_by_name_and_place() {
         Solid::try_from(mesh).unwrap_err()
     };
     let error = refused(|mesh| mesh.triangles[4][1] = 8);
-    assert!(matches!(error, Error::IndexOutOfRange { triangle: 4, index: 8, vertices: 8 }), "{error}");
+    assert!(matches!(error, MeshError::IndexOutOfRange { triangle: 4, index: 8, vertices: 8 }), "{error}");
     let error = refused(|mesh| mesh.positions[5][2] = f64::INFINITY);
-    assert!(matches!(error, Error::NotFinite { vertex: 5, .. }), "{error}");
+    assert!(matches!(error, MeshError::NotFinite { vertex: 5, .. }), "{error}");
     let error = refused(|mesh| *mesh = mesh.clone().reversed());
-    assert!(matches!(error, Error::InsideOut { volume: -1.0 }), "{error}");
+    assert!(matches!(error, MeshError::InsideOut { volume: -1.0 }), "{error}");
     let error = refused(|mesh| mesh.groups.of_triangle = vec![0; 12]);
-    assert!(matches!(error, Error::InvalidArgument(_)), "{error}");
-    let Error::NotClosed(diagnosis) = refused(|mesh| mesh.triangles = mesh.triangles.split_off(1)) else {
+    assert!(matches!(error, MeshError::Groups(_)), "{error}");
+    let MeshError::NotClosed(diagnosis) = refused(|mesh| mesh.triangles = mesh.triangles.split_off(1)) else {
         panic!("not refused")
     };
     assert_eq!((diagnosis.open_edges.count, diagnosis.volume), (3, None));
@@ -266,7 +265,7 @@ fn advice_on_welding_holds() {
     let sphere = primitives::icosphere(10.0, 2).unwrap();
     for (jitter, expected) in [(1e-7, 1e-6), (1e-5, 1e-4)] {
         let soup = jittered_soup(&sphere, jitter);
-        let Err(Error::NotClosed(diagnosis)) = Solid::try_from(soup.clone()) else { panic!("closed") };
+        let Err(MeshError::NotClosed(diagnosis)) = Solid::try_from(soup.clone()) else { panic!("closed") };
         assert_eq!(diagnosis.closing_distance, Some(expected));
         assert_eq!(diagnosis.open_edges.count, 960);
         let solid = Solid::try_from(soup.welded(expected).unwrap()).unwrap();
@@ -293,9 +292,9 @@ fn volumes_are_right_at_any_size_and_place() {
     // At the limits of the numbers the volume overflows, but the sign is known.
     let largest = primitives::cuboid([-f64::MAX; 3], [f64::MAX; 3]).unwrap();
     assert_eq!(Solid::try_from(largest.clone()).unwrap().volume(), f64::INFINITY);
-    assert!(matches!(Solid::try_from(largest.reversed()), Err(Error::InsideOut { .. })));
+    assert!(matches!(Solid::try_from(largest.reversed()), Err(MeshError::InsideOut { .. })));
     let smallest = primitives::cuboid([0.0; 3], [5e-324; 3]).unwrap();
-    assert!(matches!(Solid::try_from(smallest.reversed()), Err(Error::InsideOut { .. })));
+    assert!(matches!(Solid::try_from(smallest.reversed()), Err(MeshError::InsideOut { .. })));
     // Grid coordinates of a map.
     let sphere = primitives::icosphere(0.5, 5).unwrap();
     let there = sphere.clone().translated([500_000.0, 4_649_776.0, 120.0]);
@@ -315,7 +314,7 @@ fn the_sign_of_the_volume_is_never_in_doubt() {
     let d = 2f64.powi(-29);
     let expected = d * (3.0 + d * (3.0 + d));
     assert!((Solid::try_from(positive.clone()).unwrap().volume() / expected - 1.0).abs() < 1e-9);
-    assert!(matches!(Solid::try_from(positive.reversed()), Err(Error::InsideOut { .. })));
+    assert!(matches!(Solid::try_from(positive.reversed()), Err(MeshError::InsideOut { .. })));
     // A sheet closed by two different triangulations: nothing inside, and neither inside out.
     let corners = vec![[0.1, 0.2, 0.3], [1.1, 0.2, 0.3], [1.1, 1.2, 0.3], [0.1, 1.2, 0.3]];
     let sheet = Mesh::new(corners, vec![[0, 1, 2], [0, 2, 3], [1, 0, 3], [1, 3, 2]]);

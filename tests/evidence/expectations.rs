@@ -1,7 +1,7 @@
 //! Pairs of models whose booleans another engine has worked out with exact constructions.
 
 use serde_json::Value;
-use trisect::{BooleanOptions, Control, Error, Mesh, Operation, Solid};
+use trisect::{BooleanOptions, Control, Mesh, MeshError, Operation, Solid};
 
 use super::models::{find, fixtures};
 use super::surface::Properties;
@@ -64,7 +64,7 @@ fn judged(entry: &Value) -> Result<Answer, String> {
         let crossings = solid.self_crossings(&Control::new()).expect("no limits");
         if !crossings.is_clean() {
             // The only right reason among the recorded cases, and only there.
-            let error = Error::SelfCrossing(Box::new(crossings.clone()));
+            let error = MeshError::SelfCrossing(Box::new(crossings.clone()));
             return match entry["operation"] == "self-union" {
                 true => Ok(Answer::Refused(error.to_string())),
                 false => Err(format!("refused: {error}")),

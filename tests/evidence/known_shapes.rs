@@ -51,7 +51,7 @@ fn mirrored_boxes() {
     // Manifold: Boolean.Mirrored.
     let mirrored = |factors| {
         let unit = primitives::cuboid([0.0; 3], [1.0; 3]).expect("a box");
-        solid(unit.scaled(factors))
+        solid(unit.scaled(factors).map_err(trisect::Error::from))
     };
     let (result, found) = run(Difference, &[&mirrored([1.0, -1.0, 1.0]), &mirrored([0.5, -1.0, 0.5])]);
     assert_eq!((found.volume, found.area), (0.75, 5.5));

@@ -1,7 +1,7 @@
 //! Seven small cases with known answers. Most engines get at least one of them wrong without a word.
 
 use trisect::Operation::{Difference, Union};
-use trisect::{Control, Error, Mesh, Operation, Solid, boolean, primitives};
+use trisect::{Control, Mesh, MeshError, Operation, Solid, boolean, primitives};
 
 use super::surface::Properties;
 
@@ -73,7 +73,7 @@ fn an_open_operand_is_refused_with_places() {
     let mut open = cube([1.0; 3], 1.0);
     open.triangles.truncate(10);
     match Solid::try_from(open) {
-        Err(Error::NotClosed(diagnosis)) => assert_eq!(diagnosis.open_edges.count, 4),
+        Err(MeshError::NotClosed(diagnosis)) => assert_eq!(diagnosis.open_edges.count, 4),
         other => panic!("{other:?}"),
     }
 }
@@ -99,11 +99,11 @@ fn boxes_that_share_a_face_become_one() {
 fn what_is_not_a_number_and_what_is_inside_out_are_refused() {
     let mut mesh = cube([0.0; 3], 1.0);
     mesh.positions[3][1] = f64::NAN;
-    assert!(matches!(Solid::try_from(mesh), Err(Error::NotFinite { vertex: 3, .. })));
+    assert!(matches!(Solid::try_from(mesh), Err(MeshError::NotFinite { vertex: 3, .. })));
     let mut mesh = cube([0.0; 3], 1.0);
     mesh.triangles.iter_mut().for_each(|corners| corners.swap(1, 2));
     match Solid::try_from(mesh) {
-        Err(Error::InsideOut { volume }) => assert_eq!(volume, -1.0),
+        Err(MeshError::InsideOut { volume }) => assert_eq!(volume, -1.0),
         other => panic!("{other:?}"),
     }
 }

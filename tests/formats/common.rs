@@ -128,11 +128,16 @@ pub(crate) fn assert_error_or_valid(result: Result<trisect::io::Loaded, Error>) 
             assert_valid(&loaded.mesh);
             true
         }
-        Err(Error::Malformed { place, what, .. }) => {
+        Err(Error::Format(trisect::io::FormatError::Malformed { place, what, .. })) => {
             assert!(!place.is_empty() && !what.is_empty());
             false
         }
-        Err(Error::Unsupported { .. } | Error::UnknownFormat { .. } | Error::TooLarge { .. }) => false,
+        Err(
+            Error::Format(
+                trisect::io::FormatError::Unsupported { .. } | trisect::io::FormatError::Unknown { .. },
+            )
+            | Error::TooLarge { .. },
+        ) => false,
         Err(other) => panic!("unexpected error: {other}"),
     }
 }

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use trisect::io::{Format, ReadOptions, WriteOptions, load, save};
-use trisect::{CancelToken, Control, Error, Mesh};
+use trisect::io::{Format, FormatError, ReadOptions, WriteOptions, load, save};
+use trisect::{CancelToken, Control, Error, FileAction, Mesh, MeshError};
 
 use super::common::*;
 
@@ -94,9 +94,12 @@ fn wrong_extensions_are_read_by_content_with_a_warning() {
     fs::write(folder.path("empty.obj"), b"").unwrap();
     let error = Mesh::load(folder.path("empty.obj")).unwrap_err().to_string();
     assert!(error.contains("empty"), "{error}");
-    assert!(matches!(Mesh::load(folder.path("none.obj")), Err(Error::File { action: "read", .. })));
+    assert!(matches!(Mesh::load(folder.path("none.obj")), Err(Error::File { action: FileAction::Read, .. })));
     assert!(matches!(Mesh::load(&folder.0), Err(Error::File { .. })));
-    assert!(matches!(grouped_box().save(folder.path("a.step")), Err(Error::UnknownFormat { .. })));
+    assert!(matches!(
+        grouped_box().save(folder.path("a.step")),
+        Err(Error::Format(FormatError::Unknown { .. }))
+    ));
 }
 
 #[test]
@@ -110,8 +113,14 @@ fn failure_leaves_the_folder_as_it_was() {
     let cancelled = WriteOptions::new().control(Control::new().cancel(&token));
     for format in Format::ALL {
         let name = format!("a.{}", format.extension());
-        assert!(matches!(broken.save(folder.path(&name)), Err(Error::IndexOutOfRange { .. })));
-        assert!(matches!(save(&grouped_box(), folder.path(&name), &cancelled), Err(Error::Cancelled)));
+        assert!(matches!(
+            broken.save(folder.path(&name)),
+            Err(Error::Mesh(MeshError::IndexOutOfRange { .. }))
+        ));
+        assert!(matches!(
+            save(&grouped_box(), folder.path(&name), &cancelled),
+            Err(Error::Limit(trisect::Limit::Cancelled))
+        ));
         assert_eq!(folder.names(), [""; 0]);
         fs::write(folder.path(&name), before).unwrap();
         assert!(broken.save(folder.path(&name)).is_err());
@@ -195,9 +204,9 @@ fn limits_stop_a_reader() {
         let bytes = to_bytes(&grouped_box(), format, &options);
         let cancelled = ReadOptions::new().control(Control::new().cancel(&token));
         let error = trisect::io::read(&bytes, format, &cancelled).unwrap_err();
-        assert!(matches!(error, Error::Cancelled), "{format}: {error}");
+        assert!(matches!(error, Error::Limit(trisect::Limit::Cancelled)), "{format}: {error}");
     }
     let small = ReadOptions::new().control(Control::new().memory_limit(100));
     let path = fixture("sphere_binary_solid_header.stl");
-    assert!(matches!(load(Path::new(&path), &small), Err(Error::MemoryLimit { .. })));
+    assert!(matches!(load(Path::new(&path), &small), Err(Error::Limit(trisect::Limit::Memory { .. }))));
 }

@@ -162,7 +162,10 @@ fn sizes_beyond_single_precision() {
                 (Format::Off, WriteOptions::new().precision(Precision::Single)),
             ] {
                 let error = write(&mesh, format, &mut Vec::new(), &options).unwrap_err();
-                assert!(matches!(error, Error::Unsupported { .. }), "{error}");
+                assert!(
+                    matches!(error, Error::Format(trisect::io::FormatError::Unsupported { .. })),
+                    "{error}"
+                );
             }
         }
     }

@@ -53,6 +53,7 @@ fn command_lines_that_make_no_sense_are_usage_errors() {
         ("union a.obj b.obj -o c.obj --timeout -1", "more than 0"),
         ("union a.obj b.obj -o c.obj --memory 4X", "unit"),
         ("union a.obj b.obj -o c.obj --threads 0", "0 is not in"),
+        ("union a.obj b.obj -o c.obj --threads -1", "-1 is not in"),
         ("union a.obj b.obj -o c.obj -q -v", "cannot be used with"),
         ("union a.obj b.obj -o .", "is a folder"),
         ("union a.obj b.obj -o c.obj --format dwg", "known formats: obj"),
@@ -362,7 +363,7 @@ fn the_memory_ceiling_is_a_limit() {
 fn thread_counts_do_not_change_a_byte() {
     let folder = Folder::new();
     folder.write("a.off", program::sphere(40, 1.0, [0.1, 0.2, 0.3]));
-    for threads in [1, 2, 8] {
+    for threads in [1, 2, 8, 1024] {
         folder
             .run(&format!("convert a.off -o {threads}.obj --png {threads}.png --threads {threads}"))
             .exits(0);

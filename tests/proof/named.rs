@@ -255,5 +255,5 @@ fn an_open_operand_is_refused_with_its_edges() {
     let mut mesh = primitives::cuboid([0.0; 3], [1.0; 3]).expect("a cube");
     mesh.triangles.truncate(10);
     let error = Solid::try_from(mesh).expect_err("it is open");
-    assert!(matches!(error, trisect::Error::NotClosed(_)), "{error}");
+    assert!(matches!(error, trisect::MeshError::NotClosed(_)), "{error}");
 }

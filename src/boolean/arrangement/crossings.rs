@@ -201,7 +201,7 @@ impl Search<'_> {
         };
         let (mut tail, mut head) = (None, None);
         let mut place = |crossing: Crossing, is_head: bool| {
-            *(if is_head { &mut head } else { &mut tail }) = Some(crossing)
+            *(if is_head { &mut head } else { &mut tail }) = Some(crossing);
         };
         let (p_inside, u_inside) = (a_inside[alone_a], b_inside[alone_b]);
         if qv != qw {

@@ -7,8 +7,8 @@ use glam::Vec3A;
 
 use super::refined_boxes::Corners;
 use super::{SAMPLE, corners};
-use crate::Error;
 use crate::boolean::complex::Complex;
+use crate::control::Limit;
 use crate::parallel::Runner;
 use crate::spatial::{Cell, Frame, Occupancy, read_ahead};
 
@@ -39,7 +39,7 @@ pub(super) fn cull(
     frame: &Frame,
     coarse_cell: f32,
     runner: Runner<'_>,
-) -> Result<Option<[Vec<u32>; 2]>, Error> {
+) -> Result<Option<[Vec<u32>; 2]>, Limit> {
     let near = [complex.near(0), complex.near(1)];
     // 1. A grid that fits the triangles, if there is one.
     let Some(grid) = fitting_grid(complex, frame, near, coarse_cell) else { return Ok(None) };
@@ -160,7 +160,7 @@ impl<'a> Culling<'a> {
 
     /// The grid with the cells marked that some triangles pass. Grids marked side by side are united: which triangle is
     /// marked by which thread does not matter.
-    fn marked_by(&self, side: usize, triangles: &[u32]) -> Result<Occupancy, Error> {
+    fn marked_by(&self, side: usize, triangles: &[u32]) -> Result<Occupancy, Limit> {
         let grain = triangles.len().div_ceil(self.runner.threads().min(MOST_GRIDS)).max(1);
         let grids = self.runner.pieces(triangles.len(), grain, |range| {
             let mut marked = self.grid.empty();
@@ -181,7 +181,7 @@ impl<'a> Culling<'a> {
     }
 
     /// The near triangles of a side that pass a marked cell.
-    fn passing(&self, marked: &Occupancy, side: usize) -> Result<Vec<u32>, Error> {
+    fn passing(&self, marked: &Occupancy, side: usize) -> Result<Vec<u32>, Limit> {
         let near = self.near[side];
         self.runner.gather(near.len(), TRIANGLES_PER_PIECE, 0, |range, passing| {
             self.for_each_with_cells(side, &near[range], |t, cells| {

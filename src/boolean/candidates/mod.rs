@@ -104,7 +104,7 @@ impl Candidates {
         visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
     ) -> Result<Vec<T>, Error> {
         match &self.hierarchies {
-            Hierarchies::Boxes([a, b]) => visit_pairs(a, b, runner, visit),
+            Hierarchies::Boxes([a, b]) => Ok(visit_pairs(a, b, runner, visit)?),
             Hierarchies::Capsules([a, b]) => capsule_tree::visit_pairs(a, b, runner, visit),
         }
     }

@@ -234,9 +234,9 @@ impl View<'_> {
             passed.is_marked(cells, || self.corners(corners))
         };
         let near = &seen.near;
-        runner.gather(near.len(), PIECE, 0, |range, meeting| {
+        Ok(runner.gather(near.len(), PIECE, 0, |range, meeting| {
             meeting.extend(near[range].iter().copied().filter(may_meet));
-        })
+        })?)
     }
 
     fn corners(&self, triangle: [u32; 3]) -> [glam::Vec3A; 3] {

@@ -15,6 +15,8 @@ use std::str::FromStr;
 /// assert!("merge".parse::<Operation>().is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Operation {
     /// What is in any operand.
@@ -24,11 +26,14 @@ pub enum Operation {
     /// What is in the first and in none of the others.
     Difference,
     /// What is in an odd number of operands.
+    #[cfg_attr(feature = "serde", serde(rename = "xor"))]
     SymmetricDifference,
 }
 
 /// What becomes of operands of a union that touch without overlapping. In text `fuse` or `separate`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Contact {
     /// Touching faces vanish: the bodies become one. (Bodies that touch in an edge or a vertex alone stay apart.)

@@ -2,6 +2,7 @@
 
 /// Where a triangle of a result came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Origin {
     /// Position of the operand in the argument list.
     pub operand: u32,

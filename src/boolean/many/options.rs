@@ -5,6 +5,8 @@ use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::result::outcome::Outcome;
 use crate::control::Control;
 use crate::parallel::Runner;
+#[cfg(feature = "parallel")]
+use crate::parallel::run_in_pool;
 use crate::{Error, Solid};
 
 /// Settings of a boolean. The default has no limits and uses every thread of the current rayon pool.
@@ -39,7 +41,8 @@ impl BooleanOptions {
         self
     }
 
-    /// Exactly this many threads (1: the caller's own, no pool). Without it, the rayon pool the caller is in.
+    /// Exactly this many threads, [`most_threads`](crate::control::most_threads) at most (1: the caller's own, no pool).
+    /// Without it, the rayon pool the caller is in. Pools are kept from call to call; calls at the same time share one.
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = Some(threads);
@@ -81,7 +84,7 @@ impl BooleanOptions {
     /// in which regions count as often as they are enclosed; the certificate tells what is known of each operand.
     ///
     /// # Errors
-    /// Only limits: [`Error::Cancelled`], [`Error::DeadlineExceeded`], [`Error::MemoryLimit`]; [`Error::TooLarge`] if the
+    /// Only limits: [`Limit::Cancelled`](crate::Limit::Cancelled), [`Limit::DeadlineExceeded`](crate::Limit::DeadlineExceeded), [`Limit::Memory`](crate::Limit::Memory); [`Error::TooLarge`] if the
     /// vertices of two operands and of their intersection cannot be numbered with 32 bits; and [`Error::InvalidArgument`]
     /// for an empty list of operands, or where a pool of `threads` threads cannot be made.
     pub fn run<'a>(
@@ -112,11 +115,9 @@ impl BooleanOptions {
         operands: &[&Solid],
         threads: usize,
     ) -> Result<Outcome, Error> {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .map_err(|error| Error::InvalidArgument(format!("cannot make {threads} threads: {error}")))?;
-        pool.install(|| run(self.policy, operation, operands, Runner::new(&self.control, true)))
+        let run = || run(self.policy, operation, operands, Runner::new(&self.control, true));
+        run_in_pool(threads, run)
+            .map_err(|error| Error::InvalidArgument(format!("cannot make {threads} threads: {error}")))?
     }
 
     #[cfg(not(feature = "parallel"))]
@@ -127,5 +128,25 @@ impl BooleanOptions {
         _threads: usize,
     ) -> Result<Outcome, Error> {
         run(self.policy, operation, operands, Runner::new(&self.control, false))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::primitives;
+
+    #[test]
+    fn any_number_of_threads_may_be_asked_for() {
+        let ball = |x: f64| {
+            let ball = primitives::geodesic_sphere(1.0, 24).unwrap().translated([x, 0.1, 0.0]);
+            Solid::try_from(ball).unwrap()
+        };
+        let operands = [ball(0.0), ball(0.7)];
+        let united =
+            |threads| BooleanOptions::new().threads(threads).run(Operation::Union, &operands).unwrap();
+        let alone = united(1);
+        assert_eq!(united(100_000).solid(), alone.solid());
+        assert_eq!(united(usize::MAX).solid(), alone.solid());
     }
 }

@@ -2,13 +2,12 @@
 
 use std::fmt;
 
-use serde_json::{Value, json};
-
 use crate::Solid;
 use crate::exact::collinear;
 
 /// What a result is, and what making it met.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Certificate {
     /// Number of vertices.
@@ -46,6 +45,8 @@ pub struct Certificate {
 
 /// What is known of an operand's crossings with itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum OperandState {
     /// Nobody has asked; see [`Solid::self_crossings`].
@@ -113,36 +114,6 @@ impl Certificate {
             clean_up_stopped: notes.clean_up_stopped,
             operands: notes.operands.clone(),
         }
-    }
-
-    /// The certificate as a JSON object with stable keys.
-    #[must_use]
-    pub fn to_json(&self) -> Value {
-        let operands: Vec<Value> = self
-            .operands
-            .iter()
-            .map(|state| match state {
-                OperandState::NotChecked => json!({ "self_crossings": null }),
-                OperandState::Clean { tolerated } => json!({ "self_crossings": 0, "tolerated": tolerated }),
-                OperandState::Crossing { count } => json!({ "self_crossings": count }),
-            })
-            .collect();
-        json!({
-            "vertices": self.vertices,
-            "triangles": self.triangles,
-            "closed": self.closed,
-            "manifold": self.manifold,
-            "components": self.components,
-            "genus": self.genus,
-            "volume": self.volume,
-            "area": self.area,
-            "zero_area": self.zero_area,
-            "inverted": self.inverted,
-            "largest_rounding": self.largest_rounding,
-            "contacts": self.contacts,
-            "clean_up_stopped": self.clean_up_stopped,
-            "operands": operands,
-        })
     }
 }
 

@@ -14,7 +14,7 @@ use super::lattice::{Cube, Key, Lattice, unkey};
 use crate::field::expression::{Choice, Scratch, Tape};
 use crate::field::interval::Interval;
 use crate::field::number::Number;
-use crate::field::work;
+use crate::field::{FieldError, work};
 use crate::{Control, Error};
 
 /// A cube that is not divided further.
@@ -157,11 +157,7 @@ fn divide(
 pub(super) fn value_at(tape: &Tape, place: DVec3, scratch: &mut Scratch) -> Result<f64, Error> {
     let value = tape.value(place.to_array(), scratch);
     if value.is_nan() {
-        let [x, y, z] = place.to_array();
-        return Err(Error::Field(format!(
-            "the field is not a number at ({x}, {y}, {z}): a root or logarithm of a negative number, or 0/0; \
-             restrict the formula to where it is defined"
-        )));
+        return Err(FieldError::NotANumber { place: place.to_array() }.into());
     }
     Ok(value)
 }

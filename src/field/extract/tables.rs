@@ -11,7 +11,7 @@ use super::loops::{LoopLink, chain, stretches};
 use super::octree::{Leaf, value_at};
 use super::solve::{crossing, kink};
 use crate::field::expression::{Scratch, Tape};
-use crate::field::work;
+use crate::field::{FieldError, work};
 use crate::{Control, Error};
 
 /// The cells that the surface may meet, and everything about their boundaries that is known before fillings are made.
@@ -103,7 +103,7 @@ impl<'a> Tables<'a> {
 
     pub(super) fn tape(&self, cell: usize) -> Result<&Tape, Error> {
         // Cells are those leaves that have a tape.
-        self.cells[cell].tape.as_deref().ok_or_else(|| Error::Field("an empty cell has no field".into()))
+        self.cells[cell].tape.as_deref().ok_or_else(|| FieldError::Nowhere.into())
     }
 
     pub(super) fn is_inside(&self, point: Key) -> bool {
@@ -317,9 +317,6 @@ fn first_of_each<T: Ord + Copy, N: PartialEq>(mut entries: Vec<T>, name: impl Fn
     entries
 }
 
-pub(super) fn unbounded([x, y, z]: [f64; 3]) -> Error {
-    Error::Field(format!(
-        "the solid does not end inside the box: it reaches ({x:.6}, {y:.6}, {z:.6}) on its boundary; give larger \
-         bounds, or clip the solid to the box"
-    ))
+pub(super) fn unbounded(place: [f64; 3]) -> Error {
+    FieldError::LeavesBox { place }.into()
 }

@@ -73,8 +73,8 @@ impl<'a> Builder<'a> {
         if self.charged > limit {
             return Err(Error::TooLarge {
                 what: format!(
-                    "the flattened scene needs more than {limit} bytes, {} times its file; if the file is right, \
-                     allow more (ReadOptions::expansion)",
+                    "the flattened scene needs more than {limit} bytes, {} times its file, the most that was \
+                     allowed",
                     limit / whole.max(1)
                 ),
             });
@@ -85,7 +85,7 @@ impl<'a> Builder<'a> {
             self.reservations.push(self.options.control.reserve(more.max(1 << 20))?);
             self.reserved += more.max(1 << 20);
         }
-        self.options.control.check()
+        Ok(self.options.control.check()?)
     }
 
     /// Adds a mesh under a transform, as the given node shows it.

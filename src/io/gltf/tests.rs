@@ -230,7 +230,10 @@ fn faults_are_told_with_their_place() {
     ] {
         let error = read_json(&changed(&changes)).unwrap_err();
         let text = error.to_string();
-        assert!(matches!(error, Error::Malformed { .. }), "{changes:?}: {text}");
+        assert!(
+            matches!(error, Error::Format(crate::io::FormatError::Malformed { .. })),
+            "{changes:?}: {text}"
+        );
         assert!(text.contains(place) && text.contains(word), "{changes:?}: {text}");
     }
 }
@@ -268,7 +271,7 @@ fn extensions_and_versions_that_cannot_be_read_are_named_with_the_way_out() {
         (vec![("/asset/minVersion", json!("2.1"))], "2.1"),
     ] {
         let error = read_json(&changed(&changes)).unwrap_err();
-        assert!(matches!(error, Error::Unsupported { .. }), "{error}");
+        assert!(matches!(error, Error::Format(crate::io::FormatError::Unsupported { .. })), "{error}");
         assert!(error.to_string().contains(word), "{error}");
     }
 }

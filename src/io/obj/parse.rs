@@ -6,7 +6,8 @@ use super::super::faces::{FaceList, FacePlace, too_large};
 use super::super::notes::Notes;
 use super::super::scan::{Scanner, line_place, quote};
 use super::super::{Format, malformed};
-use crate::{Control, Error};
+use crate::Error;
+use crate::control::{Control, Limit};
 
 /// What one chunk of the file holds.
 #[derive(Debug, Default)]
@@ -47,6 +48,12 @@ pub(super) enum Fault {
 impl From<Error> for Fault {
     fn from(error: Error) -> Self {
         Self::Error(error)
+    }
+}
+
+impl From<Limit> for Fault {
+    fn from(limit: Limit) -> Self {
+        Self::Error(limit.into())
     }
 }
 

@@ -54,6 +54,9 @@ fn faults_are_told_with_their_line() {
 fn other_dimensions_and_binary_are_refused() {
     for header in ["4OFF", "nOFF", "4nOFF", "OFF BINARY"] {
         let error = read_text(&format!("{header}\n3 1 0\n")).unwrap_err();
-        assert!(matches!(error, Error::Unsupported { .. }), "{header}: {error}");
+        assert!(
+            matches!(error, Error::Format(crate::io::FormatError::Unsupported { .. })),
+            "{header}: {error}"
+        );
     }
 }

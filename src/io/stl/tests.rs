@@ -46,7 +46,10 @@ fn counts_that_lie() {
     let whole = binary(2, &TWO);
     for length in 1..whole.len() {
         let error = read_all(&whole[..length]);
-        assert!(matches!(error, Err(Error::Malformed { .. })), "{length}: {error:?}");
+        assert!(
+            matches!(error, Err(Error::Format(crate::io::FormatError::Malformed { .. }))),
+            "{length}: {error:?}"
+        );
     }
 }
 

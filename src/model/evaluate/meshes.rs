@@ -11,7 +11,7 @@ use crate::boolean::BooleanOptions;
 use crate::field::{Extracted, Extraction, extrude};
 use crate::io::ReadOptions;
 use crate::model::{Kind, Mode};
-use crate::{Error, Mesh, Solid};
+use crate::{Error, Mesh, MeshError, Solid};
 
 impl State<'_> {
     /// The node as a mesh: by the exact booleans where it is an operation.
@@ -77,7 +77,8 @@ impl State<'_> {
                 }
             }
         };
-        moved(mesh, at.transform).and_then(Solid::try_from).map_err(|error| error.in_node(label))
+        let solid = moved(mesh, at.transform).and_then(Solid::try_from);
+        solid.map_err(|error| Error::from(error).in_node(label))
     }
 
     fn loaded(&mut self, path: &Path) -> Result<Mesh, Error> {
@@ -116,7 +117,7 @@ impl State<'_> {
             Some(bounds) => Some(bounds),
             None => field.positive_bounds(None, control).map_err(|error| error.in_node(label))?,
         };
-        let Some([low, high]) = bounds else { return Solid::try_from(Mesh::default()) };
+        let Some([low, high]) = bounds else { return Ok(Solid::empty()) };
         let diagonal = DVec3::from_array(low).distance(DVec3::from_array(high));
         let tolerance = self.tolerance(node, diagonal);
         let Extracted { mesh, cells, divided_cells, deviation, .. } = Extraction::new(low, high, tolerance)
@@ -125,12 +126,12 @@ impl State<'_> {
             .run(&field)
             .map_err(|error| error.in_node(label))?;
         self.last = Some(ExtractionReport { tolerance, deviation, cells, divided_cells });
-        Solid::try_from(mesh).map_err(|error| error.in_node(label))
+        Solid::try_from(mesh).map_err(|error| Error::from(error).in_node(label))
     }
 }
 
 /// The mesh transformed, still facing outward.
-fn moved(mesh: Mesh, transform: DAffine3) -> Result<Mesh, Error> {
+fn moved(mesh: Mesh, transform: DAffine3) -> Result<Mesh, MeshError> {
     if transform == DAffine3::IDENTITY {
         return Ok(mesh);
     }

@@ -10,13 +10,13 @@ use rustc_hash::FxHashSet;
 use super::face_mesh::{EdgeSplit, FaceMesh, Proposal, Start, number_nodes};
 use super::joints::{self, Course, FaceSide, Gap, Joints, nearest_parameter};
 use super::orientation;
-use crate::parallel;
 use super::surface::{Patch, PatchSide};
+use crate::parallel;
 use crate::parametric::curve::discretise::{CurveMeshing, Refinement, check_resolvable};
 use crate::parametric::curve::param_curve::Curve;
 use crate::parametric::error::{GeometryError, check_positive};
 use crate::parametric::numeric::vector::{self, Point};
-use crate::{Control, Error, FaceGroup, FaceGroups, Mesh, Solid};
+use crate::{Control, Error, FaceGroup, FaceGroups, Mesh, MeshError, Solid};
 
 /// Settings of a patch mesh.
 #[derive(Clone, Debug)]
@@ -58,7 +58,7 @@ impl PatchMesh {
     ///
     /// # Errors
     /// Those of [`Solid`]'s conversion.
-    pub fn into_solid(self) -> Result<Solid, Error> {
+    pub fn into_solid(self) -> Result<Solid, MeshError> {
         Solid::try_from(self.mesh)
     }
 }
@@ -149,7 +149,7 @@ impl PatchMeshing {
     /// # Errors
     /// [`GeometryError::OutOfRange`], [`GeometryError::ToleranceTooSmall`], [`GeometryError::TooManyNodes`],
     /// [`GeometryError::BoundaryShared`] if more than two boundaries run along one curve,
-    /// [`GeometryError::OneSided`]; [`Error::Cancelled`], [`Error::DeadlineExceeded`].
+    /// [`GeometryError::OneSided`]; [`Limit::Cancelled`](crate::Limit::Cancelled), [`Limit::DeadlineExceeded`](crate::Limit::DeadlineExceeded).
     pub fn surface(&self, patches: &[Patch]) -> Result<PatchMesh, Error> {
         let (faces, joints) = self.prepare(patches)?;
         self.run(patches, &faces, &joints)
