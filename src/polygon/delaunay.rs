@@ -5,7 +5,10 @@ use rustc_hash::FxHashMap;
 use spade::handles::{DirectedEdgeHandle, FixedVertexHandle};
 use spade::{CdtEdge, ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
-use super::winding::{CountedEdge, CountedTriangle};
+/// A directed edge and how often it counts.
+pub(super) type CountedEdge = ([u32; 2], i32);
+/// A counter-clockwise triangle and how often it counts.
+pub(crate) type CountedTriangle = ([u32; 3], i32);
 
 /// Why edges are not all edges of one triangulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,7 +130,7 @@ pub(super) fn triangulate_rings(
 type Counts = FxHashMap<(u32, u32), i32>;
 
 /// Triangulates the plane between edges that each count a number of times, and returns the counter-clockwise triangles
-/// round which they wind, with the winding number. The triangulation holds every edge as it is, or there is a conflict.
+/// around which they wind, with the winding number. The triangulation holds every edge as it is, or there is a conflict.
 pub(super) fn triangulate_between(
     points: &[[f64; 2]],
     edges: &[CountedEdge],
