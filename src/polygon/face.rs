@@ -150,7 +150,12 @@ impl FaceTriangulator {
         self.found.clear();
         // 1. Large polygons by Delaunay triangulation: if there is one, it tiles them.
         if n >= DELAUNAY_FROM
-            && delaunay::triangulate_rings(&self.points, &[&self.ring], &mut self.found)
+            && delaunay::triangulate_rings(
+                &self.points,
+                &[&self.ring],
+                delaunay::Bridges::Kept,
+                &mut self.found,
+            )
             && self.tell_equal_places_apart()
         {
             return Tiling::Proper;
@@ -163,7 +168,8 @@ impl FaceTriangulator {
         }
         // 3. Small ones by clipping ears.
         let found = &mut self.found;
-        let shape = self.ears.clip_places(&self.points, &self.ring, |places| found.push(places));
+        let shape =
+            self.ears.clip_places(&self.points, &self.ring, ears::Spikes::Any, |places| found.push(places));
         let is_sound = self.found.iter().all(|places| {
             let [a, b, c] = places.map(|place| corners[place as usize]);
             // A triangle that names a vertex twice covers nothing: its edges cancel.

@@ -12,6 +12,8 @@ mod holes;
 mod loops;
 mod winding;
 
+use delaunay::Bridges;
+
 pub(crate) use delaunay::{Conflict, fill_region};
 pub(crate) use face::{FaceTriangulator, Tiling};
 pub(crate) use winding::{Edge, Found, by_winding, cross_properly};
@@ -91,7 +93,7 @@ impl Triangulator {
         let boundary = self.tracer.trace(points, edges);
         let is_sound = holes::group(points, boundary).iter().all(|polygon| {
             if polygon.len() >= DELAUNAY_FROM {
-                return delaunay::triangulate_rings(points, &polygon.rings(), triangles);
+                return delaunay::triangulate_rings(points, &polygon.rings(), Bridges::Forgotten, triangles);
             }
             self.with_holes(points, polygon, triangles) == Shape::Sound
         });
@@ -108,7 +110,9 @@ impl Triangulator {
         polygon: &[u32],
         triangles: &mut Vec<[u32; 3]>,
     ) -> Shape {
-        if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate_rings(points, &[polygon], triangles) {
+        if polygon.len() >= DELAUNAY_FROM
+            && delaunay::triangulate_rings(points, &[polygon], Bridges::Forgotten, triangles)
+        {
             return Shape::Sound;
         }
         self.ears.clip(points, polygon, triangles)
@@ -123,7 +127,8 @@ impl Triangulator {
         if polygon.holes.is_empty() {
             return self.simple(points, &polygon.outer, triangles);
         }
-        if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate_rings(points, &polygon.rings(), triangles)
+        if polygon.len() >= DELAUNAY_FROM
+            && delaunay::triangulate_rings(points, &polygon.rings(), Bridges::Forgotten, triangles)
         {
             return Shape::Sound;
         }
