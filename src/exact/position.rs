@@ -29,7 +29,7 @@ pub(crate) fn crossing_filter(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 
     Some(position)
 }
 
-/// A number that is known but for an error.
+/// A number known up to an error.
 #[derive(Clone, Copy, Debug)]
 struct Near {
     value: DoubleDouble,
@@ -42,7 +42,7 @@ impl Near {
     }
 }
 
-/// The crossing point of edge `(p, q)` with the plane of the triangle but for errors, if double-double arithmetic can tell.
+/// The crossing point of edge `(p, q)` with the plane of the triangle up to errors, if double-double arithmetic can tell.
 #[inline]
 fn near_crossing(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> Option<[Near; 3]> {
     const LOW: f64 = f64::from_bits((1023 - 300) << 52);

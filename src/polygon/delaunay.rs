@@ -105,6 +105,7 @@ fn missing_vertex(triangulation: &Delaunay, count: usize) -> u32 {
 pub(super) fn triangulate_rings(
     points: &[[f64; 2]],
     rings: &[&[u32]],
+    bridges: Bridges,
     triangles: &mut Vec<[u32; 3]>,
 ) -> bool {
     let mut corners = 0;
@@ -113,7 +114,7 @@ pub(super) fn triangulate_rings(
         corners += ring.len();
         edges.extend((0..ring.len()).map(|i| ([ring[i], ring[(i + 1) % ring.len()]], 1)));
     }
-    let Ok(found) = triangulate_between(points, &edges) else { return false };
+    let Ok(found) = triangulate_counted(points, &edges, bridges) else { return false };
     // Complete: the count of Euler's formula for one outline (vertices visited twice count twice).
     let is_complete = found.len() + 4 == corners + 2 * rings.len();
     let is_whole = is_complete && found.iter().all(|&(_, winding)| winding == 1);
@@ -123,17 +124,37 @@ pub(super) fn triangulate_rings(
     is_whole
 }
 
-/// How often edges count from their lower vertex to their higher one, if not 0 times.
+/// What becomes of edges that cancel, as the two ways over a bridge to a hole do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Bridges {
+    /// They are none of the triangulation's concern.
+    Forgotten,
+    /// They are edges of triangles, too.
+    Kept,
+}
+
+/// How often edges count from their lower vertex to their higher one.
 type Counts = FxHashMap<(u32, u32), i32>;
 
 /// Triangulates the plane between edges that each count a number of times, and returns the counter-clockwise triangles
-/// round which they wind, with the winding number. The triangulation holds every edge as it is, or there is a conflict.
+/// around which they wind, with the winding number. The triangulation holds every edge as it is, or there is a conflict.
 pub(super) fn triangulate_between(
     points: &[[f64; 2]],
     edges: &[CountedEdge],
 ) -> Result<Vec<CountedTriangle>> {
+    triangulate_counted(points, edges, Bridges::Forgotten)
+}
+
+fn triangulate_counted(
+    points: &[[f64; 2]],
+    edges: &[CountedEdge],
+    bridges: Bridges,
+) -> Result<Vec<CountedTriangle>> {
     // 1. What each edge counts in sum.
-    let counts = sum_counts(edges)?;
+    let mut counts = sum_counts(edges)?;
+    if bridges == Bridges::Forgotten {
+        counts.retain(|_, count| *count != 0);
+    }
     let mut constraints: Vec<(u32, u32)> = counts.keys().copied().collect();
     constraints.sort_unstable();
     // 2. Their ends first: loading vertices and edges at once would depend on the order of a hash set where points lie on
@@ -141,7 +162,8 @@ pub(super) fn triangulate_between(
     let (mut triangulation, handles) = load_ends(points, &constraints)?;
     // 3. Then the edges, in order.
     for &(u, v) in &constraints {
-        if triangulation.try_add_constraint(handles[&u], handles[&v]).is_empty() {
+        // (It is found in several parts if it runs through vertices, in none if it crosses another.)
+        if triangulation.try_add_constraint(handles[&u], handles[&v]).len() != 1 {
             return Err(Conflict::Crossing(u));
         }
     }
@@ -149,8 +171,9 @@ pub(super) fn triangulate_between(
     let mut seen = 0;
     let windings = flood(&triangulation, 0, |winding, edge| {
         let (from, to) = (edge.from().data().index, edge.to().data().index);
-        let count = counts.get(&(from.min(to), from.max(to))).copied().unwrap_or(0);
-        seen += usize::from(count != 0);
+        let known = counts.get(&(from.min(to), from.max(to)));
+        seen += usize::from(known.is_some());
+        let count = known.copied().unwrap_or(0);
         // What lies to the left of an edge winds once more than what lies to its right.
         winding - if from < to { count } else { -count }
     });
@@ -170,7 +193,6 @@ fn sum_counts(edges: &[CountedEdge]) -> Result<Counts> {
         }
         *counts.entry((u.min(v), u.max(v))).or_default() += if u < v { count } else { -count };
     }
-    counts.retain(|_, count| *count != 0);
     Ok(counts)
 }
 

@@ -40,6 +40,15 @@ const NOTHING: u32 = u32::MAX;
 /// Blocked as long as nothing is clipped.
 const SOMETHING: u32 = u32::MAX - 1;
 
+/// When spikes are looked for: corners at which what is left of the boundary turns straight back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Spikes {
+    /// If the boundary has one to begin with.
+    OfBoundary,
+    /// Also if the boundary passes a place twice, where clipping may make one.
+    Any,
+}
+
 /// Clips ears, the best-shaped first; keeps its scratch memory.
 #[derive(Debug, Default)]
 pub(super) struct EarClipper {
@@ -59,7 +68,7 @@ impl EarClipper {
         polygon: &[u32],
         triangles: &mut Vec<[u32; 3]>,
     ) -> Shape {
-        self.clip_places(points, polygon, |places| {
+        self.clip_places(points, polygon, Spikes::OfBoundary, |places| {
             let [a, b, c] = places.map(|place| polygon[place as usize]);
             // Cutting off a spike, or a vertex between two equal ones, leaves nothing behind.
             if a != b && b != c && c != a {
@@ -73,6 +82,7 @@ impl EarClipper {
         &mut self,
         points: &[[f64; 2]],
         polygon: &[u32],
+        spikes: Spikes,
         mut emit: impl FnMut([u32; 3]),
     ) -> Shape {
         let n = polygon.len();
@@ -85,7 +95,7 @@ impl EarClipper {
             pair.into_iter().for_each(emit);
             return Shape::Sound;
         }
-        self.start(points, polygon);
+        self.start(points, polygon, spikes);
         let mut shape = Shape::Sound;
         let mut some = 0;
         for left in (3..=n).rev() {
@@ -134,7 +144,7 @@ impl EarClipper {
         }
     }
 
-    fn start(&mut self, points: &[[f64; 2]], polygon: &[u32]) {
+    fn start(&mut self, points: &[[f64; 2]], polygon: &[u32], spikes: Spikes) {
         let n = polygon.len() as u32;
         self.links.clear();
         self.links.extend(polygon.iter().enumerate().map(|(i, &vertex)| Link {
@@ -148,7 +158,8 @@ impl EarClipper {
             self.links[link as usize].quality = self.quality(points, link);
         }
         self.repeated = (1..polygon.len()).any(|i| polygon[..i].contains(&polygon[i]));
-        self.spikes = (0..n).any(|link| self.is_spike(points, link));
+        let any = spikes == Spikes::Any && self.repeated;
+        self.spikes = any || (0..n).any(|link| self.is_spike(points, link));
     }
 
     /// Whether the boundary turns straight back at a corner.

@@ -13,11 +13,14 @@ mod holes;
 mod loops;
 mod winding;
 
+use delaunay::Bridges;
+
 pub(crate) use delaunay::{Conflict, fill_region};
 pub(crate) use face::{FaceTriangulator, Tiling};
 pub(crate) use winding::{Edge, Found, by_winding, cross_properly};
 
-/// From this many vertices a constrained Delaunay triangulation replaces ear clipping.
+/// From this many vertices a constrained Delaunay triangulation (n log n) replaces ear clipping (at least quadratic). On random
+/// star polygons it takes twice as long at 60 vertices and as long at 120; it bounds what a face with many holes can cost.
 const DELAUNAY_FROM: usize = 40;
 
 /// How sound a triangulation is: what its worst triangle is.
@@ -91,7 +94,7 @@ impl Triangulator {
         let boundary = self.tracer.trace(points, edges);
         let is_sound = holes::group(points, boundary).iter().all(|polygon| {
             if polygon.len() >= DELAUNAY_FROM {
-                return delaunay::triangulate_rings(points, &polygon.rings(), triangles);
+                return delaunay::triangulate_rings(points, &polygon.rings(), Bridges::Forgotten, triangles);
             }
             self.with_holes(points, polygon, triangles) == Shape::Sound
         });
@@ -108,7 +111,9 @@ impl Triangulator {
         polygon: &[u32],
         triangles: &mut Vec<[u32; 3]>,
     ) -> Shape {
-        if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate_rings(points, &[polygon], triangles) {
+        if polygon.len() >= DELAUNAY_FROM
+            && delaunay::triangulate_rings(points, &[polygon], Bridges::Forgotten, triangles)
+        {
             return Shape::Sound;
         }
         self.ears.clip(points, polygon, triangles)
@@ -123,7 +128,8 @@ impl Triangulator {
         if polygon.holes.is_empty() {
             return self.simple(points, &polygon.outer, triangles);
         }
-        if polygon.len() >= DELAUNAY_FROM && delaunay::triangulate_rings(points, &polygon.rings(), triangles)
+        if polygon.len() >= DELAUNAY_FROM
+            && delaunay::triangulate_rings(points, &polygon.rings(), Bridges::Forgotten, triangles)
         {
             return Shape::Sound;
         }
@@ -340,7 +346,7 @@ mod tests {
 
     #[test]
     fn a_hole_that_rounding_pushed_through_its_outline() {
-        // Corner 3 of the hole lies on the side from 0 to 1 but for an ulp.
+        // Corner 3 of the hole lies on the side from 0 to 1, less one unit in the last place.
         let third = 1.0 / 3.0;
         let points = [[0.0, 1.0], [1.0, 0.0], [2.0, 2.0], [third, 2.0 * third], [0.5, 0.75], [0.5, 1.0]];
         assert_eq!(orient2d(points[0], points[1], points[3]), Sign::Negative);

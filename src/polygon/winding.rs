@@ -1,4 +1,4 @@
-//! What edges wind round, whatever they are: sums of regions of one plane.
+//! What edges wind around, whatever they are: sums of regions of one plane.
 
 use rustc_hash::FxHashMap;
 
@@ -15,26 +15,25 @@ pub(crate) struct Edge {
     pub(crate) line: u32,
 }
 
-/// Vertices up to so many units in the last place of the largest coordinate from an edge may lie on it: each of the three
-/// points is off by half a unit in each coordinate.
+/// How far from an edge a vertex may be and still count as lying on it, in units in the last place of the largest coordinate:
+/// each of the three points is off by half a unit in each coordinate.
 const ROUNDING_ULPS: f64 = 4.0;
-/// Rounds of splitting edges. Splitting moves an edge by no more than rounding, so few are left after the first.
+/// How often edges are split at most. Splitting moves an edge by no more than rounding, so few are left after the first time.
 const ROUNDS: usize = 8;
 
-/// What edges wind round.
+/// What edges wind around.
 #[derive(Debug)]
 pub(crate) struct Found {
     /// Counter-clockwise triangles with their winding numbers.
     pub(crate) triangles: Vec<CountedTriangle>,
-    /// Triangles without area (but for rounding) between edges that run through vertices and the chains of edges in their
+    /// Triangles whose area is zero up to rounding, between edges that run through vertices and the chains of edges in their
     /// place, and how often they count.
     pub(crate) slivers: Vec<CountedTriangle>,
 }
 
-/// Triangulates what edges, each with a count, wind round. The boundary of the sum of all triangles is the sum of the edges,
-/// exactly. Where edges cross because their ends were
-/// rounded, a vertex so near an edge counts as lying on it. Where edges cross in earnest, `cross` is asked for a vertex
-/// (which it may append to the points); `None` if it has none.
+/// Triangulates what edges, each with a count, wind around. The boundary of the sum of all triangles is the sum of the edges,
+/// exactly. Where edges cross only because their ends were rounded, a vertex within rounding of an edge counts as lying on
+/// it. Where they cross properly, `cross` is asked for a vertex (which it may append to the points); `None` if it has none.
 pub(crate) fn by_winding(
     points: &mut Vec<[f64; 2]>,
     edges: &[Edge],
