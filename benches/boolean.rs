@@ -5,7 +5,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use trisect::Operation::{Difference, Union};
-use trisect::{Operation, Options, Solid};
+use trisect::{BooleanOptions, Operation, Solid};
 
 mod shapes;
 
@@ -35,7 +35,8 @@ const CASES: [Case; 17] = [
 fn operations(criterion: &mut Criterion) {
     for (name, make, operation, parallel) in CASES {
         let mut operands = None;
-        for (threads, options) in [("one", Options::new().threads(1)), ("all", Options::new())] {
+        for (threads, options) in [("one", BooleanOptions::new().threads(1)), ("all", BooleanOptions::new())]
+        {
             if threads == "all" && !parallel {
                 continue;
             }
@@ -44,8 +45,7 @@ fn operations(criterion: &mut Criterion) {
             group.bench_function(name, |bencher| {
                 // Only if the filter lets the case through.
                 let solids = operands.get_or_insert_with(make);
-                let solids: Vec<&Solid> = solids.iter().collect();
-                bencher.iter_with_large_drop(|| options.run(operation, &solids).expect("no limits"));
+                bencher.iter_with_large_drop(|| options.run(operation, &*solids).expect("no limits"));
             });
             group.finish();
         }
@@ -68,8 +68,7 @@ fn from_meshes(criterion: &mut Criterion) {
                         .into_iter()
                         .map(|mesh| Solid::try_from(mesh).expect("a solid's mesh"))
                         .collect();
-                    let solids: Vec<&Solid> = solids.iter().collect();
-                    let made = Options::new().threads(1).run(operation, &solids).expect("no limits");
+                    let made = BooleanOptions::new().threads(1).run(operation, &solids).expect("no limits");
                     made.into_solid().into_mesh()
                 },
                 criterion::BatchSize::PerIteration,
@@ -82,8 +81,7 @@ fn from_meshes(criterion: &mut Criterion) {
 /// What comes after: the certificate and the curves; and the check of an operand for crossings with itself.
 fn around(criterion: &mut Criterion) {
     let spheres = shapes::spheres(7);
-    let solids: Vec<&Solid> = spheres.iter().collect();
-    let made = Options::new().run(Union, &solids).expect("no limits");
+    let made = BooleanOptions::new().run(Union, &spheres).expect("no limits");
     let mut group = criterion.benchmark_group("around");
     group.sample_size(10).throughput(Throughput::Elements(made.solid().mesh().triangles.len() as u64));
     group.bench_function("certificate/330k", |bencher| {

@@ -1,13 +1,11 @@
-//! The decisions: nanoseconds for one `orient3d`, order or position of crossings, by how hard the input is.
+//! The decisions: nanoseconds for one `orient3d` or `orient2d`, by how hard the input is.
 //!
-//! Each benchmark runs through a thousand inputs, so that branches are predicted as in earnest; throughput is in decisions.
-
-use std::hint::black_box;
+//! Each benchmark runs through a thousand inputs, so that branches are predicted no better than in use; throughput is in
+//! decisions.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
-use trisect::exact::perturbed::{self, PerturbedPoint, jitter};
-use trisect::exact::{order, orient3d, position};
+use trisect::exact::{Sign, orient2d, orient3d, orient3d_perturbed};
 
 const COUNT: usize = 1000;
 
@@ -30,11 +28,6 @@ fn point(lie: Lie, random: &mut ChaCha8Rng) -> Point {
     }
 }
 
-fn perturbed_point(lie: Lie, random: &mut ChaCha8Rng, index: u64) -> PerturbedPoint {
-    let first = std::array::from_fn(|_| random.random_range(-511..512));
-    PerturbedPoint { position: point(lie, random), first, second: jitter(index) }
-}
-
 fn orientation(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("orient3d");
     group.throughput(Throughput::Elements(COUNT as u64));
@@ -43,83 +36,41 @@ fn orientation(criterion: &mut Criterion) {
         let plain: Vec<[Point; 4]> =
             (0..COUNT).map(|_| std::array::from_fn(|_| point(lie, &mut random))).collect();
         group.bench_function(format!("plain/{name}"), |bencher| {
-            bencher.iter(|| {
-                plain
-                    .iter()
-                    .filter(|[a, b, c, d]| orient3d(a, b, c, d) == trisect::exact::Sign::Positive)
-                    .count()
-            });
+            bencher
+                .iter(|| plain.iter().filter(|[a, b, c, d]| orient3d(a, b, c, d) == Sign::Positive).count());
         });
-        let moving: Vec<[PerturbedPoint; 4]> = (0..COUNT as u64)
-            .map(|i| std::array::from_fn(|k| perturbed_point(lie, &mut random, 4 * i + k as u64)))
+        let directions: Vec<[[i32; 3]; 4]> = (0..COUNT)
+            .map(|_| std::array::from_fn(|_| std::array::from_fn(|_| random.random_range(-511..512))))
             .collect();
         group.bench_function(format!("perturbed/{name}"), |bencher| {
             bencher.iter(|| {
-                let positive = |[a, b, c, d]: &&[PerturbedPoint; 4]| {
-                    perturbed::orient3d([a, b, c, d]) == trisect::exact::Sign::Positive
+                let positive = |(points, directions): &(&[Point; 4], &[[i32; 3]; 4])| {
+                    orient3d_perturbed(points.each_ref(), **directions) == Sign::Positive
                 };
-                moving.iter().filter(positive).count()
+                plain.iter().zip(&directions).filter(positive).count()
             });
         });
     }
     group.finish();
 }
 
-/// An edge and two triangles that it crosses.
-type Crossed = ([PerturbedPoint; 2], [[PerturbedPoint; 3]; 2]);
-
-fn crossed(random: &mut ChaCha8Rng, index: u64) -> Crossed {
-    let mut identity = 8 * index;
-    let mut at = |x: f64, random: &mut ChaCha8Rng| {
-        identity += 1;
-        let mut made = perturbed_point(Lie::General, random, identity);
-        made.position[0] = x + 0.2 * made.position[0];
-        made
-    };
-    let edge = [at(-2.0, random), at(2.0, random)];
-    let triangles = [-0.5, 0.5].map(|x| std::array::from_fn(|_| at(x, random)));
-    (edge, triangles)
-}
-
-fn crossings(criterion: &mut Criterion) {
-    let mut random = ChaCha8Rng::seed_from_u64(2);
-    let inputs: Vec<Crossed> = (0..COUNT as u64).map(|i| crossed(&mut random, i)).collect();
-    let mut group = criterion.benchmark_group("crossing");
+fn plane_orientation(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("orient2d");
     group.throughput(Throughput::Elements(COUNT as u64));
-    group.bench_function("position/filter", |bencher| {
-        bencher.iter(|| {
-            for ([p, q], [t, _]) in &inputs {
-                let corners = [&t[0].position, &t[1].position, &t[2].position];
-                black_box(position::crossing_filter(&p.position, &q.position, corners));
-            }
+    for (name, lie) in [("general", Lie::General), ("grid", Lie::Grid)] {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let points: Vec<[Point; 3]> =
+            (0..COUNT).map(|_| std::array::from_fn(|_| point(lie, &mut random))).collect();
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                let flat = |[x, y, _]: Point| [x, y];
+                let left = |[a, b, c]: &&[Point; 3]| orient2d(flat(*a), flat(*b), flat(*c)) == Sign::Positive;
+                points.iter().filter(left).count()
+            });
         });
-    });
-    group.bench_function("position/exact", |bencher| {
-        bencher.iter(|| {
-            for ([p, q], [t, _]) in &inputs {
-                black_box(position::crossing(p, q, [&t[0], &t[1], &t[2]]));
-            }
-        });
-    });
-    group.bench_function("order/filter", |bencher| {
-        bencher.iter(|| {
-            for ([p, q], triangles) in &inputs {
-                let [first, second] =
-                    [0, 1].map(|i: usize| [0, 1, 2].map(|k: usize| &triangles[i][k].position));
-                black_box(order::compare_filter(&p.position, &q.position, first, second, true, true));
-            }
-        });
-    });
-    group.bench_function("order/exact", |bencher| {
-        bencher.iter(|| {
-            for ([p, q], triangles) in &inputs {
-                let [first, second] = [0, 1].map(|i: usize| [0, 1, 2].map(|k: usize| &triangles[i][k]));
-                black_box(order::compare(p, q, first, second));
-            }
-        });
-    });
+    }
     group.finish();
 }
 
-criterion_group!(benches, orientation, crossings);
+criterion_group!(benches, orientation, plane_orientation);
 criterion_main!(benches);

@@ -2,7 +2,7 @@
 //!
 //!     cargo run --release --example arrays
 
-use trisect::{Error, Mesh, Operation, Options, Solid};
+use trisect::{BooleanOptions, Error, Mesh, Operation, Solid};
 
 /// What other libraries hold: three numbers per vertex, three indices per triangle.
 type Arrays = (Vec<[f64; 3]>, Vec<[u32; 3]>);
@@ -10,12 +10,12 @@ type Arrays = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 fn main() -> Result<(), Error> {
     // The gate: here, and only here, a mesh is checked. The solid can then be an operand any number of times.
     let body = solid(pyramid([0.0, 0.0, 0.0], 2.0))?;
-    let options = Options::new().threads(1);
+    let options = BooleanOptions::new().threads(1);
 
     // The same body against many tools: nothing about it is computed anew.
     for step in 0..5 {
         let tool = solid(pyramid([0.25 * f64::from(step), 0.1, 0.3], 1.0))?;
-        let common = options.run(Operation::Intersection, &[&body, &tool])?;
+        let common = options.run(Operation::Intersection, [&body, &tool])?;
         println!("step {step}: common volume {:.6}", common.solid().volume());
     }
 
@@ -23,7 +23,7 @@ fn main() -> Result<(), Error> {
     let mut left = body;
     for step in 0..5 {
         let tool = solid(pyramid([0.5 * f64::from(step) - 1.0, 0.0, 0.0], 0.7))?;
-        left = options.run(Operation::Difference, &[&left, &tool])?.into_solid();
+        left = options.run(Operation::Difference, [&left, &tool])?.into_solid();
     }
     println!("left of the body: volume {:.6}", left.volume());
 

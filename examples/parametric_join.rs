@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use trisect::parametric::json::{AnyCurve, curve, parse};
 use trisect::parametric::svg::{Ink, Picture};
-use trisect::parametric::{Bezier, Curve, CurveJoin, JoinMetric, JointAt, Operand};
+use trisect::parametric::{Bezier, Curve, CurveJoin, JoinInput, JoinMetric, JointAt};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "out".into()));
@@ -14,17 +14,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let p = cubic(include_str!("parametric/p.json"))?;
     let q = cubic(include_str!("parametric/q.json"))?;
     let at = |operand, t, order| CurveJoin::new().keep_at(operand, t, order);
-    let through = at(Operand::First, 0.0, 0)
-        .keep_at(Operand::First, 0.5, 0)
-        .keep_at(Operand::Second, 0.1, 0)
-        .keep_at(Operand::Second, 1.0, 0);
+    let through = at(JoinInput::First, 0.0, 0)
+        .keep_at(JoinInput::First, 0.5, 0)
+        .keep_at(JoinInput::Second, 0.1, 0)
+        .keep_at(JoinInput::Second, 1.0, 0);
     let cases = [
         ("free", CurveJoin::new()),
         ("ends", CurveJoin::new().fix_ends()),
         ("points", through),
-        ("position", at(Operand::First, 0.4, 0)),
-        ("first-derivative", at(Operand::First, 0.4, 1)),
-        ("second-derivative", at(Operand::First, 0.4, 2)),
+        ("position", at(JoinInput::First, 0.4, 0)),
+        ("first-derivative", at(JoinInput::First, 0.4, 1)),
+        ("second-derivative", at(JoinInput::First, 0.4, 2)),
     ];
     println!(
         "{:18} {:>10} {:>10} {:>10} {:>10}  largest deviation of P, of Q",

@@ -5,7 +5,7 @@
 //! Drills two holes through a plate, puts the faces that each operand left into a named group of its own, and lists the
 //! intersection curves.
 
-use trisect::{Error, FaceGroup, FaceGroups, Material, Operation, Options, Solid, primitives};
+use trisect::{BooleanOptions, Error, FaceGroup, FaceGroups, Material, Operation, Solid, primitives};
 
 fn main() -> Result<(), Error> {
     let output = std::env::args().nth(1);
@@ -16,8 +16,8 @@ fn main() -> Result<(), Error> {
         ("first hole", Solid::try_from(drill.clone().translated([15.0, 15.0, -7.5]))?),
         ("second hole", Solid::try_from(drill.translated([45.0, 15.0, -7.5]))?),
     ];
-    let solids: Vec<&Solid> = operands.iter().map(|(_, solid)| solid).collect();
-    let drilled = Options::new().run(Operation::Difference, &solids)?;
+    let solids = operands.iter().map(|(_, solid)| solid);
+    let drilled = BooleanOptions::new().run(Operation::Difference, solids)?;
 
     // One origin for each triangle: the operand, its triangle, and whether it was turned over.
     let origins = drilled.origins();

@@ -7,8 +7,7 @@
 //! The plane is x = y, the diagonal. Blue: above zero, orange: below zero, black: exactly zero.
 
 use trisect::Error;
-use trisect::exact::perturbed::{self, PerturbedPoint, jitter};
-use trisect::exact::{Sign, orient3d};
+use trisect::exact::{Sign, orient3d, orient3d_perturbed};
 use trisect::render::Picture;
 
 /// Positions along each axis, and pixels of a cell.
@@ -76,10 +75,9 @@ fn plain(d: [f64; 3]) -> Sign {
 
 /// The sign where the triangle moves along its normal (or against it) and the point stays.
 fn perturbed_sign(d: [f64; 3], sense: i32) -> Sign {
-    let still = |position, identity| PerturbedPoint { position, first: [0; 3], second: jitter(identity) };
-    let first = NORMAL.map(|component| sense * component);
-    let [a, b, c] = [0, 1, 2].map(|i| PerturbedPoint { first, ..still(TRIANGLE[i], i as u64) });
-    perturbed::orient3d([&a, &b, &c, &still(d, 3)])
+    let normal = NORMAL.map(|component| sense * component);
+    let [a, b, c] = &TRIANGLE;
+    orient3d_perturbed([a, b, c, &d], [normal, normal, normal, [0; 3]])
 }
 
 fn colour(sign: Sign) -> [u8; 3] {

@@ -6,7 +6,7 @@
 
 use std::time::{Duration, Instant};
 
-use trisect::{CancelToken, Control, Error, Operation, Options, Solid, primitives};
+use trisect::{BooleanOptions, CancelToken, Control, Error, Operation, Solid, primitives};
 
 fn main() -> Result<(), Error> {
     let side: u32 = match std::env::args().nth(1) {
@@ -27,16 +27,15 @@ fn main() -> Result<(), Error> {
         .memory_limit(4 << 30)
         .progress(|stage, fraction| println!("{stage}: {:3.0} %", 100.0 * fraction));
 
-    let operands: Vec<&Solid> = spheres.iter().collect();
-    match Options::new().control(control.clone()).run(Operation::Union, &operands) {
-        Ok(united) => println!("{} spheres: {}", operands.len(), united.certificate()),
+    match BooleanOptions::new().control(control.clone()).run(Operation::Union, &spheres) {
+        Ok(united) => println!("{} spheres: {}", spheres.len(), united.certificate()),
         Err(Error::DeadlineExceeded) => println!("no time left"),
         Err(other) => return Err(other),
     }
 
     // A cancelled operation stops within milliseconds, with an error of its own; nothing is left behind.
     token.cancel();
-    match Options::new().control(control).run(Operation::Union, &operands) {
+    match BooleanOptions::new().control(control).run(Operation::Union, &spheres) {
         Err(Error::Cancelled) => println!("cancelled"),
         other => println!("not cancelled: {other:?}"),
     }

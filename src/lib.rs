@@ -12,7 +12,7 @@
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 
-pub mod boolean;
+mod boolean;
 pub mod control;
 mod error;
 pub mod exact;
@@ -29,7 +29,9 @@ pub mod primitives;
 pub mod render;
 pub mod spatial;
 
-pub use boolean::{Certificate, Contact, Operation, Options, Origin, Outcome, boolean};
+pub use boolean::{
+    BooleanOptions, Certificate, Contact, OperandState, Operation, Origin, Outcome, UnknownName, boolean,
+};
 pub use control::{CancelToken, Control};
 pub use error::{Error, Failure};
 pub use mesh::{FaceGroup, FaceGroups, Material, Mesh, Solid};

@@ -9,7 +9,7 @@ use common::{bezier, distance, rng};
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use trisect::parametric::{
-    Bezier, Curve, CurveJoin, GeometryError, JoinMetric, JointAt, NurbsCurve, Operand,
+    Bezier, Curve, CurveJoin, GeometryError, JoinInput, JoinMetric, JointAt, NurbsCurve,
 };
 
 fn binomial(n: usize, k: usize) -> f64 {
@@ -86,7 +86,7 @@ fn by_multipliers(
     q: &Bezier<2>,
     which: JoinMetric,
     mu: f64,
-    kept: &[(Operand, f64, usize)],
+    kept: &[(JoinInput, f64, usize)],
 ) -> [Vec<[f64; 2]>; 2] {
     let n = p.degree();
     let mut rows: Vec<(Vec<f64>, [f64; 2])> = Vec::new();
@@ -100,7 +100,7 @@ fn by_multipliers(
     for &(operand, t, order) in kept {
         for r in 0..=order {
             let mut row = vec![0.0; 2 * n + 2];
-            let start = if operand == Operand::First { 0 } else { n + 1 };
+            let start = if operand == JoinInput::First { 0 } else { n + 1 };
             row[start..=start + n].copy_from_slice(&basis(n, t, r));
             rows.push((row, [0.0; 2]));
         }
@@ -133,7 +133,7 @@ fn by_multipliers(
     [0, 1].map(|k| (0..=n).map(|i| [0, 1].map(|c: usize| solutions[c][k * (n + 1) + i])).collect())
 }
 
-fn random_join(rng: &mut ChaCha8Rng, degree: usize) -> (CurveJoin, Vec<(Operand, f64, usize)>) {
+fn random_join(rng: &mut ChaCha8Rng, degree: usize) -> (CurveJoin, Vec<(JoinInput, f64, usize)>) {
     let mut join = CurveJoin::new();
     if rng.random_bool(0.5) {
         join = join.metric(JoinMetric::Discrete);
@@ -142,12 +142,12 @@ fn random_join(rng: &mut ChaCha8Rng, degree: usize) -> (CurveJoin, Vec<(Operand,
     let mut kept = Vec::new();
     if rng.random_bool(0.5) && free >= 2 {
         join = join.fix_ends();
-        kept.push((Operand::First, 0.0, 0));
-        kept.push((Operand::Second, 1.0, 0));
+        kept.push((JoinInput::First, 0.0, 0));
+        kept.push((JoinInput::Second, 1.0, 0));
         free -= 2;
     }
     // One block of derivatives on either side.
-    for operand in [Operand::First, Operand::Second] {
+    for operand in [JoinInput::First, JoinInput::Second] {
         if free > 0 && rng.random_bool(0.7) {
             let order = rng.random_range(0..free);
             let t = rng.random_range(0.15..0.85);
@@ -206,7 +206,7 @@ fn check_joined<const D: usize>(seed: u64) -> f64 {
     // The derivatives of every order agree at the joint.
     let mut worst = 0.0_f64;
     for (operand, t, order) in kept {
-        let (k, original) = if operand == Operand::First { (0, &p) } else { (1, &q) };
+        let (k, original) = if operand == JoinInput::First { (0, &p) } else { (1, &q) };
         let (now, before) =
             (joined.parts[k].derivatives(t, order), original.raised_to(degree).derivatives(t, order));
         for r in 0..=order {
@@ -257,20 +257,20 @@ fn optimum_beats_feasible_perturbations() {
         let mu = rng.random_range(0.3..0.7);
         let (t, s) = (rng.random_range(0.1..0.9), rng.random_range(0.1..0.9));
         // Position and derivative at t of P, position at s of Q, as functionals of the joined curve.
-        let on_joined = |operand: Operand, t: f64, r: usize| -> Vec<f64> {
+        let on_joined = |operand: JoinInput, t: f64, r: usize| -> Vec<f64> {
             let (at, speed) =
-                if operand == Operand::First { (mu * t, mu) } else { (mu + (1.0 - mu) * t, 1.0 - mu) };
+                if operand == JoinInput::First { (mu * t, mu) } else { (mu + (1.0 - mu) * t, 1.0 - mu) };
             basis(degree, at, r).iter().map(|x| x * speed.powi(r as i32)).collect()
         };
         let functionals = [
-            on_joined(Operand::First, t, 0),
-            on_joined(Operand::First, t, 1),
-            on_joined(Operand::Second, s, 0),
+            on_joined(JoinInput::First, t, 0),
+            on_joined(JoinInput::First, t, 1),
+            on_joined(JoinInput::Second, s, 0),
         ];
         let orthonormal = orthonormalised(&functionals);
         for which in [JoinMetric::Discrete, JoinMetric::Integral] {
             let join = CurveJoin::new().metric(which).joint(JointAt::Parameter(mu));
-            let join = join.keep_at(Operand::First, t, 1).keep_at(Operand::Second, s, 0);
+            let join = join.keep_at(JoinInput::First, t, 1).keep_at(JoinInput::Second, s, 0);
             let joined = join.join(&p, &q).unwrap();
             assert_eq!(joined.report.freedom, degree + 1 - 3);
             for _ in 0..100 {
@@ -335,7 +335,8 @@ fn two_parts_of_one_curve_are_joined_without_loss() {
             assert!(error < 1e-9, "seed {seed}, degree {degree}, {mu}: {error}");
         }
         assert!(joined.report.integral < 1e-20 && joined.report.largest_deviation.iter().all(|d| *d < 1e-10));
-        let kept = CurveJoin::new().joint(JointAt::Parameter(mu)).keep(Operand::First).join(&p, &q).unwrap();
+        let kept =
+            CurveJoin::new().joint(JointAt::Parameter(mu)).keep(JoinInput::First).join(&p, &q).unwrap();
         // Continuing the first part to the end magnifies its rounding by the Bernstein polynomials' sum there.
         let magnified = 1e-15 * (2.0 / mu - 1.0).powi(degree as i32);
         assert!(distance(kept.curve.point(1.0), whole.point(1.0)) < 1e-12 + magnified, "seed {seed}");
@@ -352,8 +353,8 @@ fn two_parts_of_one_curve_are_joined_without_loss() {
 fn keeping_one_curve_whole_continues_it() {
     let mut rng = rng(5);
     let (p, q) = (bezier::<2>(&mut rng, 3), bezier::<2>(&mut rng, 4));
-    let first = CurveJoin::new().keep(Operand::First).join(&p, &q).unwrap();
-    let second = CurveJoin::new().keep(Operand::Second).join(&p, &q).unwrap();
+    let first = CurveJoin::new().keep(JoinInput::First).join(&p, &q).unwrap();
+    let second = CurveJoin::new().keep(JoinInput::Second).join(&p, &q).unwrap();
     for k in 0..=20 {
         let t = f64::from(k) / 20.0;
         assert!(distance(first.parts[0].point(t), p.point(t)) < 1e-12);
@@ -361,7 +362,7 @@ fn keeping_one_curve_whole_continues_it() {
     }
     assert_eq!((first.report.freedom, second.report.freedom), (0, 0));
     // Raised further, the whole curve leaves no freedom either: all derivatives continue.
-    let raised = CurveJoin::new().keep(Operand::First).degree(7).join(&p, &q).unwrap();
+    let raised = CurveJoin::new().keep(JoinInput::First).degree(7).join(&p, &q).unwrap();
     assert_eq!(raised.curve.degree(), 7);
     assert!(distance(raised.curve.point(1.0), first.curve.point(1.0)) < 1e-9);
 }
@@ -404,13 +405,13 @@ fn contradictory_and_dependent_constraints_are_told_apart() {
     };
     // The joint cannot be at the end of P and at the start of Q, which differ.
     let names =
-        contradiction(CurveJoin::new().keep_at(Operand::First, 1.0, 0).keep_at(Operand::Second, 0.0, 0));
+        contradiction(CurveJoin::new().keep_at(JoinInput::First, 1.0, 0).keep_at(JoinInput::Second, 0.0, 0));
     assert_eq!(names, ["position of P at 1", "position of Q at 0"]);
-    let names = contradiction(CurveJoin::new().keep(Operand::First).keep_at(Operand::Second, 0.5, 0));
+    let names = contradiction(CurveJoin::new().keep(JoinInput::First).keep_at(JoinInput::Second, 0.5, 0));
     assert_eq!(names, ["P kept whole", "position of Q at 0.5"]);
     // Five conditions on a cubic: more than it can hold, and they do not agree by chance.
-    let names = contradiction(CurveJoin::new().fix_ends().keep_at(Operand::First, 0.4, 1).keep_at(
-        Operand::Second,
+    let names = contradiction(CurveJoin::new().fix_ends().keep_at(JoinInput::First, 0.4, 1).keep_at(
+        JoinInput::Second,
         0.5,
         0,
     ));
@@ -425,18 +426,19 @@ fn contradictory_and_dependent_constraints_are_told_apart() {
         ]
     );
     // Said twice: dependent, not contradictory.
-    let joined = CurveJoin::new().fix_ends().keep_at(Operand::First, 0.0, 0).join(&p, &q).unwrap();
+    let joined = CurveJoin::new().fix_ends().keep_at(JoinInput::First, 0.0, 0).join(&p, &q).unwrap();
     let report = &joined.report;
     assert_eq!(report.freedom, 2);
     assert_eq!(report.constraints[2].follows_from, ["start of P fixed"]);
     assert!(report.constraints[..2].iter().all(|c| c.follows_from.is_empty()));
-    let kept = CurveJoin::new().keep(Operand::First).keep_at(Operand::First, 0.3, 2).join(&p, &q).unwrap();
+    let kept =
+        CurveJoin::new().keep(JoinInput::First).keep_at(JoinInput::First, 0.3, 2).join(&p, &q).unwrap();
     assert!(kept.report.constraints[1..].iter().all(|c| c.follows_from == ["P kept whole"]));
     // A derivative beyond the degree says nothing.
-    let high = CurveJoin::new().keep_at(Operand::First, 0.5, 9).join(&p, &q).unwrap();
+    let high = CurveJoin::new().keep_at(JoinInput::First, 0.5, 9).join(&p, &q).unwrap();
     assert_eq!(high.report.freedom, 0);
     for bad in [f64::NAN, -0.1, 1.1] {
-        let result = CurveJoin::new().keep_at(Operand::First, bad, 0).join(&p, &q);
+        let result = CurveJoin::new().keep_at(JoinInput::First, bad, 0).join(&p, &q);
         assert!(matches!(result, Err(GeometryError::OutOfRange { .. })));
     }
     for bad in [f64::NAN, 0.0, 1.0] {
@@ -458,7 +460,7 @@ fn splines_are_joined_without_a_knot_at_the_joint() {
         let mu: f64 = rng.random_range(0.3..0.7);
         let t = rng.random_range(0.1..0.9);
         let join = CurveJoin::new().joint(JointAt::Parameter(mu)).fix_ends();
-        let join = if degree > 1 { join.keep_at(Operand::First, t, 0) } else { join };
+        let join = if degree > 1 { join.keep_at(JoinInput::First, t, 0) } else { join };
         let joined = join.join_splines(&p, &q).unwrap();
         assert!(!joined.curve.knots().contains(&mu), "seed {seed}");
         assert_eq!(joined.curve.control().len(), p.control().len() + q.control().len() - degree - 1);

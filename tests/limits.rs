@@ -10,7 +10,7 @@ use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
 use common::solid;
-use trisect::{CancelToken, Control, Error, Failure, Operation, Options, Outcome, Solid, primitives};
+use trisect::{BooleanOptions, CancelToken, Control, Error, Failure, Operation, Outcome, Solid, primitives};
 
 /// Balls that cross almost everywhere: the operation takes far longer than a message between threads.
 fn heavy() -> [Solid; 2] {
@@ -24,7 +24,10 @@ fn light() -> [Solid; 2] {
 }
 
 fn run(operands: &[Solid; 2], control: Control, threads: usize) -> Result<Outcome, Error> {
-    Options::new().threads(threads).control(control).run(Operation::Union, &[&operands[0], &operands[1]])
+    BooleanOptions::new()
+        .threads(threads)
+        .control(control)
+        .run(Operation::Union, [&operands[0], &operands[1]])
 }
 
 #[test]
@@ -48,7 +51,7 @@ fn a_token_stops_a_running_operation() {
     // The operands are as good as before.
     let control = Control::new();
     let [a, b] = &operands;
-    assert!(Options::new().control(control).run(Operation::Intersection, &[a, b]).is_ok());
+    assert!(BooleanOptions::new().control(control).run(Operation::Intersection, [a, b]).is_ok());
 }
 
 #[test]
@@ -59,7 +62,6 @@ fn a_token_cancelled_at_any_report_of_many_operands() {
             solid(primitives::geodesic_sphere(0.7, 6).expect("a ball").translated(at))
         })
         .collect();
-    let operands: Vec<&Solid> = balls.iter().collect();
     let reports_of = |cancel_at: usize| {
         let token = CancelToken::new();
         let count = Arc::new(AtomicUsize::new(0));
@@ -69,7 +71,7 @@ fn a_token_cancelled_at_any_report_of_many_operands() {
                 switch.cancel();
             }
         });
-        let result = Options::new().control(control).run(Operation::Union, &operands);
+        let result = BooleanOptions::new().control(control).run(Operation::Union, &balls);
         (result.map(Outcome::into_solid), count.load(Relaxed))
     };
     let (whole, reports) = reports_of(usize::MAX);

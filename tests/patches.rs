@@ -11,7 +11,7 @@ use common::{assert_closed, distance, rng, to_triangle, volume};
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use trisect::parametric::{
-    Bezier, Curve, EllipticArc, GeometryError, Patch, PatchMesh, PatchMeshing, Refinement, Segment, Side,
+    Bezier, Curve, EllipticArc, GeometryError, Patch, PatchMesh, PatchMeshing, PatchSide, Refinement, Segment,
 };
 use trisect::{CancelToken, Control, Error};
 
@@ -162,12 +162,12 @@ fn boundaries_reversal_and_maps_agree_with_the_patch() {
         let [[u0, u1], [v0, v1]] = patch.domain();
         let (u, v) = (rng.random_range(u0..u1), rng.random_range(v0..v1));
         for (side, p) in [
-            (Side::VLow, patch.point(u, v0)),
-            (Side::VHigh, patch.point(u, v1)),
-            (Side::ULow, patch.point(u0, v)),
-            (Side::UHigh, patch.point(u1, v)),
+            (PatchSide::VLow, patch.point(u, v0)),
+            (PatchSide::VHigh, patch.point(u, v1)),
+            (PatchSide::ULow, patch.point(u0, v)),
+            (PatchSide::UHigh, patch.point(u1, v)),
         ] {
-            let t = if matches!(side, Side::VLow | Side::VHigh) { u } else { v };
+            let t = if matches!(side, PatchSide::VLow | PatchSide::VHigh) { u } else { v };
             assert!(distance(patch.boundary(side).point(t), p) < 1e-12, "seed {seed}, {side}");
         }
         let back = patch.reversed();

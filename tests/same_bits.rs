@@ -2,7 +2,7 @@
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use trisect::{Mesh, Operation, Options, Solid, primitives};
+use trisect::{BooleanOptions, Mesh, Operation, Solid, primitives};
 
 /// A box on a small grid, or a cylinder of few sides beside it: corners on common planes, lines and circles.
 fn piece(rng: &mut ChaCha8Rng, grid: i32, degrees: f64) -> Solid {
@@ -27,8 +27,7 @@ fn piece(rng: &mut ChaCha8Rng, grid: i32, degrees: f64) -> Solid {
 
 fn sum(rng: &mut ChaCha8Rng, grid: i32, degrees: f64, count: usize) -> Solid {
     let pieces: Vec<Solid> = (0..count).map(|_| piece(rng, grid, degrees)).collect();
-    let operands: Vec<&Solid> = pieces.iter().collect();
-    Options::new().run(Operation::Union, &operands).unwrap().into_solid()
+    BooleanOptions::new().run(Operation::Union, &pieces).unwrap().into_solid()
 }
 
 #[test]
@@ -41,7 +40,7 @@ fn repeated_operations_give_the_same_bits() {
         let (a, b) = (sum(&mut rng, grid, degrees, count), sum(&mut rng, grid, degrees, count));
         for operation in [Operation::Union, Operation::Difference, Operation::SymmetricDifference] {
             let run = || {
-                let outcome = Options::new().run(operation, &[&a, &b]).unwrap();
+                let outcome = BooleanOptions::new().run(operation, [&a, &b]).unwrap();
                 let mesh = outcome.solid().mesh();
                 let bits: Vec<u64> = mesh.positions.iter().flatten().map(|x| x.to_bits()).collect();
                 (bits, mesh.triangles.clone(), outcome.origins().to_vec())

@@ -19,7 +19,7 @@ class Solid:
 class Trisect:
     """trisect, f64; n-ary by its own n-ary call. TRISECT_THREADS: 0 for all (default), 1 for one."""
     name = "trisect"; dist = None; threads = True; precision = "f64"; native = True
-    nary_how = "Options::run over all operands"
+    nary_how = "BooleanOptions::run over all operands"
 
     def __init__(self):
         lib = C.CDLL(LIBRARY)

@@ -1,7 +1,7 @@
 //! One picture for each step of the algorithm, made of real operands and results where there are any.
 
 use trisect::render::{Picture, palette};
-use trisect::{Error, Mesh, Operation, Options, Outcome, Solid, primitives};
+use trisect::{BooleanOptions, Error, Mesh, Operation, Outcome, Solid, primitives};
 
 use crate::scene::{BLUE, Colour, DARK, GREEN, GREY, ORANGE, Point, RED, Scene, beside, blend, view};
 
@@ -137,7 +137,7 @@ pub(crate) fn order() -> Result<Picture, Error> {
 /// Step 4: how often B winds round the vertices of A.
 pub(crate) fn winding() -> Result<Picture, Error> {
     let [sphere, ring] = sphere_and_ring()?;
-    let inside = Options::new().run(Operation::Intersection, &[&sphere, &ring])?;
+    let inside = BooleanOptions::new().run(Operation::Intersection, [&sphere, &ring])?;
     // A's vertices inside B are those the intersection kept.
     let kept = &inside.solid().mesh().positions;
     let mesh = sphere.mesh();
@@ -182,11 +182,11 @@ fn boxed(low: Point, high: Point) -> Result<Solid, Error> {
 pub(crate) fn identify() -> Result<Picture, Error> {
     const EPSILON: f64 = 0.09;
     let b = boxed([1.0, 0.0, 0.0], [3.0, 2.0, 2.0])?;
-    let options = Options::new().remove_vertices(false);
+    let options = BooleanOptions::new().remove_vertices(false);
     let mut pictures = Vec::new();
     for shift in [EPSILON, 0.0] {
         let a = boxed([-shift; 3], [2.0 + shift; 3])?;
-        let outcome = options.run(Operation::Union, &[&a, &b])?;
+        let outcome = options.run(Operation::Union, [&a, &b])?;
         let mut frame = view(480, 400, [-0.5, -1.5, 1.0]);
         frame.frame = Some([[-EPSILON; 3], [3.0, 2.0 + EPSILON, 2.0 + EPSILON]]);
         pictures.push(wires(&outcome, 0.012, 0.035)?.draw(&frame));
@@ -211,8 +211,8 @@ pub(crate) fn cut() -> Result<Picture, Error> {
         primitives::geodesic_sphere(1.1, 6)?.translated([5.6, 0.4, 1.2]),
     ];
     let tools: Vec<Solid> = tools.into_iter().map(Solid::try_from).collect::<Result<_, Error>>()?;
-    let operands: Vec<&Solid> = std::iter::once(&plate).chain(&tools).collect();
-    let outcome = Options::new().remove_vertices(false).run(Operation::Difference, &operands)?;
+    let operands = std::iter::once(&plate).chain(&tools);
+    let outcome = BooleanOptions::new().remove_vertices(false).run(Operation::Difference, operands)?;
     let mesh = outcome.solid().mesh();
     let mut scene = Scene::default();
     // The two triangles of the plate's upper face in two tints.
@@ -252,11 +252,10 @@ pub(crate) fn tidy() -> Result<Picture, Error> {
             cubes.push(boxed(low, low.map(|x| x + 1.0))?);
         }
     }
-    let cubes: Vec<&Solid> = cubes.iter().collect();
     let from = [1.0, -1.4, 0.9];
     let mut pictures = Vec::new();
     for remove in [false, true] {
-        let outcome = Options::new().remove_vertices(remove).run(Operation::Union, &cubes)?;
+        let outcome = BooleanOptions::new().remove_vertices(remove).run(Operation::Union, &cubes)?;
         let mut scene = Scene::default();
         scene.add(outcome.solid().mesh(), |_| BLUE)?;
         scene.edges(outcome.solid().mesh(), 0.014, DARK, |_, _| true)?;
@@ -264,7 +263,7 @@ pub(crate) fn tidy() -> Result<Picture, Error> {
     }
     // Two boxes that touch in an edge, drawn apart.
     let pair = [boxed([0.0; 3], [1.0; 3])?, boxed([1.0, 0.0, 1.0], [2.0, 1.0, 2.0])?];
-    let touching = Options::new().run(Operation::Union, &[&pair[0], &pair[1]])?;
+    let touching = BooleanOptions::new().run(Operation::Union, [&pair[0], &pair[1]])?;
     let labels = touching.solid().component_labels();
     let mut apart = touching.solid().mesh().clone();
     let upper: Vec<u32> =
@@ -285,7 +284,7 @@ pub(crate) fn result() -> Result<Picture, Error> {
     let [sphere, ring] = sphere_and_ring()?;
     let mut pictures = Vec::new();
     for operation in [Operation::Union, Operation::Intersection, Operation::Difference] {
-        let outcome = Options::new().run(operation, &[&sphere, &ring])?;
+        let outcome = BooleanOptions::new().run(operation, [&sphere, &ring])?;
         let mesh = outcome.solid().mesh();
         let mut scene = Scene::default();
         scene.add(mesh, |t| palette(outcome.origins()[t].operand as usize))?;

@@ -1,7 +1,7 @@
 //! Operands that touch: what the perturbation makes of them, in section and in space.
 
 use trisect::render::{Picture, palette};
-use trisect::{Error, Operation, Options, Solid, primitives};
+use trisect::{BooleanOptions, Error, Operation, Solid, primitives};
 
 use crate::scene::{BLUE, Colour, DARK, GREY, ORANGE, Point, Scene, paste, view};
 
@@ -38,7 +38,7 @@ pub(crate) fn table() -> Result<Picture, Error> {
         operands.add(solid_b.mesh(), |_| ORANGE)?;
         paste(&mut all, &operands.draw(&view), 0, top);
         for (column, operation) in OPERATIONS.into_iter().enumerate() {
-            let outcome = Options::new().run(operation, &[&solid_a, &solid_b])?;
+            let outcome = BooleanOptions::new().run(operation, [&solid_a, &solid_b])?;
             let mut result = Scene::default();
             result.add(outcome.solid().mesh(), |t| palette(outcome.origins()[t].operand as usize))?;
             paste(&mut all, &result.draw(&view), i64::from(WIDTH) * (column as i64 + 1), top);

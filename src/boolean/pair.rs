@@ -1,201 +1,160 @@
-//! The pipeline for two operands, one function per step.
+//! The pipeline for two operands, one line a step.
 
-use rustc_hash::FxHashSet;
-
-use crate::boolean::Operation;
-use crate::boolean::arrangement::crossings;
-use crate::boolean::arrangement::cut_edges::CutEdges;
-use crate::boolean::arrangement::cut_faces::CutFaces;
-use crate::boolean::arrangement::identify::Identification;
-use crate::boolean::arrangement::plane_faces::PlaneFaces;
+use crate::boolean::arrangement::Arrangement;
+use crate::boolean::arrangement::crossings::Crossings;
+use crate::boolean::arrangement::curve::Curve;
+use crate::boolean::arrangement::points::AddedPoint;
+use crate::boolean::arrangement::sheets::{self, Rule};
 use crate::boolean::candidates::Candidates;
 use crate::boolean::candidates::overlap::{Overlap, Place};
+use crate::boolean::classify::body::Body;
 use crate::boolean::classify::multiplicity::{self, Part};
-use crate::boolean::classify::winding;
-use crate::boolean::complex::operands::{Operand, Operands};
-use crate::boolean::complex::planes::Planes;
-use crate::boolean::cut::Cutter;
-use crate::boolean::cut::walls;
-use crate::boolean::result::assemble::{Assembled, Ingredients, NewTriangle};
-use crate::boolean::result::outcome::Origin;
-use crate::boolean::tidy;
+use crate::boolean::classify::winding::Windings;
+use crate::boolean::complex::operation::Operation;
+use crate::boolean::complex::{Complex, Motion, Operand};
+use crate::boolean::cut::{cut, plane_sums};
+use crate::boolean::result::assemble::{Assembled, assemble};
+use crate::boolean::tidy::{self, tidy};
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::{Error, Solid};
 
-/// Edges and heights of new triangles up to so many units in the last place of the largest coordinate are rounding: each of
-/// two points is off by less than one.
+/// Edges and heights of new triangles up to this are rounding, in units in the last place of the largest coordinate: each of
+/// two points is off by less than one in every direction, and their distance by less than twice that.
 const ROUNDING_ULPS: f64 = 4.0;
 
-/// So many vertices of both operands together leave numbers for crossings.
+/// The most vertices of both operands together; the other half of all 32-bit numbers is left for crossings.
 const MOST_VERTICES: usize = 1 << 31;
 
 /// Settings of one combination.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Settings<'a> {
+pub(super) struct Settings<'a> {
     /// Whether bodies that touch become one.
-    pub(crate) fuse: bool,
+    pub(super) fuse: bool,
     /// Whether points at the same place become one where operands touch.
-    pub(crate) glue: bool,
+    pub(super) glue: bool,
     /// Whether vertices that nobody needs are removed.
-    pub(crate) remove_vertices: bool,
+    pub(super) remove_vertices: bool,
     /// The result's group of each triangle of A and of B; empty if there are no groups.
-    pub(crate) groups: [&'a [u32]; 2],
+    pub(super) groups: [&'a [u32]; 2],
 }
 
-/// Combines two solids.
-pub(crate) fn combine(
+/// What combining two solids gives.
+#[derive(Debug)]
+pub(super) struct Combined {
+    pub(super) arrays: Assembled,
+    /// How many decisions plain coordinates left open.
+    pub(super) contacts: u64,
+}
+
+/// Combines two solids. The steps are those of docs/algorithm.md.
+///
+/// # Errors
+/// Limits, and [`Error::TooLarge`] where vertices, faces or points cannot be numbered.
+pub(super) fn combine(
     operation: Operation,
     a: &Solid,
     b: &Solid,
     settings: Settings<'_>,
     runner: Runner<'_>,
-) -> Result<Assembled, Error> {
-    let (sides, bounds) = (sides(a, b), bounds(a, b));
-    let vertices = sides[0].positions.len() + sides[1].positions.len();
-    if vertices > MOST_VERTICES {
-        return Err(Error::TooLarge { what: format!("{vertices} vertices in one operation") });
-    }
+) -> Result<Combined, Error> {
+    let (operands, bounds) = (operands(a, b), bounds(a, b));
+    check_size(&operands)?;
     let parts = multiplicity::parts(operation);
+    let _tables = runner.control.reserve(fixed_tables(&operands))?;
 
-    let _tables = runner.control.reserve(fixed_tables(&sides))?;
-    let mut overlap = Overlap::new(&sides, &bounds, runner)?;
-    let largest = largest_coordinate(&bounds);
+    // 1. Candidates: pairs of triangles that may meet.
+    let mut overlap = Overlap::new(&operands, &bounds, runner)?;
     let near = std::mem::take(&mut overlap.near);
-    let operands = Operands::new(sides, sense(operation, settings.fuse), largest, near);
-    runner.control.check()?;
-
-    let candidates = Candidates::new(&operands, &overlap, runner)?;
-    let crossings = crossings::find(&operands, &candidates, runner)?;
-    let mut edges = CutEdges::new(&operands, &crossings, runner)?;
-    runner.control.check()?;
-    let (faces_a, faces_b) = runner.both(
-        || CutFaces::new(&operands, 0, &crossings, &edges),
-        || CutFaces::new(&operands, 1, &crossings, &edges),
-    );
-    let mut faces = [faces_a, faces_b];
-    runner.control.check()?;
-    let winding_of = |side: usize| {
-        winding::of_vertices(
-            &operands,
-            side,
-            &overlap,
-            &bounds[1 - side],
-            &crossings,
-            &edges,
-            &faces[side],
-            runner,
-        )
-    };
-    let (windings_a, windings_b) = runner.both(|| winding_of(0), || winding_of(1));
-    let windings = [windings_a?, windings_b?];
-    let fuse = operation == Operation::SymmetricDifference && settings.fuse;
-    let sheets = walls::touching_sheets(&operands, &candidates, parts, runner)?;
+    // 2. Perturbation: the operands as one complex in general position.
+    let motion = motion(operation, settings.fuse);
+    let complex = Complex::new(operands, settings.groups, motion, largest_coordinate(&bounds), near);
+    let candidates = Candidates::new(&complex, &overlap, runner)?;
+    // 3. Crossings: the intersection curve. Faces that touch and cannot be kept apart form sheets.
+    let crossings = Crossings::find(&complex, &candidates, runner)?;
+    let rule = sheet_rule(parts);
+    let sheets = sheets::find_sheets(&complex, &candidates, crossings.contacts, rule, runner)?;
     drop(candidates);
-    for side in 0..2 {
-        let of_side = sheets.iter().flatten().filter(|face| face.0 == side).map(|face| face.1);
-        faces[side].add_uncut(of_side);
-    }
-    let planes = Planes { operands: &operands, groups: settings.groups };
-    let plane_faces = if settings.remove_vertices {
-        let in_sheets: FxHashSet<(usize, u32)> = sheets.iter().flatten().copied().collect();
-        let is_in_sheet = |side: usize, triangle: u32| in_sheets.contains(&(side, triangle));
-        PlaneFaces::new(&planes, &crossings, &edges, &faces, is_in_sheet, runner)?
-    } else {
-        PlaneFaces::default()
-    };
-    edges.locate(&operands, &crossings, &plane_faces, runner)?;
-    let identification =
-        Identification::new(&operands, &crossings, &edges, &faces, &plane_faces, &sheets, runner)?;
-    let rounding = ROUNDING_ULPS * f64::EPSILON * largest;
-    // The halves of a symmetric difference share no inside and touch in the curve. Only where faces touch do walls between
-    // them have to vanish.
-    let together = if fuse && !sheets.is_empty() { parts.len() } else { 2 };
+    // 4. Order: the crossings along each edge, and by face.
+    let curve = Curve::new(&complex, crossings, &sheets, runner)?;
+    // 5. Winding numbers: what lies inside what.
+    let windings = Windings::new(&curve, &overlap, &bounds, runner)?;
+    // 6. Identification: crossings are located, and those that coincide become one point.
+    let contacts = curve.contacts() + windings.contacts;
+    let mut arrangement = Arrangement::new(curve, sheets, settings.remove_vertices, runner)?;
+
     let mut result = Assembled::default();
-    for body in parts.chunks(together) {
-        let mut cutter = Cutter {
-            operands: &operands,
-            crossings: &crossings,
-            edges: &edges,
-            extra: &[],
-            faces: &faces,
-            plane_faces: &plane_faces,
-            windings: &windings,
-            identification: &identification,
-            rounding,
-        };
-        let sums = walls::add_up(&cutter, body, &sheets, runner)?;
-        let with_more;
-        if !sums.crossings.is_empty() {
-            with_more = edges.with_more(&sums.crossings);
-            cutter.edges = &with_more;
-            cutter.extra = &sums.crossings;
-        }
-        let walls::Sums { pieces, done, .. } = &sums;
-        result = result.beside(self::body(&cutter, body, pieces, done, settings, runner)?)?;
+    for parts in bodies(parts, settings.fuse && !arrangement.sheets.is_empty()) {
+        result = result.append(build(&mut arrangement, &windings, parts, contacts, settings, runner)?)?;
     }
-    result.ties = operands.ties();
-    Ok(result)
+    Ok(Combined { arrays: result, contacts })
 }
 
-/// The sum of some parts of the result, tidied.
-fn body(
-    cutter: &Cutter<'_>,
+/// The sum of some parts of the result.
+fn build(
+    arrangement: &mut Arrangement<'_>,
+    windings: &Windings,
     parts: &[Part],
-    added_up: &[NewTriangle],
-    done: &FxHashSet<(usize, u32)>,
+    contacts: u64,
     settings: Settings<'_>,
     runner: Runner<'_>,
 ) -> Result<Assembled, Error> {
-    let (mut pieces, mut has_inverted, mut has_slivers) = (added_up.to_vec(), false, !done.is_empty());
-    for &part in parts {
-        let cut = cutter.cut(part, done, runner)?;
-        has_inverted |= cut.has_inverted;
-        has_slivers |= cut.has_slivers;
-        pieces.extend(cut.pieces.into_iter().map(|piece| NewTriangle {
-            corners: piece.corners,
-            origin: Origin { operand: part.side as u32, triangle: piece.triangle, reversed: part.reversed },
-            flat: false,
-        }));
-    }
+    let rounding = ROUNDING_ULPS * f64::EPSILON * arrangement.curve.complex.largest_coordinate();
+    // 7. Cutting: sheets first, then all other faces.
+    let sums = plane_sums::add_up(Body { arrangement, windings, parts }, runner)?;
+    arrangement.points.add(sums.crossings.into_iter().map(AddedPoint::Crossing));
+    let body = Body { arrangement, windings, parts };
+    let cut = cut(body, &sums.done, rounding, runner)?;
+    let mut pieces = sums.pieces;
+    pieces.extend(cut.pieces);
+    // 8. Tidying, near the curve only.
     let tidy_settings = tidy::Settings {
         remove_vertices: settings.remove_vertices,
-        rounding: cutter.rounding,
+        rounding,
         glue: settings.glue,
-        always: has_slivers,
+        contacts,
+        always: cut.has_slivers || !sums.done.is_empty(),
     };
-    let planes = Planes { operands: cutter.operands, groups: settings.groups };
-    let tidied = tidy::tidy(cutter, &planes, parts, &pieces, &tidy_settings, runner)?;
-    let (new, replaced, copies) = match tidied {
-        Some(tidied) => (tidied.new, Some(tidied.replaced), tidied.copies),
-        None => (pieces, None, Vec::new()),
-    };
+    let tidied = tidy(body, &pieces, &tidy_settings, runner)?;
     runner.control.check()?;
-    let ingredients = Ingredients {
-        operands: cutter.operands,
-        parts,
-        faces: cutter.faces,
-        windings: cutter.windings,
-        identification: cutter.identification,
-        edges: cutter.edges,
-        new: &new,
-        replaced: replaced.as_ref(),
-        copies: &copies,
+    // 9. The result: untouched triangles in their order, then the pieces.
+    let (assembled, clean_up_stopped) = match tidied {
+        None => (assemble(body, &pieces, None, runner)?, 0),
+        Some(tidied) => {
+            arrangement.points.add(tidied.copies.into_iter().map(AddedPoint::Copy));
+            let body = Body { arrangement, windings, parts };
+            (assemble(body, &tidied.new, Some(&tidied.replaced), runner)?, tidied.stopped)
+        }
     };
-    Ok(Assembled { has_inverted, ..ingredients.assemble(runner)? })
+    Ok(Assembled { has_inverted: cut.has_inverted, clean_up_stopped, ..assembled })
 }
 
-/// Whether A swells by an infinitesimal (+1) or shrinks (-1).
-fn sense(operation: Operation, fuse: bool) -> i32 {
+/// The parts that are summed up together. The halves of a symmetric difference share no inside and touch in the curve, so
+/// they are bodies of their own; only where faces touch do walls between them have to vanish.
+fn bodies(parts: &[Part], together: bool) -> std::slice::Chunks<'_, Part> {
+    parts.chunks(if together { parts.len() } else { 2 })
+}
+
+/// Which way A moves.
+fn motion(operation: Operation, fuse: bool) -> Motion {
     match operation {
-        Operation::Union if fuse => 1,
+        Operation::Union if fuse => Motion::Swell,
         // Faces that touch, whichever way they look, then cut one another, and can be added up.
-        Operation::SymmetricDifference => 1,
-        _ => -1,
+        Operation::SymmetricDifference => Motion::Swell,
+        _ => Motion::Shrink,
     }
 }
 
-fn sides<'a>(a: &'a Solid, b: &'a Solid) -> [Operand<'a>; 2] {
+/// Which faces that touch are added up.
+fn sheet_rule(parts: &[Part]) -> Rule {
+    match parts {
+        // A part turned over looks the other way.
+        [of_a, of_b] => Rule::AtSaddles { opposite: of_a.reversed == of_b.reversed },
+        _ => Rule::All,
+    }
+}
+
+fn operands<'a>(a: &'a Solid, b: &'a Solid) -> [Operand<'a>; 2] {
     [a, b].map(|solid| Operand {
         positions: solid.mesh().positions.as_slice(),
         triangles: solid.mesh().triangles.as_slice(),
@@ -211,13 +170,23 @@ fn largest_coordinate(bounds: &[Bounds; 2]) -> f64 {
     bounds.iter().flat_map(|b| b.low.iter().chain(&b.high)).fold(0.0, |most, x| most.max(x.abs()))
 }
 
+fn check_size(operands: &[Operand<'_>; 2]) -> Result<(), Error> {
+    let vertices: usize = operands.iter().map(|operand| operand.positions.len()).sum();
+    if vertices > MOST_VERTICES {
+        return Err(Error::TooLarge { what: format!("{vertices} vertices in one operation") });
+    }
+    let triangles: usize = operands.iter().map(|operand| operand.triangles.len()).sum();
+    if triangles >= u32::MAX as usize {
+        return Err(Error::TooLarge { what: format!("{triangles} triangles in one operation") });
+    }
+    Ok(())
+}
+
 /// Bytes of the tables whose size the operands give: places, classes and winding numbers of vertices, the near triangles
 /// (twice), the places of directions, and the result if nothing were left out.
-fn fixed_tables(sides: &[Operand<'_>; 2]) -> u64 {
+fn fixed_tables(operands: &[Operand<'_>; 2]) -> u64 {
     const PER_VERTEX: usize = size_of::<Place>() + 5 * size_of::<u32>() + size_of::<[f64; 3]>();
     const PER_TRIANGLE: usize = 2 * size_of::<u32>() + size_of::<[u32; 3]>();
-    sides
-        .iter()
-        .map(|side| (side.positions.len() * PER_VERTEX + side.triangles.len() * PER_TRIANGLE) as u64)
-        .sum()
+    let bytes = |of: &Operand<'_>| of.positions.len() * PER_VERTEX + of.triangles.len() * PER_TRIANGLE;
+    operands.iter().map(|operand| bytes(operand) as u64).sum()
 }

@@ -1,15 +1,14 @@
 //! What may stand on the command line.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use trisect::io::Format;
+use clap::{Args, Parser, Subcommand};
+use trisect::Operation;
 
+use super::argument_groups::{Common, Inputs, Placing, Reading, Repair, Results};
 #[cfg(feature = "parametric")]
 use super::field_arguments::CurveVerb;
 use super::field_arguments::{Eval, SampleGrid, Slice};
-use super::values;
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -36,44 +35,6 @@ pub(crate) struct Arguments {
     pub(crate) common: Common,
     #[command(subcommand)]
     pub(crate) verb: Verb,
-}
-
-/// Options that every verb takes.
-#[derive(Clone, Debug, Args)]
-pub(crate) struct Common {
-    /// Print one JSON object, on one line, on standard output
-    #[arg(long, global = true, help_heading = "Reports")]
-    pub(crate) json: bool,
-    /// Write that JSON object to a file, also when the run fails (but not for a usage error)
-    #[arg(long, global = true, value_name = "FILE", help_heading = "Reports")]
-    pub(crate) report: Option<PathBuf>,
-    /// Print only warnings and errors
-    #[arg(short, long, global = true, conflicts_with = "verbose", help_heading = "Reports")]
-    pub(crate) quiet: bool,
-    /// Print more; twice: every stage
-    #[arg(short, long, global = true, action = clap::ArgAction::Count, help_heading = "Reports")]
-    pub(crate) verbose: u8,
-    /// Exit with code 5 if there were warnings (outputs are still written)
-    #[arg(long, global = true, help_heading = "Reports")]
-    pub(crate) strict: bool,
-    /// Use this many threads [default: all processors]
-    #[arg(
-        long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024),
-        help_heading = "Limits"
-    )]
-    pub(crate) threads: Option<u16>,
-    /// Give up after this time
-    #[arg(
-        long, global = true, value_name = "SECONDS", value_parser = values::seconds,
-        help_heading = "Limits", allow_hyphen_values = true
-    )]
-    pub(crate) timeout: Option<Duration>,
-    /// Give up before the tables of the operation exceed this size, such as 512M or 4G
-    #[arg(
-        long, global = true, value_name = "SIZE", value_parser = values::bytes,
-        help_heading = "Limits", allow_hyphen_values = true
-    )]
-    pub(crate) memory: Option<u64>,
 }
 
 /// What to do.
@@ -132,10 +93,10 @@ impl Verb {
     /// The verb's name, as on the command line.
     pub(crate) fn name(&self) -> &'static str {
         match self {
-            Self::Union(_) => "union",
-            Self::Difference(_) => "difference",
-            Self::Intersection(_) => "intersection",
-            Self::Xor(_) => "xor",
+            Self::Union(_) => Operation::Union.name(),
+            Self::Difference(_) => Operation::Difference.name(),
+            Self::Intersection(_) => Operation::Intersection.name(),
+            Self::Xor(_) => Operation::SymmetricDifference.name(),
             Self::Check(_) => "check",
             Self::Info(_) => "info",
             Self::Convert(_) => "convert",
@@ -151,19 +112,10 @@ impl Verb {
 /// A boolean of several inputs.
 #[derive(Debug, Args)]
 pub(crate) struct Combine {
-    /// Input files; `-` is standard input (with --format)
-    #[arg(value_name = "FILE", required = true)]
-    pub(crate) files: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) reading: Reading,
+    pub(crate) inputs: Inputs,
     #[command(flatten)]
-    pub(crate) placing: Placing,
-    #[command(flatten)]
-    pub(crate) using: Using,
-    #[command(flatten)]
-    pub(crate) writing: Writing,
-    #[command(flatten)]
-    pub(crate) drawing: Drawing,
+    pub(crate) results: Results,
     /// Read and check the inputs, say what would be done, write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,
@@ -172,15 +124,8 @@ pub(crate) struct Combine {
 /// Checking files.
 #[derive(Debug, Args)]
 pub(crate) struct Check {
-    /// Input files; `-` is standard input (with --format)
-    #[arg(value_name = "FILE", required = true)]
-    pub(crate) files: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) reading: Reading,
-    #[command(flatten)]
-    pub(crate) placing: Placing,
-    #[command(flatten)]
-    pub(crate) using: Using,
+    pub(crate) inputs: Inputs,
 }
 
 /// Describing files.
@@ -208,126 +153,11 @@ pub(crate) struct Convert {
     pub(crate) reading: Reading,
     #[command(flatten)]
     pub(crate) placing: Placing,
-    /// Turn surfaces whose faces point inwards
-    #[arg(long, help_heading = "Inputs")]
-    pub(crate) orient: bool,
-    /// Join vertices on open edges that are no further apart than this
-    #[arg(
-        long, value_name = "DISTANCE", value_parser = values::distance, help_heading = "Inputs",
-        allow_hyphen_values = true
-    )]
-    pub(crate) weld: Option<f64>,
     #[command(flatten)]
-    pub(crate) writing: Writing,
+    pub(crate) repair: Repair,
     #[command(flatten)]
-    pub(crate) drawing: Drawing,
+    pub(crate) results: Results,
     /// Read the input, say what would be done, write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,
-}
-
-/// How inputs are read.
-#[derive(Debug, Args)]
-pub(crate) struct Reading {
-    /// Format of standard input, or of all inputs if standard input is not among them
-    #[arg(long, value_name = "FORMAT", value_parser = values::format, help_heading = "Inputs")]
-    pub(crate) format: Option<Format>,
-}
-
-/// Transforms. Each applies to the input just before it on the command line; several apply in their order. The
-/// values are taken from the matches together with their positions, not from these fields.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Transforms, of the input just before them, in their order")]
-pub(crate) struct Placing {
-    /// Move by x, y, z
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
-    translate: Vec<[f64; 3]>,
-    /// Turn by x degrees about the x axis, then y about y, then z about z
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
-    rotate: Vec<[f64; 3]>,
-    /// Scale by one factor, or by one for each axis
-    #[arg(long, value_name = "S|X,Y,Z", value_parser = values::scale, allow_hyphen_values = true)]
-    scale: Vec<[f64; 3]>,
-    /// Apply an affine map: 16 numbers, row by row, the translation in the fourth column
-    #[arg(long, value_name = "M11,M12,...", value_parser = values::matrix, allow_hyphen_values = true)]
-    matrix: Vec<[[f64; 4]; 4]>,
-}
-
-/// What makes an input an operand.
-#[derive(Clone, Copy, Debug, Args)]
-pub(crate) struct Using {
-    /// Turn inputs whose faces point inwards
-    #[arg(long, help_heading = "Inputs")]
-    pub(crate) orient: bool,
-    /// Join vertices on open edges that are no further apart than this
-    #[arg(
-        long, value_name = "DISTANCE", value_parser = values::distance, help_heading = "Inputs",
-        allow_hyphen_values = true
-    )]
-    pub(crate) weld: Option<f64>,
-    /// Do not look for places where an input crosses itself
-    #[arg(long, help_heading = "Inputs")]
-    pub(crate) assume_clean: bool,
-}
-
-/// What is written.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Outputs")]
-pub(crate) struct Writing {
-    /// Output file; may be repeated; `-` is standard output (with --output-format); *.png draws a picture
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: Vec<PathBuf>,
-    /// Format of standard output, or of all outputs if standard output is not among them
-    #[arg(long, value_name = "FORMAT", value_parser = values::format)]
-    pub(crate) output_format: Option<Format>,
-    /// Write text where the format can be text or binary (STL, PLY)
-    #[arg(long)]
-    pub(crate) ascii: bool,
-    /// Round coordinates to single precision
-    #[arg(long)]
-    pub(crate) single: bool,
-}
-
-/// Pictures.
-#[derive(Debug, Args)]
-#[command(next_help_heading = "Pictures")]
-pub(crate) struct Drawing {
-    /// Draw the result, shaded
-    #[arg(long, value_name = "FILE")]
-    pub(crate) png: Option<PathBuf>,
-    /// Size of the picture in pixels
-    #[arg(long, value_name = "WxH", value_parser = values::picture_size, default_value = "1024x768")]
-    pub(crate) png_size: [u32; 2],
-    /// Where to look from: x,y,z or front, back, left, right, top, bottom [default: 1,-1.2,0.8]
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
-    pub(crate) view: Option<[f64; 3]>,
-    /// Which axis points upwards in the picture [default: y if the first input is glTF, else z]
-    #[arg(long, value_enum)]
-    pub(crate) png_up: Option<Up>,
-    /// What the colours show [default: operand for a boolean, material otherwise]
-    #[arg(long, value_enum, alias = "png-colour")]
-    pub(crate) png_color: Option<Colours>,
-    /// Parallel projection instead of perspective
-    #[arg(long)]
-    pub(crate) png_parallel: bool,
-}
-
-/// The upward axis of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Up {
-    /// The y axis, as in glTF
-    Y,
-    /// The z axis, as in most CAD and printing files
-    Z,
-}
-
-/// What the colours of a picture show.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Colours {
-    /// The operand a face came from
-    Operand,
-    /// The material of the face's group
-    Material,
-    /// Nothing: one colour
-    None,
 }

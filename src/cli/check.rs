@@ -8,10 +8,10 @@ use trisect::mesh::Diagnosis;
 use super::arguments::Check;
 use super::fault::{self, Exit, Fault};
 use super::operands::{self, Input, Usable};
-use super::output;
 use super::report::{self, Measures, into_map};
 use super::requests::{self, Request};
 use super::session::Session;
+use super::stream;
 use trisect::mesh::diagnose;
 
 /// What `check` found out about one file.
@@ -24,7 +24,7 @@ struct Verdict {
 
 /// Checks every input; the worst answer decides the exit code, an unreadable file before an unusable one.
 pub(crate) fn run(arguments: &Check, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
-    let requests = requests::requests(matches, arguments.reading.format)?;
+    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
     let (mut unreadable, mut unusable) = (false, false);
     let mut objects = Vec::new();
     for request in &requests {
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Check, matches: &ArgMatches, session: &mut Session
         unreadable |= verdict.exit == Exit::Unreadable;
         unusable |= verdict.exit != Exit::Fine;
         if !session.common.json && (!session.common.quiet || verdict.exit != Exit::Fine) {
-            session.console.pause(|| output::print(&verdict.text))?;
+            session.console.pause(|| stream::print(&verdict.text))?;
         }
         for warning in verdict.warnings {
             session.warn(format!("{}: {warning}", request.name()));
@@ -63,20 +63,20 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     object.insert("format".into(), format.extension().into());
     object.insert("warnings".into(), json!(warnings));
     object.insert("diagnosis".into(), diagnosis.to_json());
-    let Usable { solid, turned, welded, crossings } = match operands::usable(mesh, arguments.using, &control)
-    {
-        Ok(usable) => usable,
-        Err(error) => {
-            if let Error::SelfCrossing(found) = &error {
-                diagnosis.self_crossings = Some((&**found).into());
-                object.insert("diagnosis".into(), diagnosis.to_json());
+    let Usable { solid, turned, welded, crossings } =
+        match operands::usable(mesh, arguments.inputs.using, &control) {
+            Ok(usable) => usable,
+            Err(error) => {
+                if let Error::SelfCrossing(found) = &error {
+                    diagnosis.self_crossings = Some((&**found).into());
+                    object.insert("diagnosis".into(), diagnosis.to_json());
+                }
+                let mut verdict = refused(&name, error, Some(&diagnosis))?;
+                object.extend(into_map(verdict.object));
+                verdict.object = object.into();
+                return Ok(Verdict { warnings, ..verdict });
             }
-            let mut verdict = refused(&name, error, Some(&diagnosis))?;
-            object.extend(into_map(verdict.object));
-            verdict.object = object.into();
-            return Ok(Verdict { warnings, ..verdict });
-        }
-    };
+        };
     if let Some(warning) = operands::nothing_left(&solid) {
         warnings.push(warning);
         object.insert("warnings".into(), json!(warnings));

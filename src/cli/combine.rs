@@ -5,9 +5,10 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::Value;
 use trisect::io::Format;
-use trisect::{Operation, Options, Outcome, Solid};
+use trisect::{BooleanOptions, Operation, Outcome};
 
-use super::arguments::{Colours, Combine};
+use super::argument_groups::Colours;
+use super::arguments::Combine;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Operand};
 use super::output::{self, Product, Target};
@@ -22,8 +23,8 @@ pub(crate) fn run(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
-    let requests = requests::requests(matches, arguments.reading.format)?;
-    let targets = output::targets(&arguments.writing, &arguments.drawing, session.common)?;
+    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
     refuse_pointless(operation, arguments, requests.len(), &targets, session)?;
     if !arguments.dry_run {
         output::probe(&targets, &session.limits)?;
@@ -32,7 +33,7 @@ pub(crate) fn run(
     let control = session.control();
     let start = Instant::now();
     let operands =
-        operands::operands(requests, arguments.using, &session.limits, &control, &session.console)?;
+        operands::operands(requests, arguments.inputs.using, &session.limits, &control, &session.console)?;
     session.took("read", start);
     describe(&operands, session);
     if arguments.dry_run {
@@ -41,12 +42,11 @@ pub(crate) fn run(
     }
 
     let start = Instant::now();
-    let mut options = Options::new().control(control);
+    let mut options = BooleanOptions::new().control(control);
     if let Some(threads) = session.common.threads {
         options = options.threads(usize::from(threads));
     }
-    let solids: Vec<&Solid> = operands.iter().map(|operand| &operand.solid).collect();
-    let outcome = options.run(operation, &solids)?;
+    let outcome = options.run(operation, operands.iter().map(|operand| &operand.solid))?;
     let seconds = session.took("run", start);
 
     let measures = Measures::of_solid(outcome.solid());
@@ -113,13 +113,13 @@ fn write(
     let start = Instant::now();
     session.console.stage("writing", 1.0);
     let mesh = outcome.solid().mesh();
-    let drawing = &arguments.drawing;
+    let drawing = &arguments.results.drawing;
     let picture = || {
         let operands = outcome.origins().iter().map(|origin| origin.operand as usize);
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), mesh, operands);
         trisect::render::mesh(mesh, &output::view(drawing, format), colours.as_deref())
     };
-    let options = output::write_options(&arguments.writing, &session.limits);
+    let options = output::write_options(&arguments.results.writing, &session.limits);
     let product = Product { mesh, options, picture: &picture, documents: &[] };
     let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
     session.note("outputs", outputs);
@@ -132,18 +132,12 @@ fn write(
 
 /// What `--dry-run` says.
 fn announce(operation: Operation, operands: &[Operand], targets: &[Target], session: &mut Session<'_>) {
-    let verb = match operation {
-        Operation::Union => "unite",
-        Operation::Intersection => "intersect",
-        Operation::Difference => "subtract all others from the first of",
-        Operation::SymmetricDifference => "take the symmetric difference of",
-    };
     let triangles = operands.iter().map(|operand| operand.solid.mesh().triangles.len()).sum();
     let names: Vec<String> =
         targets.iter().map(|target| format!("{} ({})", target.name(), target.format())).collect();
     let writing = if names.is_empty() { "nothing".into() } else { names.join(", ") };
     session.console.say(&format!(
-        "dry run: would {verb} {} with {} and write {writing}",
+        "dry run: would take the {operation} of {} with {} and write {writing}",
         report::counted(operands.len(), "operand"),
         report::counted(triangles, "triangle"),
     ));

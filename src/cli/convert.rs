@@ -5,9 +5,12 @@ use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::json;
-use trisect::Error;
+use trisect::control::Reservation;
+use trisect::io::Format;
+use trisect::{Error, Mesh};
 
-use super::arguments::{Colours, Convert, Writing};
+use super::argument_groups::{Colours, Writing};
+use super::arguments::Convert;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Input};
 use super::output::{self, Product, Target};
@@ -22,8 +25,8 @@ pub(crate) fn run(
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
     let (request, output) = input_and_output(arguments, matches)?;
-    let writing = Writing { output, ..arguments.writing };
-    let targets = output::targets(&writing, &arguments.drawing, session.common)?;
+    let writing = Writing { output, ..arguments.results.writing };
+    let targets = output::targets(&writing, &arguments.results.drawing, session.common)?;
     if targets.is_empty() {
         return Err(Fault::usage("nowhere to put the result: add an output file, -o FILE or --png FILE"));
     }
@@ -31,14 +34,37 @@ pub(crate) fn run(
         output::probe(&targets, &session.limits)?;
     }
 
+    let read = read(arguments, &request, session)?;
+    let names: Vec<String> = targets.iter().map(Target::name).collect();
+    if arguments.dry_run {
+        session.console.say(&format!("dry run: {}; would write {}", read.line, names.join(", ")));
+        session.note("dry_run", true);
+        return Ok(Exit::Fine);
+    }
+    write(arguments, &writing, &targets, &read, session)?;
+    session.console.say(&format!("{} -> {}", read.line, names.join(", ")));
+    Ok(Exit::Fine)
+}
+
+/// What was read, moved and repaired.
+struct Read {
+    mesh: Mesh,
+    format: Format,
+    /// What is said of it.
+    line: String,
+    /// Held while the mesh is.
+    _reserved: Reservation,
+}
+
+fn read(arguments: &Convert, request: &Request, session: &mut Session<'_>) -> Result<Read, Fault> {
     let control = session.control();
     let of_input = |error: Error| error.of_operand(0, request.name());
     let start = Instant::now();
     session.console.stage(&format!("reading {}", request.name()), 0.0);
-    let Input { mesh, format, warnings, reserved: _reserved } =
-        operands::read(&request, &session.limits, &control).map_err(of_input)?;
-    let (mesh, welded) = operands::welded(mesh, arguments.weld).map_err(of_input)?;
-    let (mesh, turned) = if arguments.orient { operands::oriented(mesh) } else { (mesh, false) };
+    let Input { mesh, format, warnings, reserved } =
+        operands::read(request, &session.limits, &control).map_err(of_input)?;
+    let (mesh, welded) = operands::welded(mesh, arguments.repair.weld).map_err(of_input)?;
+    let (mesh, turned) = if arguments.repair.orient { operands::oriented(mesh) } else { (mesh, false) };
     let seconds = session.took("read", start);
     for warning in &warnings {
         session.warn(format!("{}: {warning}", request.name()));
@@ -58,8 +84,7 @@ pub(crate) fn run(
     })));
     session.note("input", object);
 
-    let names: Vec<String> = targets.iter().map(Target::name).collect();
-    let what = format!(
+    let line = format!(
         "{} ({format}): {}{}{} ({})",
         request.name(),
         report::counted(mesh.triangles.len(), "triangle"),
@@ -67,34 +92,38 @@ pub(crate) fn run(
         if turned { ", turned outwards" } else { "" },
         report::time(seconds)
     );
-    if arguments.dry_run {
-        session.console.say(&format!("dry run: {what}; would write {}", names.join(", ")));
-        session.note("dry_run", true);
-        return Ok(Exit::Fine);
-    }
+    Ok(Read { mesh, format, line, _reserved: reserved })
+}
+
+fn write(
+    arguments: &Convert,
+    writing: &Writing,
+    targets: &[Target],
+    Read { mesh, format, .. }: &Read,
+    session: &mut Session<'_>,
+) -> Result<(), Fault> {
     let start = Instant::now();
     session.console.stage("writing", 1.0);
-    let drawing = &arguments.drawing;
+    let drawing = &arguments.results.drawing;
     let picture = || {
         let operands = mesh.triangles.iter().map(|_| 0);
-        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), &mesh, operands);
-        trisect::render::mesh(&mesh, &output::view(drawing, Some(format)), colours.as_deref())
+        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), mesh, operands);
+        trisect::render::mesh(mesh, &output::view(drawing, Some(*format)), colours.as_deref())
     };
-    let options = output::write_options(&writing, &session.limits);
-    let product = Product { mesh: &mesh, options, picture: &picture, documents: &[] };
-    let (outputs, warnings) = output::write_all(&targets, &product, &session.limits)?;
+    let options = output::write_options(writing, &session.limits);
+    let product = Product { mesh, options, picture: &picture, documents: &[] };
+    let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
     session.note("outputs", outputs);
     for warning in warnings {
         session.warn(warning);
     }
     session.took("write", start);
-    session.console.say(&format!("{what} -> {}", names.join(", ")));
-    Ok(Exit::Fine)
+    Ok(())
 }
 
 /// The one input, and the outputs: those of `-o`, or else the second file.
 fn input_and_output(arguments: &Convert, matches: &ArgMatches) -> Result<(Request, Vec<PathBuf>), Fault> {
-    let mut output = arguments.writing.output.clone();
+    let mut output = arguments.results.writing.output.clone();
     if let ([_, second], true) = (arguments.files.as_slice(), output.is_empty()) {
         output.push(second.clone());
     } else if arguments.files.len() > 1 {

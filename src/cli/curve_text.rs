@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 use trisect::parametric::json::{AnyCurve, bezier_to_json, bspline_to_json, curve, parse};
 use trisect::parametric::svg::{Ink, Picture, curves_of_path, path_data};
 use trisect::parametric::{
-    Curve, CurveJoin, CurveMeshing, GeometryError, JoinMetric, JoinReport, JointAt, NurbsCurve, Operand,
+    Curve, CurveJoin, CurveMeshing, GeometryError, JoinInput, JoinMetric, JoinReport, JointAt, NurbsCurve,
     Refinement, SharedCurve,
 };
 
@@ -14,7 +14,7 @@ pub(crate) struct JoinArguments {
     /// Minimise the change of the control points instead of that of the curves (`--metric discrete`).
     pub(crate) discrete: bool,
     /// Leave one curve as it is (`--keep first`, `--keep second`).
-    pub(crate) keep: Option<Operand>,
+    pub(crate) keep: Option<JoinInput>,
     /// Leave the outer ends where they are (`--fix-ends`).
     pub(crate) fix_ends: bool,
     /// Keep position and derivatives (`--keep-at first:0.4:1`, any number of times).
@@ -28,7 +28,7 @@ pub(crate) struct JoinArguments {
 /// One `--keep-at`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct KeptAt {
-    operand: Operand,
+    input: JoinInput,
     parameter: f64,
     order: usize,
 }
@@ -39,7 +39,7 @@ impl std::str::FromStr for KeptAt {
     /// `first:0.4` (position) or `second:0.4:2` (position and two derivatives).
     fn from_str(text: &str) -> Result<Self, String> {
         let mut parts = text.split(':');
-        let operand = parts.next().unwrap_or("").parse::<OperandName>()?.0;
+        let input = parts.next().unwrap_or("").parse::<InputName>()?.0;
         let parameter = parts.next().ok_or("a parameter is missing; write first:0.4 or first:0.4:1")?;
         let parameter = parameter.parse().map_err(|_| format!("{parameter} is not a number"))?;
         let order = match parts.next() {
@@ -47,7 +47,7 @@ impl std::str::FromStr for KeptAt {
             Some(order) => order.parse().map_err(|_| format!("{order} is not a number of derivatives"))?,
         };
         match parts.next() {
-            None => Ok(Self { operand, parameter, order }),
+            None => Ok(Self { input, parameter, order }),
             Some(rest) => Err(format!("{rest} after the number of derivatives")),
         }
     }
@@ -55,15 +55,15 @@ impl std::str::FromStr for KeptAt {
 
 /// `first` or `second`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct OperandName(pub(crate) Operand);
+pub(crate) struct InputName(pub(crate) JoinInput);
 
-impl std::str::FromStr for OperandName {
+impl std::str::FromStr for InputName {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
         match text {
-            "first" => Ok(Self(Operand::First)),
-            "second" => Ok(Self(Operand::Second)),
+            "first" => Ok(Self(JoinInput::First)),
+            "second" => Ok(Self(JoinInput::Second)),
             other => Err(format!("{other} is neither first nor second")),
         }
     }
@@ -155,14 +155,14 @@ fn join_read<const D: usize>(
     if arguments.discrete {
         join = join.metric(JoinMetric::Discrete);
     }
-    if let Some(operand) = arguments.keep {
-        join = join.keep(operand);
+    if let Some(input) = arguments.keep {
+        join = join.keep(input);
     }
     if arguments.fix_ends {
         join = join.fix_ends();
     }
     for kept in &arguments.keep_at {
-        join = join.keep_at(kept.operand, kept.parameter, kept.order);
+        join = join.keep_at(kept.input, kept.parameter, kept.order);
     }
     if let Some(joint) = arguments.joint {
         join = join.joint(joint);

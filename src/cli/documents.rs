@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::arguments::Common;
+use super::argument_groups::Common;
 use super::fault::Fault;
 use super::limits::Limits;
-use super::output;
 use super::requests::STANDARD;
 use super::stage::{self, Stage};
+use super::stream;
 
 /// A file to be written, or standard output.
 pub(crate) struct Document {
@@ -40,7 +40,7 @@ pub(crate) fn check<'p>(
             }
         } else if path.is_dir() {
             return Err(Fault::usage(format!("{} is a folder; name a file in it", path.display())));
-        } else if !output::is_device(path) {
+        } else if !stream::is_device(path) {
             Stage::new(path, limits).map_err(|error| Fault::output(path, error))?;
         }
     }
@@ -51,10 +51,10 @@ pub(crate) fn check<'p>(
 pub(crate) fn staged<'l>(document: &Document, limits: &'l Limits) -> Result<Option<Stage<'l>>, Fault> {
     let failed = |error| Fault::output(&document.path, error);
     if document.path == Path::new(STANDARD) {
-        output::print_bytes(&document.bytes)?;
+        stream::print_bytes(&document.bytes)?;
         return Ok(None);
     }
-    if output::is_device(&document.path) {
+    if stream::is_device(&document.path) {
         let mut out = fs::File::options().write(true).open(&document.path).map_err(failed)?;
         out.write_all(&document.bytes).map_err(failed)?;
         return Ok(None);

@@ -8,7 +8,7 @@ use trisect::Solid;
 use trisect::field::Contours;
 use trisect::model::{Evaluated, Evaluation, Model};
 
-use super::arguments::Colours;
+use super::argument_groups::Colours;
 use super::documents::{self, Document};
 use super::fault::{Exit, Fault};
 use super::field_arguments::Eval;
@@ -20,7 +20,7 @@ use super::session::Session;
 
 /// Evaluates a model.
 pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, Fault> {
-    let targets = output::targets(&arguments.writing, &arguments.drawing, session.common)?;
+    let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
     let common = session.common;
     let wanted = !targets.is_empty() || common.json || common.report.is_some();
     if !wanted && arguments.contours.is_none() && !arguments.dry_run {
@@ -35,24 +35,13 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
         documents::check(places, common, &session.limits)?;
     }
 
-    let control = session.control();
-    let start = Instant::now();
-    let standard = arguments.model == Path::new(STANDARD);
-    let name = if standard { "standard input".to_owned() } else { arguments.model.display().to_string() };
-    session.console.stage(&format!("reading {name}"), 0.0);
-    let folder = arguments.model.parent().filter(|_| !standard).unwrap_or(Path::new(""));
-    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let model = Model::parse(&operands::text(&arguments.model, &session.limits)?, folder)?;
-    session.took("read", start);
-    let files: Vec<String> = model.files().iter().map(|file| file.display().to_string()).collect();
-    session
-        .note("model", json!({ "file": name, "nodes": model.names().collect::<Vec<_>>(), "files": files }));
+    let (model, name) = read(arguments, session)?;
     if arguments.dry_run {
         return dry_run(&model, &name, session);
     }
 
     let start = Instant::now();
-    let mut evaluation = Evaluation::new().control(control);
+    let mut evaluation = Evaluation::new().control(session.control());
     if let Some(tolerance) = arguments.tolerance {
         evaluation = evaluation.tolerance(tolerance);
     }
@@ -60,17 +49,7 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     let mut drawn = Vec::new();
     if let (Some(path), Some(format)) = (&arguments.contours, format) {
         let contours = evaluation.contours(&model, arguments.contour_height)?;
-        parts.push(format!(
-            "{} of {}, area {}",
-            report::counted(contours.loops.len(), "contour"),
-            report::counted(contours.len(), "point"),
-            report::short(contours.area())
-        ));
-        session.note(
-            "contours",
-            json!({ "height": arguments.contour_height, "count": contours.loops.len(),
-                    "points": contours.len(), "area": contours.area() }),
-        );
+        parts.push(note_contours(&contours, arguments.contour_height, session));
         let bytes = if format == "svg" { svg(&contours) } else { polygons(&contours) }.into_bytes();
         drawn.push(Document { path: path.clone(), format, bytes });
     }
@@ -105,6 +84,36 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     Ok(Exit::Fine)
 }
 
+/// The model, and its name in messages.
+fn read(arguments: &Eval, session: &mut Session<'_>) -> Result<(Model, String), Fault> {
+    let start = Instant::now();
+    let standard = arguments.model == Path::new(STANDARD);
+    let name = if standard { "standard input".to_owned() } else { arguments.model.display().to_string() };
+    session.console.stage(&format!("reading {name}"), 0.0);
+    let folder = arguments.model.parent().filter(|_| !standard).unwrap_or(Path::new(""));
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let model = Model::parse(&operands::text(&arguments.model, &session.limits)?, folder)?;
+    session.took("read", start);
+    let files: Vec<String> = model.files().iter().map(|file| file.display().to_string()).collect();
+    session
+        .note("model", json!({ "file": name, "nodes": model.names().collect::<Vec<_>>(), "files": files }));
+    Ok((model, name))
+}
+
+/// Notes contours in the report, and says them in a line.
+fn note_contours(contours: &Contours, height: f64, session: &mut Session<'_>) -> String {
+    session.note(
+        "contours",
+        json!({ "height": height, "count": contours.loops.len(), "points": contours.len(), "area": contours.area() }),
+    );
+    format!(
+        "{} of {}, area {}",
+        report::counted(contours.loops.len(), "contour"),
+        report::counted(contours.len(), "point"),
+        report::short(contours.area())
+    )
+}
+
 fn dry_run(model: &Model, name: &str, session: &mut Session<'_>) -> Result<Exit, Fault> {
     for file in model.files() {
         std::fs::metadata(&file).map_err(|source| trisect::Error::File {
@@ -133,13 +142,13 @@ fn write(
     session.console.stage("writing", 1.0);
     let outputs = if let Some(solid) = solid {
         let mesh = solid.mesh();
-        let drawing = &arguments.drawing;
+        let drawing = &arguments.results.drawing;
         let picture = || {
             let operands = mesh.triangles.iter().map(|_| 0);
             let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), mesh, operands);
             trisect::render::mesh(mesh, &output::view(drawing, None), colours.as_deref())
         };
-        let options = output::write_options(&arguments.writing, &session.limits);
+        let options = output::write_options(&arguments.results.writing, &session.limits);
         let product = Product { mesh, options, picture: &picture, documents: drawn };
         let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
         for warning in warnings {

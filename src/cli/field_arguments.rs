@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use trisect::field::SignRule;
 
-use super::arguments::{Drawing, Placing, Reading, Writing};
+use super::argument_groups::{Placing, Reading, Results};
 use super::values;
 
 /// Evaluating a model.
@@ -27,9 +27,7 @@ pub(crate) struct Eval {
     )]
     pub(crate) contour_height: f64,
     #[command(flatten)]
-    pub(crate) writing: Writing,
-    #[command(flatten)]
-    pub(crate) drawing: Drawing,
+    pub(crate) results: Results,
     /// Read and check the model, say what it needs, write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,
@@ -150,7 +148,7 @@ mod curve {
     use clap::{Args, Subcommand, ValueEnum};
 
     use super::values;
-    use crate::cli::curve_text::{JointName, KeptAt, OperandName};
+    use crate::cli::curve_text::{InputName, JointName, KeptAt};
 
     /// What to do with curves.
     #[derive(Debug, Subcommand)]
@@ -194,7 +192,7 @@ mod curve {
         pub(crate) metric: Metric,
         /// Leave one curve as it is: first or second
         #[arg(long, value_name = "CURVE")]
-        pub(crate) keep: Option<OperandName>,
+        pub(crate) keep: Option<InputName>,
         /// Leave the outer ends where they are
         #[arg(long)]
         pub(crate) fix_ends: bool,

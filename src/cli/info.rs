@@ -8,10 +8,10 @@ use trisect::{Error, Mesh};
 use super::arguments::Info;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Input};
-use super::output;
 use super::report::{Measures, counted};
 use super::requests::{self, Request};
 use super::session::Session;
+use super::stream;
 
 /// Describes every input, or the formats.
 pub(crate) fn run(arguments: &Info, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &Info, matches: &ArgMatches, session: &mut Session<
             operands::read(request, &session.limits, &control).map_err(of_this)?;
         let (text, object) = describe(request, &mesh, format, &warnings);
         if !session.common.json {
-            session.console.pause(|| output::print(&text))?;
+            session.console.pause(|| stream::print(&text))?;
         }
         for warning in warnings {
             session.warn(format!("{}: {warning}", request.name()));
@@ -48,7 +48,7 @@ fn formats(session: &mut Session<'_>) -> Result<Exit, Fault> {
         let lines = Format::ALL
             .iter()
             .map(|format| format!(".{:6} {format}, read and written\n", format.extension()));
-        output::print(&lines.collect::<String>())?;
+        stream::print(&lines.collect::<String>())?;
     }
     Ok(Exit::Fine)
 }

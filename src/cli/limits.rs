@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use trisect::{CancelToken, Control, Error};
 
-use super::arguments::Common;
+use super::argument_groups::Common;
 use super::fault::Fault;
 
 /// How long after the deadline a run that does not notice it is ended by force.

@@ -1,5 +1,6 @@
 //! The command-line program: arguments, one file per verb, reports, exit codes.
 
+mod argument_groups;
 mod arguments;
 mod check;
 mod combine;
@@ -24,6 +25,7 @@ mod session;
 mod slice;
 mod source;
 mod stage;
+mod stream;
 mod values;
 
 use std::any::Any;

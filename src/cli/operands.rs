@@ -11,7 +11,7 @@ use trisect::control::Reservation;
 use trisect::io::Format;
 use trisect::{Control, Error, Mesh, Solid};
 
-use super::arguments::Using;
+use super::argument_groups::Using;
 use super::limits::Limits;
 use super::progress::Console;
 use super::requests::Request;
@@ -116,8 +116,8 @@ pub(crate) struct Crossings {
 
 /// Makes a mesh an operand, or says why it cannot be one.
 pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usable, Error> {
-    let (mesh, welded) = welded(mesh, using.weld)?;
-    let (mesh, turned) = if using.orient { oriented(mesh) } else { (mesh, false) };
+    let (mesh, welded) = welded(mesh, using.repair.weld)?;
+    let (mesh, turned) = if using.repair.orient { oriented(mesh) } else { (mesh, false) };
     let solid = Solid::try_from(mesh)?;
     let crossings = match using.assume_clean {
         true => None,

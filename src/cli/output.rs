@@ -1,21 +1,21 @@
 //! Where results go: files, standard output, pictures, the report.
 
 use std::fs::{self, File};
-use std::io::{self as std_io, IsTerminal as _, Write};
+use std::io::{IsTerminal as _, Write, stdout};
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
-use trisect::io::Format;
+use trisect::io::{self, Format};
 use trisect::render::{self, Picture};
 use trisect::{Error, Failure, Mesh};
 
-use super::arguments::{Colours, Common, Drawing, Up, Writing};
+use super::argument_groups::{Colours, Common, Drawing, Up, Writing};
 use super::documents::{self, Document};
 use super::fault::Fault;
 use super::limits::Limits;
 use super::requests::STANDARD;
 use super::stage::{self, Stage};
-use trisect::io;
+use super::stream::is_device;
 
 /// Where one output goes.
 #[derive(Clone, Debug, PartialEq)]
@@ -124,7 +124,7 @@ fn refuse_terminal(format: Format, ascii: bool) -> Result<(), Fault> {
         Format::Stl | Format::Ply => !ascii,
         _ => false,
     };
-    if binary && std_io::stdout().is_terminal() {
+    if binary && stdout().is_terminal() {
         return Err(Fault::usage(format!(
             "standard output is a terminal, and {format} is binary; send it to a file or a pipe{}",
             if format == Format::Glb { "" } else { ", or add --ascii" }
@@ -216,7 +216,7 @@ fn write_file(target: &Target, path: &Path, product: &Product<'_>) -> Result<Vec
 fn write_stream(target: &Target, product: &Product<'_>) -> Result<Vec<String>, Error> {
     let failed = |source| file_error(&target.path, source);
     let mut out: Box<dyn Write> = match target.kind {
-        Kind::Standard(_) => Box::new(std_io::stdout().lock()),
+        Kind::Standard(_) => Box::new(stdout().lock()),
         _ => Box::new(File::options().write(true).open(&target.path).map_err(failed)?),
     };
     let warnings = match target.kind {
@@ -232,11 +232,6 @@ fn write_stream(target: &Target, product: &Product<'_>) -> Result<Vec<String>, E
     Ok(warnings)
 }
 
-/// An existing thing that is not a file: writing beside it and renaming would destroy it.
-pub(crate) fn is_device(path: &Path) -> bool {
-    fs::metadata(path).is_ok_and(|what| !what.is_file() && !what.is_dir())
-}
-
 /// The error, said of the output the user named instead of the file in the hidden folder.
 fn failed(target: &Target, error: Error) -> Fault {
     match error {
@@ -248,7 +243,7 @@ fn failed(target: &Target, error: Error) -> Fault {
     }
 }
 
-fn file_error(path: &Path, source: std_io::Error) -> Error {
+fn file_error(path: &Path, source: std::io::Error) -> Error {
     Error::File { action: "write", path: path.to_path_buf(), source }
 }
 
@@ -291,20 +286,4 @@ pub(crate) fn write_report(path: &Path, report: &Value, limits: &Limits) -> Resu
     fs::write(stage.path(), text).map_err(failed)?;
     stage::replace(&stage, limits)?;
     Ok(())
-}
-
-/// Prints text on standard output; a reader that went away is no failure.
-pub(crate) fn print(text: &str) -> Result<(), Fault> {
-    print_bytes(text.as_bytes())
-}
-
-/// Writes bytes to standard output; a reader that went away is no failure.
-pub(crate) fn print_bytes(bytes: &[u8]) -> Result<(), Fault> {
-    let mut out = std_io::stdout().lock();
-    match out.write_all(bytes).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std_io::ErrorKind::BrokenPipe => {
-            Err(Fault::output("standard output", error))
-        }
-        _ => Ok(()),
-    }
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use trisect::Control;
 
-use super::arguments::Common;
+use super::argument_groups::Common;
 
 /// Runs shorter than this show no bar.
 const PATIENCE: Duration = Duration::from_millis(300);

@@ -5,12 +5,13 @@ use std::time::Instant;
 use serde_json::{Map, Value, json};
 use trisect::Control;
 
-use super::arguments::Common;
+use super::argument_groups::Common;
 use super::fault::{Exit, Fault, SCHEMA};
 use super::limits::Limits;
 use super::output;
 use super::progress::Console;
 use super::report::counted;
+use super::stream;
 
 /// What every verb works with.
 pub(crate) struct Session<'a> {
@@ -100,7 +101,7 @@ impl<'a> Session<'a> {
             }
         }
         if self.common.json
-            && let Err(fault) = output::print(&format!("{}\n", Value::Object(self.report)))
+            && let Err(fault) = stream::print(&format!("{}\n", Value::Object(self.report)))
         {
             self.console.warn(&format!("trisect: {}", fault.message));
             exit = if exit == Exit::Fine { fault.exit } else { exit };

@@ -9,7 +9,7 @@ const INLINE_WORDS: usize = 12;
 
 /// A signed integer of any size: sign and magnitude, least significant word first, no leading zero words.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Integer {
+pub(super) struct Integer {
     negative: bool,
     words: SmallVec<[u64; INLINE_WORDS]>,
 }
@@ -17,13 +17,13 @@ pub struct Integer {
 impl Integer {
     /// Zero.
     #[must_use]
-    pub fn zero() -> Self {
+    pub(super) fn zero() -> Self {
         Self::default()
     }
 
     /// `value * 2^shift`.
     #[must_use]
-    pub fn from_shifted(value: i64, shift: u32) -> Self {
+    pub(super) fn from_shifted(value: i64, shift: u32) -> Self {
         let mut result = Self { negative: value < 0, words: SmallVec::new() };
         result.words.resize((shift / 64) as usize, 0);
         let wide = u128::from(value.unsigned_abs()) << (shift % 64);
@@ -35,7 +35,7 @@ impl Integer {
 
     /// -1, 0 or 1.
     #[must_use]
-    pub fn signum(&self) -> i32 {
+    pub(super) fn signum(&self) -> i32 {
         match (self.words.is_empty(), self.negative) {
             (true, _) => 0,
             (false, true) => -1,
@@ -45,41 +45,34 @@ impl Integer {
 
     /// Whether this is zero.
     #[must_use]
-    pub fn is_zero(&self) -> bool {
+    pub(super) fn is_zero(&self) -> bool {
         self.words.is_empty()
     }
 
     /// The number of bits of the magnitude; 0 for zero.
     #[must_use]
-    pub fn bits(&self) -> u64 {
+    pub(super) fn bits(&self) -> u64 {
         match self.words.last() {
             Some(top) => self.words.len() as u64 * 64 - u64::from(top.leading_zeros()),
             None => 0,
         }
     }
 
-    /// `-self`.
-    #[must_use]
-    pub fn negated(mut self) -> Self {
-        self.negative = !self.negative && !self.is_zero();
-        self
-    }
-
     /// `self + other`.
     #[must_use]
-    pub fn plus(&self, other: &Self) -> Self {
+    pub(super) fn plus(&self, other: &Self) -> Self {
         self.combined(other, other.negative)
     }
 
     /// `self - other`.
     #[must_use]
-    pub fn minus(&self, other: &Self) -> Self {
+    pub(super) fn minus(&self, other: &Self) -> Self {
         self.combined(other, !other.negative)
     }
 
     /// `self * other`, by the school method: the operands are a few dozen words at most.
     #[must_use]
-    pub fn times(&self, other: &Self) -> Self {
+    pub(super) fn times(&self, other: &Self) -> Self {
         let mut words: SmallVec<[u64; INLINE_WORDS]> = SmallVec::new();
         words.resize(self.words.len() + other.words.len(), 0);
         for (i, &x) in self.words.iter().enumerate() {
@@ -98,7 +91,7 @@ impl Integer {
 
     /// `self * 2^shift`.
     #[must_use]
-    pub fn shifted_left(&self, shift: u64) -> Self {
+    pub(super) fn shifted_left(&self, shift: u64) -> Self {
         if self.is_zero() {
             return Self::zero();
         }
@@ -121,7 +114,7 @@ impl Integer {
     /// # Panics
     /// If `divisor` is zero.
     #[must_use]
-    pub fn quotient(&self, divisor: &Self, exponent: i64) -> f64 {
+    pub(super) fn quotient(&self, divisor: &Self, exponent: i64) -> f64 {
         assert!(!divisor.is_zero(), "division by zero");
         if self.is_zero() {
             return 0.0;

@@ -1,7 +1,7 @@
 //! Coordinates as integers: every finite `f64` is an integer times a power of two, so finitely many of them lie on a
 //! common lattice.
 
-use super::Integer;
+use super::integer::Integer;
 
 /// Bits a coordinate may have for a 3 by 3 determinant of differences to fit 128-bit integers.
 const SMALL_BITS: i32 = 40;

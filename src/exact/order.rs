@@ -5,19 +5,20 @@
 //! `N = D(T1; p) D(T2; q) - D(T1; q) D(T2; p)`. The same `N` tells, up to the sign of `D(T1; p) - D(T1; q)`, on which side
 //! of the plane of `T2` the crossing with `T1` lies.
 
+use super::Sign;
+use super::filter::orient3d_filter;
+use super::integer::Integer;
 use super::lattice::Lattice;
-use super::orient::orient3d_filter;
 use super::perturbed::{
     COEFFICIENTS, EXPONENTS, LOW_COEFFICIENTS, PerturbedPoint, Polynomial, low_coefficients,
 };
-use super::{Integer, Sign};
 
 /// The sign of `t1 - t2` from plain positions, if `f64` with an error bound can tell: the filter of [`compare`].
 ///
 /// `p_above_1` and `p_above_2` say whether `D(Tk; p)` is positive (perturbed).
 #[inline]
 #[must_use]
-pub fn compare_filter(
+pub(crate) fn compare_filter(
     p: &[f64; 3],
     q: &[f64; 3],
     first: [&[f64; 3]; 3],
@@ -48,7 +49,7 @@ fn order_from(n_positive: bool, p_above_1: bool, p_above_2: bool) -> Sign {
 /// The sign of `t1 - t2`, exactly, for perturbed points; `p` and `q` must lie on different (perturbed) sides of both
 /// triangles. Zero only if the two crossings coincide identically: for the same triangle given twice.
 #[must_use]
-pub fn compare(
+pub(crate) fn compare(
     p: &PerturbedPoint,
     q: &PerturbedPoint,
     first: [&PerturbedPoint; 3],

@@ -12,9 +12,11 @@
 
 use std::cell::OnceCell;
 
+use super::Sign;
+use super::filter::{ORIENT3D_BOUND, UNDERFLOW_FLOOR};
+use super::integer::Integer;
 use super::lattice::Lattice;
 use super::orient::orient3d_exact;
-use super::{Integer, Sign};
 
 /// Powers of `eps` in a coordinate: the position itself, the first direction, the second.
 const POWERS: [usize; 3] = [0, 1, 8];
@@ -25,19 +27,19 @@ pub(super) const EXPONENTS: [usize; 10] = [0, 1, 2, 3, 8, 9, 10, 16, 17, 24];
 
 /// A point that moves infinitesimally: `position + eps first + eps^8 second`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PerturbedPoint {
+pub(crate) struct PerturbedPoint {
     /// Where the point is; finite.
-    pub position: [f64; 3],
+    pub(crate) position: [f64; 3],
     /// The first direction; components of at most 10 bits and a sign.
-    pub first: [i32; 3],
+    pub(crate) first: [i32; 3],
     /// The second direction; components of at most 20 bits and a sign.
-    pub second: [i32; 3],
+    pub(crate) second: [i32; 3],
 }
 
 /// A second direction from the identity of a point: 20 pseudo-random bits and a sign for each component, by the
 /// splitmix64 finaliser, so that no three of them are dependent but with a probability of about 2^-60.
 #[must_use]
-pub fn jitter(identity: u64) -> [i32; 3] {
+pub(crate) fn jitter(identity: u64) -> [i32; 3] {
     let mut bits = identity.wrapping_add(0x9e37_79b9_7f4a_7c15);
     bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -48,10 +50,33 @@ pub fn jitter(identity: u64) -> [i32; 3] {
 /// The sign of `orient3d` of four perturbed points (see [`super::orient3d`] for what it means). It is zero only if the
 /// polynomial vanishes identically: for points with different [`jitter`] that has a probability below 2^-55.
 #[must_use]
-pub fn orient3d(points: [&PerturbedPoint; 4]) -> Sign {
+pub(super) fn orient3d(points: [&PerturbedPoint; 4]) -> Sign {
     let [a, b, c, d] = points;
     let unperturbed = orient3d_exact(&a.position, &b.position, &c.position, &d.position);
     if unperturbed != Sign::Zero { unperturbed } else { orient3d_of_tie(points) }
+}
+
+/// The sign of [`orient3d`](super::orient3d) of four points that each move by an infinitesimal in a given direction, whose
+/// components have at most 10 bits and a sign. Where that leaves a tie, further directions break it that depend on the
+/// place of a point among the four alone: the sign is never zero (but with a probability below 2^-55).
+///
+/// ```
+/// use trisect::exact::{Sign, orient3d, orient3d_perturbed};
+/// let (a, b, c) = ([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]);
+/// let d = [0.3, 0.3, 0.0];
+/// assert_eq!(orient3d(&a, &b, &c, &d), Sign::Zero);
+/// // The triangle moves up, and the point is below it then.
+/// let (up, still) = ([0, 0, 1], [0; 3]);
+/// assert_eq!(orient3d_perturbed([&a, &b, &c, &d], [up, up, up, still]), Sign::Positive);
+/// ```
+#[must_use]
+pub fn orient3d_perturbed(points: [&[f64; 3]; 4], directions: [[i32; 3]; 4]) -> Sign {
+    let moving: [PerturbedPoint; 4] = std::array::from_fn(|i| PerturbedPoint {
+        position: *points[i],
+        first: directions[i],
+        second: jitter(i as u64),
+    });
+    orient3d(moving.each_ref())
 }
 
 /// [`orient3d`] of points whose unperturbed determinant is known to be zero.
@@ -122,13 +147,9 @@ pub(super) fn low_coefficients(points: [&PerturbedPoint; 4], lattice: Lattice) -
 /// The sign of the coefficient of the power of `eps` that belongs to some directions, if `f64` is certain: the sum of three
 /// determinants with one row of directions each.
 fn linear_coefficient(positions: [&[f64; 3]; 4], directions: [[i32; 3]; 4]) -> Option<Sign> {
-    // Three determinants with one exact row each; twice the bound of a single orient3d covers them and their sum.
-    const BOUND: f64 = 2.0 * (7.0 + 56.0 * f64::EPSILON) * f64::EPSILON / 2.0;
-    const FLOOR: f64 = f64::from_bits((1023 - 700) << 52);
-    const LIMIT: f64 = f64::from_bits((1023 + 350) << 52);
-    if positions.into_iter().flatten().any(|x| x.abs() > LIMIT) {
-        return None;
-    }
+    // Three determinants with one exact row each: twice the bound of a single `orient3d` covers them and their sum. The
+    // third factors are directions of at most 2^22, so that `UNDERFLOW_FLOOR` covers underflow for all coordinates.
+    const BOUND: f64 = 2.0 * ORIENT3D_BOUND;
     let [zero, one]: [[[f64; 3]; 3]; 2] = [
         std::array::from_fn(|i| std::array::from_fn(|k| positions[i][k] - positions[3][k])),
         std::array::from_fn(|i| std::array::from_fn(|k| f64::from(directions[i][k] - directions[3][k]))),
@@ -143,7 +164,7 @@ fn linear_coefficient(positions: [&[f64; 3]; 4], directions: [[i32; 3]; 4]) -> O
             permanent += one[i][k].abs() * (left.abs() + right.abs());
         }
     }
-    if sum.abs() > BOUND * permanent + FLOOR {
+    if sum.abs() > BOUND * permanent + UNDERFLOW_FLOOR {
         Some(if sum > 0.0 { Sign::Positive } else { Sign::Negative })
     } else {
         None

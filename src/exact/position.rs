@@ -7,8 +7,8 @@
 //! plane, the limit for a vanishing perturbation is taken: the first coefficients of `D(T; p)` and `D(T; q)` that are not
 //! both zero take their place.
 
-use super::Integer;
 use super::double_double::DoubleDouble;
+use super::integer::Integer;
 use super::lattice::Lattice;
 use super::orient::determinant;
 use super::perturbed::{COEFFICIENTS, PerturbedPoint, Polynomial};
@@ -16,7 +16,7 @@ use super::perturbed::{COEFFICIENTS, PerturbedPoint, Polynomial};
 /// The crossing point of edge `(p, q)` with the plane of the triangle, if double-double arithmetic can round it with
 /// certainty; the fast path of [`crossing`].
 #[must_use]
-pub fn crossing_filter(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> Option<[f64; 3]> {
+pub(crate) fn crossing_filter(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> Option<[f64; 3]> {
     let mut position = [0.0; 3];
     for (rounded, Near { value: x, error }) in position.iter_mut().zip(near_crossing(p, q, triangle)?) {
         let error = error + x.low.abs() * 4.0 * f64::EPSILON;
@@ -96,7 +96,7 @@ fn near_crossing(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> Option
 /// # Panics
 /// If the perturbed points do not lie on different sides (the two heights then may agree identically).
 #[must_use]
-pub fn crossing(p: &PerturbedPoint, q: &PerturbedPoint, triangle: [&PerturbedPoint; 3]) -> [f64; 3] {
+pub(crate) fn crossing(p: &PerturbedPoint, q: &PerturbedPoint, triangle: [&PerturbedPoint; 3]) -> [f64; 3] {
     let points = [p, q, triangle[0], triangle[1], triangle[2]];
     let lattice = Lattice::of(points.into_iter().flat_map(|point| &point.position));
     let (numerators, denominator) = homogeneous(p, q, triangle, lattice);

@@ -31,11 +31,6 @@ impl Projection {
         Self { x: (axis + 1) % 3, y: (axis + 2) % 3 }
     }
 
-    /// Whether the face looks along the dropped axis rather than against it.
-    pub(crate) fn looks_along_axis(self) -> bool {
-        self.along_axis() == self
-    }
-
     /// The projection of the same face turned over.
     #[must_use]
     pub(crate) fn reversed(self) -> Self {
@@ -95,7 +90,8 @@ mod tests {
                     assert_eq!(orient2d(a, b, c), Sign::Positive, "{scale} {turn} {flip}");
                     let axis = projection.axis();
                     assert!(axis != projection.x && axis != projection.y);
-                    assert_eq!(projection.reversed().looks_along_axis(), !projection.looks_along_axis());
+                    assert_ne!(projection.reversed(), projection);
+                    assert_eq!(projection.reversed().along_axis(), projection.along_axis());
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! Where a field can be positive: a box round the solid, found by interval arithmetic.
+//! Where a field can be positive: a box around the solid, found by interval arithmetic.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -7,32 +7,32 @@ use super::Expression;
 use super::expression::Scratch;
 use crate::{Control, Error};
 
-/// Half the side of the region searched at first.
+/// Half the side of the cube searched, in units of length: 2^20, so that halvings are exact.
 const REGION: f64 = 1_048_576.0;
-/// Boxes looked at per direction and round.
+/// Boxes looked at per direction and round of the search.
 const MOST: usize = 20_000;
 
 /// A part of the region, ordered by how far it reaches in the direction asked for; among equals smaller ones first.
 #[derive(Clone, Copy, PartialEq)]
-struct Part {
+struct SearchBox {
     reach: f64,
     low: [f64; 3],
     high: [f64; 3],
 }
 
-impl Part {
+impl SearchBox {
     fn size(&self) -> f64 {
         (0..3).map(|axis| self.high[axis] - self.low[axis]).fold(0.0, f64::max)
     }
 }
 
-impl Eq for Part {}
-impl PartialOrd for Part {
+impl Eq for SearchBox {}
+impl PartialOrd for SearchBox {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
-impl Ord for Part {
+impl Ord for SearchBox {
     fn cmp(&self, other: &Self) -> Ordering {
         self.reach
             .total_cmp(&other.reach)
@@ -42,8 +42,8 @@ impl Ord for Part {
 }
 
 impl Expression {
-    /// A box that certainly contains where the field is positive, at most a few percent too large where intervals
-    /// tell; nothing if it is positive nowhere. With `plane`, only the plane z = `plane` is searched, and the box is
+    /// A box that certainly contains where the field is positive, at most a few percent too large where interval
+    /// bounds are close; nothing if it is positive nowhere. With `plane`, only the plane z = `plane` is searched, and the box is
     /// flat.
     ///
     /// # Errors
@@ -59,7 +59,7 @@ impl Expression {
             (low[2], high[2]) = (height, height);
         }
         for round in 0..4 {
-            let whole = Part { reach: 0.0, low, high };
+            let whole = SearchBox { reach: 0.0, low, high };
             let accuracy = if round == 0 { 0.25 } else { whole.size() / 100.0 };
             let axes = if plane.is_some() { 2 } else { 3 };
             for axis in 0..axes {
@@ -92,15 +92,15 @@ impl Expression {
     /// How far the field may be positive in a direction, never too small.
     fn reach(
         &self,
-        whole: Part,
+        whole: SearchBox,
         axis: usize,
         side: f64,
         accuracy: f64,
         control: &Control,
     ) -> Result<Option<f64>, Error> {
         let mut scratch = Scratch::default();
-        let reach = |part: &Part| if side > 0.0 { part.high[axis] } else { -part.low[axis] };
-        let mut parts = BinaryHeap::from([Part { reach: reach(&whole), ..whole }]);
+        let reach = |part: &SearchBox| if side > 0.0 { part.high[axis] } else { -part.low[axis] };
+        let mut parts = BinaryHeap::from([SearchBox { reach: reach(&whole), ..whole }]);
         for count in 0.. {
             let Some(part) = parts.pop() else { return Ok(None) };
             if count % 1000 == 0 {

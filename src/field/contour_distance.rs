@@ -1,7 +1,6 @@
 //! Signed distance of closed polygons in the plane (Choporov 2017, 3 and 6).
 
-use robust::{Coord, orient2d};
-
+use crate::exact::{Sign, orient2d};
 use crate::spatial::{Side, TriangleTree};
 use crate::{Error, Mesh};
 
@@ -106,17 +105,15 @@ impl ContourDistance {
     /// end is strictly below the ray and the other on or above it. Exact.
     #[must_use]
     pub fn side(&self, query: [f64; 2]) -> Side {
-        let point = Coord { x: query[0], y: query[1] };
         let mut odd = false;
         let mut on = false;
         self.tree.visit_right_of([query[0], query[1], 0.0], |[a, b, _]| {
             let (low, high) = if a.y < b.y { (a, b) } else { (b, a) };
-            let (low, high) = (Coord { x: low.x, y: low.y }, Coord { x: high.x, y: high.y });
-            let turn = orient2d(low, high, point);
+            let turn = orient2d([low.x, low.y], [high.x, high.y], query);
             let within = |p: f64, q: f64, x: f64| p.min(q) <= x && x <= p.max(q);
-            on |= turn == 0.0 && within(a.x, b.x, point.x) && within(a.y, b.y, point.y);
+            on |= turn == Sign::Zero && within(a.x, b.x, query[0]) && within(a.y, b.y, query[1]);
             // To the left of the rising edge: the edge is to the right of the point.
-            odd ^= low.y < point.y && high.y >= point.y && turn > 0.0;
+            odd ^= low.y < query[1] && high.y >= query[1] && turn == Sign::Positive;
         });
         match (on, odd) {
             (true, _) => Side::On,
@@ -125,7 +122,7 @@ impl ContourDistance {
         }
     }
 
-    /// The corners of the rectangle round all polygons.
+    /// The corners of the rectangle around all polygons.
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 2]; 2]> {
         self.tree.bounds().map(|[low, high]| [[low[0], low[1]], [high[0], high[1]]])
@@ -149,5 +146,31 @@ impl ContourDistance {
     pub(super) fn edges_near(&self, centre: [f64; 2], radius: f64, mut visit: impl FnMut([f64; 2]) -> bool) {
         let centre = glam::DVec3::new(centre[0], centre[1], 0.0);
         self.tree.triangles_near(centre, radius, |edge| visit(self.normal(edge)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn side(points: &[[f64; 2]], query: [f64; 2]) -> Side {
+        ContourDistance::new(&Contours { loops: vec![points.to_vec()] }).expect("a contour").side(query)
+    }
+
+    #[test]
+    fn sides_are_exact_at_any_magnitude() {
+        for scale in [1e-300, 1.0, 1e300] {
+            // The long side runs through (scale, scale / 3), rounded.
+            let wedge = [[0.0, 0.0], [3.0 * scale, scale], [0.0, scale]];
+            let third = [3.0, 1.0].map(|x| 0.25 * scale * x);
+            assert_eq!(side(&wedge, third), Side::On, "{scale}");
+            assert_eq!(side(&wedge, [third[0], third[1].next_up()]), Side::Inside, "{scale}");
+            assert_eq!(side(&wedge, [third[0], third[1].next_down()]), Side::Outside, "{scale}");
+        }
+        // 1e-300 to either side of an edge that is 1e300 long.
+        let huge = [[0.0, 0.0], [1e300, 1e300], [-1e300, 1e300]];
+        assert_eq!(side(&huge, [1e-300, 1e-300]), Side::On);
+        assert_eq!(side(&huge, [1e-300, 1e-300f64.next_up()]), Side::Inside);
+        assert_eq!(side(&huge, [1e-300, 1e-300f64.next_down()]), Side::Outside);
     }
 }

@@ -10,14 +10,14 @@ use super::work;
 use crate::spatial::{Closest, FastWinding, Feature, Side, TriangleTree, coherent_order};
 use crate::{Control, Error, Mesh, Solid};
 
-/// How inside and outside are told apart.
+/// How inside and outside are decided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SignRule {
     /// Pseudonormals where every edge has exactly two triangles, otherwise the ray's winding number. The default.
     #[default]
     Automatic,
     /// The side of the angle-weighted pseudonormal at the nearest point (Baerentzen, Aanaes 2005). The fastest; right
-    /// for closed surfaces that do not cross or touch themselves. Where the normal is too near the horizon to tell
+    /// for closed surfaces that do not cross or touch themselves. Where the normal is too near the horizon to decide
     /// (on the surface, at features without a reliable normal), the ray decides.
     PseudoNormal,
     /// The parity test of Choporov 2017: the section by the plane z = z_q, then crossings of a ray in +x, both

@@ -25,7 +25,7 @@ fn centre(low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
 const FEW: usize = 64;
 
 /// Bounds of all directions between the given ones: of every unit vector that is a sum of them with positive factors, as
-/// the gradient of a distance is next to an edge or a vertex. A cone round their mean that holds all of them holds
+/// the gradient of a distance is next to an edge or a vertex. A cone around their mean that holds all of them holds
 /// those sums. Nothing if a direction is unknown (zero) or the cone is no smaller than a half-space.
 fn directions_between(directions: &[DVec3]) -> Option<[Interval; 3]> {
     let axis = directions.iter().sum::<DVec3>().try_normalize()?;

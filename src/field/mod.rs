@@ -10,6 +10,7 @@
 mod bounds;
 mod contour_distance;
 mod distance;
+mod dual;
 mod expression;
 mod extract;
 mod extrude;

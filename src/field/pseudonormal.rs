@@ -9,7 +9,7 @@ use crate::spatial::Feature;
 
 /// Normals of the faces, edges and vertices of a closed mesh, outward.
 ///
-/// A zero normal marks a feature whose side the normals cannot tell: an edge with other than two triangles, or a
+/// A zero normal marks a feature at which the normals do not decide the side: an edge with other than two triangles, or a
 /// feature next to a triangle too thin to have a reliable normal.
 #[derive(Clone, Debug)]
 pub(crate) struct PseudoNormals {
@@ -63,7 +63,7 @@ impl PseudoNormals {
         Self { faces, mates, corners, vertices, regular }
     }
 
-    /// The pseudonormal of a feature, not normalised; zero where it cannot tell the side.
+    /// The pseudonormal of a feature, not normalised; zero where it does not decide the side.
     pub(crate) fn of(&self, triangle: u32, feature: Feature) -> DVec3 {
         let triangle = triangle as usize;
         match feature {

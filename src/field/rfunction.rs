@@ -42,7 +42,7 @@ impl System {
     pub fn and(self, x: f64, y: f64) -> f64 {
         match self {
             Self::R1 => x.min(y),
-            _ => self.combine(-1.0, x, y),
+            _ => x.combine(self, -1.0, y),
         }
     }
 
@@ -51,32 +51,42 @@ impl System {
     pub fn or(self, x: f64, y: f64) -> f64 {
         match self {
             Self::R1 => x.max(y),
-            _ => self.combine(1.0, x, y),
-        }
-    }
-
-    /// The conjunction (`side` -1) or disjunction (+1) over any kind of number.
-    pub(crate) fn combine<N: Number>(self, side: f64, x: N, y: N) -> N {
-        let squares = x.square().add(y.square());
-        let root = |radicand: N| radicand.sqrt().scale(side);
-        match self {
-            Self::R1 => x.add(y).add(x.sub(y).abs().scale(side)).scale(0.5),
-            Self::Alpha(alpha) => {
-                let radicand = squares.sub(x.mul(y).scale(2.0 * alpha));
-                x.add(y).add(root(radicand.non_negative())).scale(1.0 / (1.0 + alpha))
-            }
-            Self::R0 => x.add(y).add(root(squares)),
-            Self::R0m(order) => {
-                let factor = if order % 2 == 0 {
-                    squares.powi(order as i32 / 2)
-                } else {
-                    squares.sqrt().mul(squares.powi(order as i32 / 2))
-                };
-                x.add(y).add(root(squares)).mul(factor)
-            }
+            _ => x.combine(self, 1.0, y),
         }
     }
 }
+
+/// The pair of R-functions over a kind of number.
+pub(crate) trait RFunctions: Number {
+    /// The conjunction (`side` -1) or disjunction (+1).
+    fn combine(self, system: System, side: f64, other: Self) -> Self {
+        combine_by_formula(system, side, self, other)
+    }
+}
+
+/// The conjunction (`side` -1) or disjunction (+1) as its formula is written.
+pub(crate) fn combine_by_formula<N: Number>(system: System, side: f64, x: N, y: N) -> N {
+    let squares = x.square().add(y.square());
+    let root = |radicand: N| radicand.sqrt().scale(side);
+    match system {
+        System::R1 => x.add(y).add(x.sub(y).abs().scale(side)).scale(0.5),
+        System::Alpha(alpha) => {
+            let radicand = squares.sub(x.mul(y).scale(2.0 * alpha));
+            x.add(y).add(root(radicand.non_negative())).scale(1.0 / (1.0 + alpha))
+        }
+        System::R0 => x.add(y).add(root(squares)),
+        System::R0m(order) => {
+            let factor = if order % 2 == 0 {
+                squares.powi(order as i32 / 2)
+            } else {
+                squares.sqrt().mul(squares.powi(order as i32 / 2))
+            };
+            x.add(y).add(root(squares)).mul(factor)
+        }
+    }
+}
+
+impl RFunctions for f64 {}
 
 impl fmt::Display for System {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,14 +1,13 @@
 //! Finding what is wrong with a mesh.
 
-use robust::{Coord, orient2d};
-
 use super::clean::{self, Cleaned, Weld};
 use super::diagnosis::{Diagnosis, Fault, Place};
 use super::edges::{Edge, EdgeTable};
 use super::orient::Facing;
 use super::patches::Patches;
 use super::topology::Topology;
-use super::{Bounds, Mesh, Solid, chain, duplicates, measure, scale, weld};
+use super::{Bounds, Mesh, Solid, chain, duplicates, measure, weld};
+use crate::exact::collinear;
 
 /// Examines any mesh, however broken, and says what is wrong with it. O(n log n).
 ///
@@ -95,22 +94,10 @@ fn triangles_one_by_one(spots: &Spots<'_>, diagnosis: &mut Diagnosis) {
         };
         if a == b || b == c || c == a {
             diagnosis.repeated_corners.add(place);
-        } else if [p, q, r].iter().flatten().all(|x| x.is_finite()) && are_collinear([p, q, r]) {
+        } else if [p, q, r].iter().flatten().all(|x| x.is_finite()) && collinear(&p, &q, &r) {
             diagnosis.zero_area.add(place);
         }
     }
-}
-
-/// Whether the points lie exactly on one line: their projections along the three axes do.
-fn are_collinear(points: [[f64; 3]; 3]) -> bool {
-    let largest = points.iter().flatten().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-    let factor = scale::factor(largest);
-    let points = points.map(|point| point.map(|x| x * factor));
-    let [a, b, c] = points;
-    (0..3).all(|axis| {
-        let drop = |p: [f64; 3]| Coord { x: p[(axis + 1) % 3], y: p[(axis + 2) % 3] };
-        orient2d(drop(a), drop(b), drop(c)) == 0.0
-    })
 }
 
 /// Faults of the surface as a whole.
@@ -241,5 +228,49 @@ impl Spots<'_> {
         let triangles = edge.triangles().take(4).map(|triangle| source[triangle as usize]).collect();
         let vertices = vec![edge.low, edge.high];
         Place { triangles, position: self.middle(&vertices), vertices }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::primitives;
+
+    /// Coordinates are multiplied by `factor`.
+    fn scaled(mesh: &Mesh, factor: f64) -> Mesh {
+        let positions = mesh.positions.iter().map(|p| p.map(|x| x * factor)).collect();
+        Mesh::new(positions, mesh.triangles.clone())
+    }
+
+    #[test]
+    fn faults_are_found_at_any_magnitude() {
+        let ball = primitives::octahedron(1.0).unwrap();
+        let inner = primitives::octahedron(0.5).unwrap();
+        for factor in [1e-300, 1.0, 1e300] {
+            let sound = diagnose(&scaled(&ball, factor));
+            assert!(sound.closed && sound.zero_area.is_none(), "{factor}");
+            assert_eq!((sound.shells, sound.inside_out_shells.count), (1, 0), "{factor}");
+            assert_eq!(diagnose(&scaled(&ball, factor).reversed()).inside_out_shells.count, 1, "{factor}");
+            let doubled = Mesh::merged([&scaled(&ball, factor), &scaled(&inner, factor)]).unwrap();
+            assert_eq!(diagnose(&doubled).inside_out_shells.count, 1, "{factor}");
+        }
+    }
+
+    #[test]
+    fn zero_area_is_told_from_the_last_bit_at_any_magnitude() {
+        let next = f64::next_up;
+        let count =
+            |corners: [[f64; 3]; 3]| diagnose(&Mesh::new(corners.to_vec(), vec![[0, 1, 2]])).zero_area.count;
+        for scale in [1e-300, 1.0, 1e300] {
+            let line = [[0.0; 3], [scale, scale, 0.5 * scale], [2.0 * scale, 2.0 * scale, scale]];
+            assert_eq!(count(line), 1, "{scale}");
+            let mut bent = line;
+            bent[2][1] = next(bent[2][1]);
+            assert_eq!(count(bent), 0, "{scale}");
+        }
+        // A corner 1e-300 off a line that is 1e300 long, and on it.
+        assert_eq!(count([[0.0; 3], [1e300, 0.0, 0.0], [1.0, 1e-300, 0.0]]), 0);
+        assert_eq!(count([[0.0; 3], [1e300, 1e300, 0.0], [1e-300, 1e-300, 0.0]]), 1);
+        assert_eq!(count([[0.0; 3], [1e300, 1e300, 0.0], [1e-300, next(1e-300), 0.0]]), 0);
     }
 }

@@ -20,6 +20,7 @@ mod orient;
 mod patches;
 pub(crate) mod scale;
 mod self_crossing;
+mod separate;
 mod solid;
 mod sparse_union_find;
 mod summation;

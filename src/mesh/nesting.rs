@@ -4,13 +4,12 @@
 //! exact predicates: the start is moved by infinitesimals (e, e^2) in x and y, so that no ray meets an edge. The
 //! triangles look up the vertices above which they may lie in a grid over x and y, hence near-linear time.
 
-use std::cmp::Ordering;
-
-use robust::{Coord, Coord3D};
 use rustc_hash::FxHashMap;
 
 use super::Bounds;
 use super::patches::Patches;
+use super::scale;
+use crate::exact::{Sign, orient2d, orient3d};
 
 /// Vertices farthest along the axes and the diagonals of space: the first to stick out where a patch is not wholly
 /// inside.
@@ -43,8 +42,7 @@ pub(super) struct Nesting {
     pub(super) unclear: bool,
 }
 
-/// The nesting of each patch. Neither inside nor unclear for patches that are not closed. `positions` should be near
-/// one in size.
+/// The nesting of each patch. Neither inside nor unclear for patches that are not closed.
 pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &Patches) -> Vec<Nesting> {
     let count = patches.closed.len();
     if patches.closed.iter().filter(|&&closed| closed).count() < 2 {
@@ -62,7 +60,7 @@ pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &
         let mut places = extremes(corners(patch));
         let members = patches.triangles.get(patch).iter();
         let shapes = members.map(|&triangle| triangles[triangle as usize].map(|v| positions[v as usize]));
-        places.extend(middle_of_largest(shapes));
+        places.extend(middle_of_largest(shapes, scale::factor(boxes[patch].largest())));
         rays[patch] = places.len();
         let start = |(slot, &place): (usize, &[f64; 3])| Start { patch: patch as u32, slot, place };
         starts.extend(places.iter().enumerate().map(start));
@@ -90,7 +88,7 @@ pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &
             }
             let crossings = &mut met.entry((start.patch, patch)).or_default()[start.slot];
             crossings.odd ^= crosses(&corners, start.place);
-            crossings.touching |= extent.low[2] <= z && above(&corners, start.place) == Ordering::Equal;
+            crossings.touching |= extent.low[2] <= z && side_of_plane(&corners, start.place) == Sign::Zero;
         });
     }
     let mut nesting = vec![Nesting::default(); count];
@@ -110,13 +108,14 @@ pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &
 }
 
 /// The first of the places that are farthest in each direction, without repetition.
-fn extremes(places: impl Iterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
+fn extremes(mut places: impl Iterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
+    let Some(first) = places.next() else { return Vec::new() };
     let directions = (0..27).map(|index| [index % 3 - 1, index / 3 % 3 - 1, index / 9 - 1]);
     let to_faces_and_corners =
         directions.filter(|direction| matches!(direction.map(i32::abs).iter().sum(), 1 | 3));
     let directions: Vec<[f64; 3]> = to_faces_and_corners.map(|direction| direction.map(f64::from)).collect();
-    let mut farthest = vec![(f64::NEG_INFINITY, [0.0; 3]); EXTREMES];
-    for place in places {
+    let mut farthest = vec![(f64::NEG_INFINITY, first); EXTREMES];
+    for place in std::iter::once(first).chain(places) {
         for (direction, farthest) in directions.iter().zip(&mut farthest) {
             let reach = direction[0] * place[0] + direction[1] * place[1] + direction[2] * place[2];
             if reach > farthest.0 {
@@ -133,46 +132,40 @@ fn extremes(places: impl Iterator<Item = [f64; 3]>) -> Vec<[f64; 3]> {
     distinct
 }
 
-/// The middle of the triangle with the largest area, the first of equal ones.
-fn middle_of_largest(triangles: impl Iterator<Item = [[f64; 3]; 3]>) -> Option<[f64; 3]> {
+/// The middle of the triangle with the largest area, the first of equal ones. Areas are compared after multiplying all
+/// coordinates by `factor`, so that they neither under- nor overflow.
+fn middle_of_largest(triangles: impl Iterator<Item = [[f64; 3]; 3]>, factor: f64) -> Option<[f64; 3]> {
     let extent = |[a, b, c]: &[[f64; 3]; 3]| {
         let cross = |i: usize, j: usize| (b[i] - a[i]) * (c[j] - a[j]) - (b[j] - a[j]) * (c[i] - a[i]);
         cross(0, 1).powi(2) + cross(1, 2).powi(2) + cross(2, 0).powi(2)
     };
     let largest = triangles
+        .map(|corners| corners.map(|corner| corner.map(|x| x * factor)))
         .map(|corners| (extent(&corners), corners))
         .reduce(|largest, next| if next.0 > largest.0 { next } else { largest })?;
     let [a, b, c] = largest.1;
-    Some([0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0))
+    Some([0, 1, 2].map(|k| (a[k] + b[k] + c[k]) / 3.0 / factor))
 }
 
-fn plane(p: [f64; 3]) -> Coord<f64> {
-    Coord { x: p[0], y: p[1] }
-}
-
-/// The order of numbers, in which zero and minus zero are equal.
-fn compare(a: f64, b: f64) -> Ordering {
-    a.partial_cmp(&b).unwrap_or(Ordering::Equal)
-}
-
-/// Where the plane of the triangle lies from `place`, seen along the triangle's own orientation: `Greater` if
-/// `place` is on the side from which the corners run clockwise.
-fn above([a, b, c]: &[[f64; 3]; 3], place: [f64; 3]) -> Ordering {
-    let space = |p: [f64; 3]| Coord3D { x: p[0], y: p[1], z: p[2] };
-    compare(robust::orient3d(space(*a), space(*b), space(*c), space(place)), 0.0)
+/// Where the plane of the triangle lies from `place`, seen along the triangle's own orientation: positive if `place` is
+/// on the side from which the corners run clockwise.
+fn side_of_plane([a, b, c]: &[[f64; 3]; 3], place: [f64; 3]) -> Sign {
+    orient3d(a, b, c, &place)
 }
 
 /// Whether the ray up from `place`, moved by infinitesimals in x and y, crosses the triangle.
 fn crosses(corners: &[[f64; 3]; 3], place: [f64; 3]) -> bool {
-    let side = |from: [f64; 3], to: [f64; 3]| {
-        compare(robust::orient2d(plane(from), plane(to), plane(place)), 0.0)
-            .then_with(|| compare(from[1], to[1]))
-            .then_with(|| compare(to[0], from[0]))
+    let flat = |[x, y, _]: [f64; 3]| [x, y];
+    let order = |a: f64, b: f64| (a > b) as i8 - (a < b) as i8;
+    let side = |from: [f64; 3], to: [f64; 3]| match orient2d(flat(from), flat(to), flat(place)) {
+        Sign::Zero if from[1] != to[1] => order(from[1], to[1]),
+        Sign::Zero => order(to[0], from[0]),
+        sign => sign as i8,
     };
     let [a, b, c] = *corners;
     let turn = side(a, b);
-    let over = turn != Ordering::Equal && turn == side(b, c) && turn == side(c, a);
-    over && above(corners, place) == turn
+    let over = turn != 0 && turn == side(b, c) && turn == side(c, a);
+    over && side_of_plane(corners, place) as i8 == turn
 }
 
 /// Starts of rays by their place in x and y.
@@ -288,6 +281,37 @@ mod tests {
         // A body in the hole of a ring is within its box, but not inside.
         let ring = primitives::torus(3.0, 1.0, 16, 16).unwrap();
         assert_eq!(nested(&[ring, cube([0.0; 3], 0.5)]), [false, false]);
+    }
+
+    #[test]
+    fn any_magnitude_will_do() {
+        let scaled = |mesh: Mesh, factor: f64| {
+            let positions = mesh.positions.iter().map(|p| p.map(|x| x * factor)).collect();
+            Mesh::new(positions, mesh.triangles)
+        };
+        let octahedron = primitives::octahedron(1.0).unwrap();
+        for factor in [1e-300, 1e-160, 1e160, 1e300, 1.7e308] {
+            let shells = [
+                cube([0.0; 3], 1.0),
+                octahedron.clone(),
+                cube([0.0; 3], 0.25),
+                cube([0.25, 0.5, 0.75], 0.125),
+            ]
+            .map(|shell| scaled(shell, factor));
+            // The last is outside the octahedron.
+            assert_eq!(nested(&shells), [false, true, false, true], "{factor}");
+        }
+        // A body of 1e-300 in one of 1e300, off its corner and in its middle.
+        let tiny = |at: [f64; 3]| {
+            let mut body = scaled(octahedron.clone(), 1e-300);
+            body.positions.iter_mut().for_each(|p| *p = [0, 1, 2].map(|k| p[k] + at[k]));
+            body
+        };
+        let huge = scaled(octahedron.clone(), 1e300);
+        assert_eq!(nested(&[tiny([0.0; 3]), huge.clone()]), [true, false]);
+        let slab = scaled(octahedron.clone().translated([1.0, 0.0, 0.0]), 1e300);
+        assert_eq!(nested(&[tiny([3e-300, 0.0, 0.0]), slab.clone()]), [true, false]);
+        assert_eq!(nested(&[tiny([-3e-300, 0.0, 0.0]), slab]), [false, false]);
     }
 
     #[test]

@@ -5,7 +5,6 @@ use std::cmp::Ordering;
 use super::clean::{self, Cleaned, Weld};
 use super::edges::EdgeTable;
 use super::patches::Patches;
-use super::scale::near_one;
 use super::{Bounds, Mesh, measure, nesting};
 
 /// Which patches face the wrong way, seen from the orientation that [`Patches::reverse`] gives them.
@@ -18,8 +17,7 @@ pub(super) struct Facing {
 
 impl Facing {
     pub(super) fn new(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &Patches) -> Self {
-        let positions = near_one(positions);
-        let nesting = nesting::nesting(&positions, triangles, patches);
+        let nesting = nesting::nesting(positions, triangles, patches);
         let wrong = (0..patches.closed.len()).map(|patch| {
             let members: Vec<[u32; 3]> = patches
                 .triangles
@@ -30,7 +28,7 @@ impl Facing {
             let corners = members.iter().flatten().map(|&corner| &positions[corner as usize]);
             let bounds = Bounds::of(corners).filter(|_| patches.closed[patch]);
             bounds.is_some_and(|bounds| {
-                let volume = measure::signed_volume(&positions, &members, &bounds);
+                let volume = measure::signed_volume(positions, &members, &bounds);
                 let outward = if nesting[patch].inside { Ordering::Less } else { Ordering::Greater };
                 volume.sign == outward.reverse()
             })

@@ -1,14 +1,6 @@
-//! Coordinates near one in size, for predicates that are exact only while products neither over- nor underflow.
+//! Powers of two that bring coordinates near one in size, for sums and products that are rounded: lengths, areas, volumes.
 
 use std::borrow::Cow;
-
-/// The coordinates multiplied by one power of two that brings the largest near one; as they are where they are
-/// near enough. Exact, but for coordinates more than 2^1000 times smaller than the largest.
-pub(super) fn near_one(positions: &[[f64; 3]]) -> Cow<'_, [[f64; 3]]> {
-    let largest =
-        positions.iter().flatten().filter(|x| x.is_finite()).fold(0.0, |largest, x| x.abs().max(largest));
-    multiplied(positions, factor(largest))
-}
 
 /// The coordinates multiplied by `factor`.
 pub(super) fn multiplied(positions: &[[f64; 3]], factor: f64) -> Cow<'_, [[f64; 3]]> {
@@ -41,12 +33,11 @@ mod tests {
 
     #[test]
     fn only_far_sizes_are_scaled() {
-        let near = [[1e-40, 3.0, 1e40]];
-        assert!(matches!(near_one(&near), Cow::Borrowed(_)));
-        let tiny = [[f64::MIN_POSITIVE, 3.0 * f64::MIN_POSITIVE, 0.0]];
-        let scaled = near_one(&tiny);
+        assert!(matches!(multiplied(&[[1e-40, 3.0, 1e40]], factor(1e40)), Cow::Borrowed(_)));
+        let tiny = f64::MIN_POSITIVE;
+        let positions = [[tiny, 3.0 * tiny, 0.0]];
+        let scaled = multiplied(&positions, factor(3.0 * tiny));
         assert_eq!(scaled[0][1], 3.0 * scaled[0][0]);
-        let largest = near_one(&[[f64::MAX, 1.0, 0.0]])[0][0];
-        assert!((1.0..1e9).contains(&largest));
+        assert!((1.0..1e9).contains(&(f64::MAX * factor(f64::MAX))));
     }
 }

@@ -204,6 +204,25 @@ impl Solid {
     }
 }
 
+/// Two solids are equal if their meshes are: the same positions, triangles and groups, in the same order.
+impl PartialEq for Solid {
+    fn eq(&self, other: &Self) -> bool {
+        self.mesh == other.mesh
+    }
+}
+
+impl AsRef<Mesh> for Solid {
+    fn as_ref(&self) -> &Mesh {
+        &self.mesh
+    }
+}
+
+impl From<Solid> for Mesh {
+    fn from(solid: Solid) -> Self {
+        solid.mesh
+    }
+}
+
 /// The gate every operand passes.
 impl TryFrom<Mesh> for Solid {
     type Error = Error;
@@ -307,6 +326,20 @@ mod tests {
         assert_eq!(checked.volume().to_bits(), unchecked.volume().to_bits());
         assert_eq!(checked.is_edge_manifold(), unchecked.is_edge_manifold());
         assert_eq!(unchecked.source_triangle(5), 5);
+    }
+
+    #[test]
+    fn solids_are_their_meshes() {
+        let mesh = primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
+        let solid = Solid::try_from(mesh.clone()).unwrap();
+        // What is known of a solid does not count.
+        let unexamined = solid.clone();
+        assert_eq!(solid.volume(), 1.0);
+        assert_eq!(solid, unexamined);
+        assert_ne!(solid, Solid::empty());
+        let borrowed: &Mesh = solid.as_ref();
+        assert_eq!(*borrowed, mesh);
+        assert_eq!(Mesh::from(solid), mesh);
     }
 
     #[test]

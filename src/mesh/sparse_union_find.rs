@@ -21,11 +21,6 @@ impl<T> Default for SparseUnionFind<T> {
 }
 
 impl<T: Copy + Ord + Hash> SparseUnionFind<T> {
-    /// Whether every item is alone.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.parents.is_empty()
-    }
-
     /// The lowest item of the set `item` is in.
     pub(crate) fn root(&mut self, mut item: T) -> T {
         while let Some(&parent) = self.parents.get(&item) {

@@ -1,7 +1,8 @@
 //! Moving, turning and scaling meshes.
 
-use super::{Mesh, scale};
+use super::Mesh;
 use crate::Error;
+use crate::exact::{Sign, orient3d};
 
 impl Mesh {
     /// The mesh moved by `offset`.
@@ -95,11 +96,11 @@ impl Mesh {
         let row = |index: usize| [0, 1, 2, 3].map(|column| rows[4 * index + column]);
         let rows = [row(0), row(1), row(2)];
         let determinant = determinant_sign(&rows);
-        if determinant == 0.0 {
+        if determinant == Sign::Zero {
             return fault("it is singular: it would flatten the mesh".into());
         }
         let mapped = self.mapped(&rows);
-        Ok(if determinant < 0.0 { mapped.reversed() } else { mapped })
+        Ok(if determinant == Sign::Negative { mapped.reversed() } else { mapped })
     }
 
     fn mapped(mut self, matrix: &[[f64; 4]; 3]) -> Self {
@@ -111,17 +112,11 @@ impl Mesh {
     }
 }
 
-/// A number with the sign of the determinant of the first three columns, exactly.
-fn determinant_sign(rows: &[[f64; 4]; 3]) -> f64 {
-    // Scaling a row by a power of two changes no sign and keeps the products in range.
-    let point = |row: &[f64; 4]| {
-        let largest = row[..3].iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        let factor = scale::factor(largest);
-        robust::Coord3D { x: row[0] * factor, y: row[1] * factor, z: row[2] * factor }
-    };
-    let origin = robust::Coord3D { x: 0.0, y: 0.0, z: 0.0 };
-    // The predicate is the determinant of the three points relative to the fourth.
-    robust::orient3d(point(&rows[0]), point(&rows[1]), point(&rows[2]), origin)
+/// The sign of the determinant of the first three columns.
+fn determinant_sign(rows: &[[f64; 4]; 3]) -> Sign {
+    let [a, b, c] = rows.map(|[x, y, z, _]| [x, y, z]);
+    // The predicate is the determinant of three points relative to the fourth.
+    orient3d(&a, &b, &c, &[0.0; 3])
 }
 
 /// Sine and cosine of an angle in degrees; exact for multiples of 30 where the result is 0, 1/2 or 1.
@@ -200,10 +195,21 @@ mod tests {
 
     #[test]
     fn tiny_and_huge_matrices_are_no_more_singular_than_others() {
-        for factor in [1e-120, 1e120] {
+        for factor in [1e-300, 1e-120, 1e120, 1e300] {
             let matrix = [factor, 0.0, 0.0, 0.0, 0.0, 0.0, -factor, 0.0, 0.0, factor, 0.0, 0.0];
             let size = block().transformed(&matrix).unwrap().bounds().unwrap().size();
             assert_eq!(size, [1.0, 3.0, 2.0].map(|x| x * factor));
         }
+        // Rows of different magnitudes, mirroring; and one that is singular but for the last bit of a tiny number.
+        let mixed = [1e300, 0.0, 0.0, 0.0, 1e300, -1e-300, 0.0, 0.0, 0.0, 1e300, 1.0, 0.0];
+        let turned = block().transformed(&mixed).unwrap();
+        assert_eq!(turned.triangles, block().reversed().triangles);
+        let nearly = |x: f64| [1e300, 1e-300, 0.0, 0.0, 1e300, x, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        assert!(block().transformed(&nearly(1e-300)).is_err());
+        assert_eq!(block().transformed(&nearly(1e-300f64.next_up())).unwrap().triangles, block().triangles);
+        assert_eq!(
+            block().transformed(&nearly(1e-300f64.next_down())).unwrap().triangles,
+            block().reversed().triangles
+        );
     }
 }

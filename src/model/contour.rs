@@ -8,7 +8,7 @@ use crate::field::{ContourDistance, Contours};
 
 /// The outline of a plane region.
 #[derive(Clone, Debug)]
-pub(super) enum Outline {
+pub(super) enum PlaneRegion {
     Polygons(Contours),
     #[cfg(feature = "parametric")]
     Curves(super::parametric::Curves),
@@ -26,14 +26,14 @@ struct ContourFields {
 }
 
 /// Reads a node of the kind `contour`.
-pub(super) fn contour(fields: Value) -> Result<Outline, Error> {
+pub(super) fn contour(fields: Value) -> Result<PlaneRegion, Error> {
     let fault = |what: String| Error::Model(what);
     let fields: ContourFields = serde_json::from_value(fields).map_err(|error| fault(error.to_string()))?;
     match (fields.polygons, fields.bezier) {
         (Some(polygons), None) => {
             let contours = Contours { loops: polygons.into_iter().map(opened).collect() };
             ContourDistance::new(&contours)?;
-            Ok(Outline::Polygons(contours))
+            Ok(PlaneRegion::Polygons(contours))
         }
         (None, Some(contours)) => bezier(&contours, fields.initial_nodes),
         _ => Err(fault("a contour needs `polygons` or `bezier`, and not both".to_owned())),
@@ -41,16 +41,16 @@ pub(super) fn contour(fields: Value) -> Result<Outline, Error> {
 }
 
 #[cfg(feature = "parametric")]
-fn bezier(contours: &[Vec<Vec<[f64; 2]>>], nodes: Option<usize>) -> Result<Outline, Error> {
-    Ok(Outline::Curves(super::parametric::Curves::bezier(contours, nodes)?))
+fn bezier(contours: &[Vec<Vec<[f64; 2]>>], nodes: Option<usize>) -> Result<PlaneRegion, Error> {
+    Ok(PlaneRegion::Curves(super::parametric::Curves::bezier(contours, nodes)?))
 }
 
 #[cfg(not(feature = "parametric"))]
-fn bezier(_: &[Vec<Vec<[f64; 2]>>], _: Option<usize>) -> Result<Outline, Error> {
+fn bezier(_: &[Vec<Vec<[f64; 2]>>], _: Option<usize>) -> Result<PlaneRegion, Error> {
     Err(super::without_parametric("bezier"))
 }
 
-impl Outline {
+impl PlaneRegion {
     /// The region's boundary, curves as polygons within `tolerance` (a thousandth of the region's size without).
     pub(super) fn contours(&self, tolerance: Option<f64>) -> Result<Contours, Error> {
         match self {

@@ -39,7 +39,7 @@ use crate::boolean::Operation;
 use crate::field::{Formula, System};
 #[cfg(not(feature = "parametric"))]
 use crate::{Control, Mesh};
-use contour::Outline;
+use contour::PlaneRegion;
 use glam::DAffine3;
 #[cfg(feature = "parametric")]
 use parametric::Parametric;
@@ -115,7 +115,7 @@ enum Kind {
         uses: Vec<(String, usize)>,
     },
     /// A plane region, the same at every height.
-    Contour(Outline),
+    Contour(PlaneRegion),
     /// Patches, or a region moved.
     #[cfg_attr(
         not(feature = "parametric"),
@@ -185,6 +185,11 @@ impl Model {
             | Kind::Custom { .. } => Vec::new(),
         }
     }
+}
+
+/// A fault of the model file itself.
+fn fault(what: impl Into<String>) -> Error {
+    Error::Model(what.into())
 }
 
 /// What is said of a kind that this build cannot read.

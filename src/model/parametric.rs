@@ -5,16 +5,14 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::Kind;
-use super::contour::Outline;
-use super::parse::fault;
+use super::fault;
 use crate::field::Contours;
 use crate::parametric::json::{SOLID_TYPES, parse, region, solid};
 use crate::parametric::{CurveMeshing, Refinement};
 use crate::{Control, Error, Mesh};
 
-/// A part of the size of a description by which its curves and surfaces may be off where nobody says.
-const USUAL: f64 = 1e-3;
+/// Default tolerance, in units of the size of a description.
+const DEFAULT_TOLERANCE: f64 = 1e-3;
 
 /// A solid described by patches or by a moved region.
 #[derive(Clone, Debug)]
@@ -32,14 +30,14 @@ pub(super) struct Curves {
     nodes: Option<usize>,
 }
 
-/// The node's own keys as a solid of the type `name`.
-pub(super) fn solid_of(name: &str, mut object: Map<String, Value>) -> Result<Kind, Error> {
-    object.insert("type".to_owned(), name.into());
-    checked(Value::Object(object))
+/// What a file describes.
+pub(super) enum Described {
+    Solid(Parametric),
+    Region(Curves),
 }
 
 /// The solid or region in a JSON file.
-pub(super) fn file(folder: &Path, file: &str) -> Result<Kind, Error> {
+pub(super) fn load(folder: &Path, file: &str) -> Result<Described, Error> {
     let path = folder.join(file);
     let text = std::fs::read_to_string(&path).map_err(|source| Error::File {
         action: "read",
@@ -49,38 +47,44 @@ pub(super) fn file(folder: &Path, file: &str) -> Result<Kind, Error> {
     let description = parse(&text).map_err(|error| fault(format!("{}: {error}", path.display())))?;
     let is_solid = description["type"].as_str().is_some_and(|name| SOLID_TYPES.contains(&name));
     if is_solid {
-        checked(description)
+        Parametric::new(description).map(Described::Solid)
     } else {
-        Ok(Kind::Contour(Outline::Curves(Curves { description, nodes: None })))
+        Ok(Described::Region(Curves::new(description)))
     }
-}
-
-/// A region as it is described in a node.
-pub(super) fn region_of(description: Value) -> Kind {
-    Kind::Contour(Outline::Curves(Curves { description, nodes: None }))
-}
-
-fn checked(description: Value) -> Result<Kind, Error> {
-    match &description["tolerance"] {
-        Value::Null => {}
-        given if given.as_f64().is_some_and(|value| value > 0.0 && value.is_finite()) => {}
-        _ => return Err(fault("`tolerance` must be positive")),
-    }
-    Ok(Kind::Parametric(Parametric { description }))
 }
 
 impl Parametric {
-    /// The closed mesh, within `tolerance`, or within its own if nobody says, or a thousandth of its size.
+    /// The solid of the type `name` that a node's own keys describe.
+    pub(super) fn of_type(name: &str, mut object: Map<String, Value>) -> Result<Self, Error> {
+        object.insert("type".to_owned(), name.into());
+        Self::new(Value::Object(object))
+    }
+
+    fn new(description: Value) -> Result<Self, Error> {
+        match &description["tolerance"] {
+            Value::Null => {}
+            given if given.as_f64().is_some_and(|value| value > 0.0 && value.is_finite()) => {}
+            _ => return Err(fault("`tolerance` must be positive")),
+        }
+        Ok(Self { description })
+    }
+
+    /// The closed mesh, within `tolerance`, or else its own, or else a thousandth of its size.
     pub(super) fn mesh(&self, tolerance: Option<f64>, control: &Control) -> Result<Mesh, Error> {
         let mut description = self.description.clone();
         let own = description["tolerance"].as_f64();
-        let tolerance = tolerance.or(own).unwrap_or_else(|| USUAL * size(&description));
+        let tolerance = tolerance.or(own).unwrap_or_else(|| DEFAULT_TOLERANCE * size(&description));
         description["tolerance"] = tolerance.into();
         solid(&description, control)
     }
 }
 
 impl Curves {
+    /// A region as [`region()`] takes it.
+    pub(super) fn new(description: Value) -> Self {
+        Self { description, nodes: None }
+    }
+
     /// Closed contours, each of Bezier curves end to end.
     pub(super) fn bezier(contours: &[Vec<Vec<[f64; 2]>>], nodes: Option<usize>) -> Result<Self, Error> {
         if nodes.is_some_and(|nodes| !(2..=1_000_000).contains(&nodes)) {
@@ -97,7 +101,7 @@ impl Curves {
 
     /// The boundary as polygons, outer ones counter-clockwise.
     pub(super) fn contours(&self, tolerance: Option<f64>) -> Result<Contours, Error> {
-        let tolerance = tolerance.unwrap_or_else(|| USUAL * size(&self.description));
+        let tolerance = tolerance.unwrap_or_else(|| DEFAULT_TOLERANCE * size(&self.description));
         let mut meshing = CurveMeshing::new(tolerance);
         if let Some(nodes) = self.nodes {
             meshing = meshing.initial_nodes(nodes).refinement(Refinement::Halving);

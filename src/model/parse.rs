@@ -7,7 +7,11 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use super::{Defaults, Kind, Mode, Model, Node, contour, primitive, transform};
+#[cfg(feature = "parametric")]
+use super::contour::PlaneRegion;
+#[cfg(feature = "parametric")]
+use super::parametric::{self, Curves, Described, Parametric};
+use super::{Defaults, Kind, Mode, Model, Node, contour, fault, primitive, transform};
 use crate::Error;
 use crate::boolean::Operation;
 use crate::field::{Formula, System, named_system};
@@ -21,14 +25,10 @@ const PARAMETRIC: [&str; 4] = ["patches", "extrusion", "revolution", "sweep"];
 const KINDS: &str = "union, intersection, difference, xor, complement, mesh, box, sphere, cylinder, cone, torus, \
                      formula, contour, region, patches, extrusion, revolution, sweep, parametric";
 
-struct Reading<'a> {
+struct ModelReader<'a> {
     nodes: Vec<Node>,
     names: BTreeMap<String, usize>,
     folder: &'a Path,
-}
-
-pub(super) fn fault(what: impl Into<String>) -> Error {
-    Error::Model(what.into())
 }
 
 fn within(label: &str) -> impl Fn(Error) -> Error + '_ {
@@ -49,7 +49,7 @@ pub(super) fn model(text: &str, folder: &Path) -> Result<Model, Error> {
     let Value::Object(mut object) = value else {
         return Err(fault("a model is an object: a node, or { \"nodes\": {...}, \"result\": ... }"));
     };
-    let mut reading = Reading { nodes: Vec::new(), names: BTreeMap::new(), folder };
+    let mut reading = ModelReader { nodes: Vec::new(), names: BTreeMap::new(), folder };
     let mut defaults = Defaults::default();
     let result = if object.contains_key("result") || object.contains_key("nodes") {
         defaults = defaults_of(&mut object)?;
@@ -134,13 +134,7 @@ fn system_of(text: &str) -> Result<System, Error> {
 }
 
 fn operation_of(name: &str) -> Option<Operation> {
-    Some(match name {
-        "union" => Operation::Union,
-        "intersection" => Operation::Intersection,
-        "difference" => Operation::Difference,
-        "xor" => Operation::SymmetricDifference,
-        _ => return None,
-    })
+    name.parse().ok()
 }
 
 #[derive(Deserialize)]
@@ -157,7 +151,7 @@ enum Text {
     Lines(Vec<String>),
 }
 
-impl Reading<'_> {
+impl ModelReader<'_> {
     fn placeholder(&mut self, label: &str) -> usize {
         self.nodes.push(Node::new(label.to_owned(), Kind::Reference(String::new(), usize::MAX)));
         self.nodes.len() - 1
@@ -312,7 +306,10 @@ impl Reading<'_> {
     /// The solid or region described by a JSON file.
     #[cfg(feature = "parametric")]
     fn described(&self, file: &str) -> Result<Kind, Error> {
-        super::parametric::file(self.folder, file)
+        Ok(match parametric::load(self.folder, file)? {
+            Described::Solid(solid) => Kind::Parametric(solid),
+            Described::Region(curves) => Kind::Contour(PlaneRegion::Curves(curves)),
+        })
     }
 
     #[cfg(not(feature = "parametric"))]
@@ -381,7 +378,9 @@ impl Node {
 }
 
 #[cfg(feature = "parametric")]
-use super::parametric::solid_of;
+fn solid_of(kind: &str, object: Map<String, Value>) -> Result<Kind, Error> {
+    Parametric::of_type(kind, object).map(Kind::Parametric)
+}
 
 #[cfg(not(feature = "parametric"))]
 fn solid_of(kind: &str, _: Map<String, Value>) -> Result<Kind, Error> {
@@ -390,7 +389,7 @@ fn solid_of(kind: &str, _: Map<String, Value>) -> Result<Kind, Error> {
 
 #[cfg(feature = "parametric")]
 fn region_of(description: Value) -> Result<Kind, Error> {
-    Ok(super::parametric::region_of(description))
+    Ok(Kind::Contour(PlaneRegion::Curves(Curves::new(description))))
 }
 
 #[cfg(not(feature = "parametric"))]

@@ -212,7 +212,7 @@ impl Primitive {
         }
     }
 
-    /// The length of the diagonal of the box round the primitive.
+    /// The length of the diagonal of the box around the primitive.
     pub(super) fn diagonal(&self) -> f64 {
         let size = match self {
             Self::Box { low, high } => *high - *low,
@@ -252,7 +252,7 @@ impl Primitive {
     }
 }
 
-/// Chords round a circle that stay within `tolerance` of it.
+/// Chords around a circle that stay within `tolerance` of it.
 fn segments(radius: f64, tolerance: f64) -> u32 {
     let half_angle = (1.0 - (tolerance / radius).min(0.5)).acos();
     (std::f64::consts::PI / half_angle).ceil().clamp(8.0, 4096.0) as u32

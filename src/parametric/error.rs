@@ -224,7 +224,7 @@ pub(crate) type Result<T> = std::result::Result<T, GeometryError>;
 
 /// Refuses points that are not finite.
 pub(crate) fn check_points<const D: usize>(of: &'static str, points: &[[f64; D]]) -> Result<()> {
-    match points.iter().position(|p| !super::vector::is_finite(*p)) {
+    match points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
         Some(index) => Err(GeometryError::NotFinite { what: "point", index, of }),
         None => Ok(()),
     }

@@ -18,7 +18,7 @@
 //! Meshes deviate from their curve or patch by no more than the tolerance: that is decided by convex hulls of control
 //! points, not by samples. Patches whose boundaries run along each other share vertices bit for bit, and the mesh of
 //! patches without gaps is closed. Not guaranteed: that a mesh whose tolerance is as large as the solid's own features
-//! (thin walls, narrow gaps) does not cross itself; [`Solid`](crate::Solid) and the check of the program tell.
+//! (thin walls, narrow gaps) does not cross itself; [`Solid`](crate::Solid) and the program's `check` find that out.
 //!
 //! ```
 //! use trisect::parametric::{Patch, PatchMeshing};
@@ -31,72 +31,25 @@
 //! # Ok::<(), trisect::Error>(())
 //! ```
 
-mod arc;
-mod bernstein;
-mod bezier;
-mod composite;
-mod conjugation;
-mod conjugation_report;
-mod constraints;
-mod cubic_spline;
 mod curve;
-mod density;
-mod deviation;
-mod discretise;
 mod error;
-mod extrude;
-mod face_mesh;
-mod flat_triangle;
-mod gauss;
-mod hermite;
-mod joints;
-pub mod json;
-mod knots;
-mod lagrange;
-mod line;
-mod membership;
-mod needles;
-mod nurbs;
-mod nurbs_tools;
-mod orientation;
-mod overlay;
-mod parameters;
+mod file;
+mod join;
+mod numeric;
 mod patch;
-mod patch_mesh;
-mod patch_pieces;
-mod patch_shapes;
-mod polygons;
-mod polyline;
 mod region;
-mod revolve;
-pub mod svg;
-mod sweep;
-mod triangulate;
-mod vector;
+mod solid;
 
-pub use arc::EllipticArc;
-pub use bezier::Bezier;
-pub use composite::Composite;
-pub use conjugation::{CurveJoin, JoinMetric, Joined, JoinedSpline, JointAt, Operand};
-pub use conjugation_report::{ConstraintReport, JoinReport};
-pub use cubic_spline::{CubicSpline, SplineEnds};
-pub use curve::{Curve, Reversed, SharedCurve};
-pub use discretise::{CurveMesh, CurveMeshing, Refinement};
+pub use curve::{
+    Bezier, Composite, CubicSpline, Curve, CurveForm, CurveMesh, CurveMeshing, EllipticArc, HermiteSpline,
+    LagrangeCurve, NurbsCurve, Polyline, Refinement, Reversed, Segment, SharedCurve, Spacing, SplineEnds,
+    TangentRule,
+};
 pub use error::GeometryError;
-pub use extrude::Extrusion;
-pub use hermite::{HermiteSpline, TangentRule};
-pub use joints::Gap;
-pub use lagrange::LagrangeCurve;
-pub use line::Segment;
-pub use membership::Membership;
-pub use nurbs::NurbsCurve;
-pub use overlay::{FillRule, RegionOperation};
-pub use parameters::Spacing;
-pub use patch::{Patch, Side};
-pub use patch_mesh::{PatchMesh, PatchMeshing, PatchTriangle};
-pub use polygons::Polygons;
-pub use polyline::Polyline;
-pub use region::Region;
-pub use revolve::Revolution;
-pub use sweep::Sweep;
-pub use triangulate::PlaneMesh;
+pub use file::{json, svg};
+pub use join::{
+    ConstraintReport, CurveJoin, JoinInput, JoinMetric, JoinReport, Joined, JoinedSpline, JointAt,
+};
+pub use patch::{Gap, Patch, PatchMesh, PatchMeshing, PatchSide, PatchTriangle};
+pub use region::{FillRule, Membership, PlaneMesh, Polygons, Region, RegionOperation};
+pub use solid::{Extrusion, Revolution, Sweep};

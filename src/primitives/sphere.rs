@@ -93,29 +93,7 @@ pub fn geodesic_sphere(radius: f64, frequency: u32) -> Result<Mesh, Error> {
     check_count("geodesic sphere", "parts to an edge", frequency, 1)?;
     check_size("geodesic sphere", 20 * u128::from(frequency) * u128::from(frequency))?;
     let mut points = icosahedron();
-    // The first inner vertex of each edge, counted from the lower corner.
-    let mut edges: FxHashMap<(u32, u32), u32> = FxHashMap::default();
-    let blend = |points: &[[f64; 3]], parts: &[(u32, u32)]| {
-        let mut sum = [0.0; 3];
-        for &(corner, weight) in parts {
-            for axis in 0..3 {
-                sum[axis] += points[corner as usize][axis] * f64::from(weight);
-            }
-        }
-        normalized(sum)
-    };
-    for [a, b, c] in ICOSAHEDRON {
-        for (low, high) in [(a, b), (b, c), (c, a)].map(|(a, b)| (a.min(b), a.max(b))) {
-            if edges.contains_key(&(low, high)) {
-                continue;
-            }
-            edges.insert((low, high), points.len() as u32);
-            for step in 1..frequency {
-                let point = blend(&points, &[(low, frequency - step), (high, step)]);
-                points.push(point);
-            }
-        }
-    }
+    let edges = divide_edges(&mut points, frequency);
     let mut triangles = Vec::with_capacity(20 * (frequency * frequency) as usize);
     for [a, b, c] in ICOSAHEDRON {
         let first_inner = points.len() as u32;
@@ -154,6 +132,35 @@ pub fn geodesic_sphere(radius: f64, frequency: u32) -> Result<Mesh, Error> {
         }
     }
     Ok(finished(points, triangles, radius))
+}
+
+/// Appends the inner vertices of the icosahedron's edges; the first of each edge, which counts from its lower corner.
+fn divide_edges(points: &mut Vec<[f64; 3]>, frequency: u32) -> FxHashMap<(u32, u32), u32> {
+    let mut edges: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+    for [a, b, c] in ICOSAHEDRON {
+        for (low, high) in [(a, b), (b, c), (c, a)].map(|(a, b)| (a.min(b), a.max(b))) {
+            if edges.contains_key(&(low, high)) {
+                continue;
+            }
+            edges.insert((low, high), points.len() as u32);
+            for step in 1..frequency {
+                let point = blend(points, &[(low, frequency - step), (high, step)]);
+                points.push(point);
+            }
+        }
+    }
+    edges
+}
+
+/// The unit vector towards a sum of corners, each as often as it is given.
+fn blend(points: &[[f64; 3]], parts: &[(u32, u32)]) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for &(corner, weight) in parts {
+        for axis in 0..3 {
+            sum[axis] += points[corner as usize][axis] * f64::from(weight);
+        }
+    }
+    normalized(sum)
 }
 
 /// The sphere about the origin with its vertices on `slices` meridians, cut by parallels into `stacks` bands of

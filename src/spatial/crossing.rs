@@ -6,9 +6,9 @@
 //! the line y = y_q and the other on or above it. Both rules depend on edges alone, so neighbours always agree.
 
 use glam::DVec3;
-use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use super::TriangleTree;
+use crate::exact::{Sign, orient2d, orient3d};
 
 /// Where a point is with respect to a closed surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -33,8 +33,7 @@ pub struct Crossings {
 }
 
 impl TriangleTree {
-    /// Crossings of the ray from `query` in +x, exact for every finite query whose coordinates and those of the mesh
-    /// are within a factor of about 2^300 of each other (the range of exact products in double precision).
+    /// Crossings of the ray from `query` in +x, exact for every finite query and every finite mesh.
     #[must_use]
     pub fn crossings(&self, query: [f64; 3]) -> Crossings {
         let mut found = Crossings { count: 0, winding: 0, on_surface: false };
@@ -42,15 +41,13 @@ impl TriangleTree {
         if !query.is_finite() || self.is_empty() {
             return found;
         }
-        self.visit_right_of(query.to_array(), |corners| {
-            match crossing(corners.map(|corner| corner * self.unit), query * self.unit) {
-                Some(0) => found.on_surface = true,
-                Some(direction) => {
-                    found.count += 1;
-                    found.winding += direction;
-                }
-                None => {}
+        self.visit_right_of(query.to_array(), |corners| match crossing(corners, query) {
+            Some(0) => found.on_surface = true,
+            Some(direction) => {
+                found.count += 1;
+                found.winding += direction;
             }
+            None => {}
         });
         found
     }
@@ -71,24 +68,33 @@ impl TriangleTree {
         }
         let mut touched = false;
         self.tree.visit_meeting(&self.frame.around(query), |leaf| {
-            let corners = &self.leaves[leaf as usize].corners;
-            touched |= contains(corners.map(|corner| corner * self.unit), query * self.unit);
+            touched |= contains(self.leaves[leaf as usize].corners, query);
         });
         touched
     }
 }
 
-fn drop_axis(point: DVec3, axis: usize) -> Coord<f64> {
-    let [x, y, z] = point.to_array();
+/// The two coordinates of a point after `axis`, in turn.
+#[inline]
+fn project(point: DVec3, axis: usize) -> [f64; 2] {
     match axis {
-        0 => Coord { x: y, y: z },
-        1 => Coord { x: z, y: x },
-        _ => Coord { x, y },
+        0 => [point.y, point.z],
+        1 => [point.z, point.x],
+        _ => [point.x, point.y],
     }
 }
 
-fn coord3(point: DVec3) -> Coord3D<f64> {
-    Coord3D { x: point.x, y: point.y, z: point.z }
+/// [`orient2d`] of three points projected along an axis.
+#[inline]
+fn turn([a, b, c]: [DVec3; 3], axis: usize) -> Sign {
+    orient2d(project(a, axis), project(b, axis), project(c, axis))
+}
+
+/// The side of a triangle's plane that a point is on; positive if it is behind the triangle, where the normal points away
+/// from.
+#[inline]
+fn side_of_plane([a, b, c]: [DVec3; 3], query: DVec3) -> Sign {
+    orient3d(&a.to_array(), &b.to_array(), &c.to_array(), &query.to_array())
 }
 
 /// +1 where the ray leaves through the triangle, -1 where it enters, 0 where `query` is on it, nothing where it
@@ -103,41 +109,63 @@ fn crossing(corners: [DVec3; 3], query: DVec3) -> Option<i32> {
     let beyond = |other: usize| {
         let (low, high) = if above[alone] { (other, alone) } else { (alone, other) };
         // Whether the edge passes the plane at y >= y_q: then q is on the left of the rising edge, or on it.
-        orient2d(drop_axis(corners[low], 0), drop_axis(corners[high], 0), drop_axis(query, 0)) >= 0.0
+        turn([corners[low], corners[high], query], 0) != Sign::Negative
     };
     if beyond((alone + 1) % 3) == beyond((alone + 2) % 3) {
         return None;
     }
-    let [a, b, c] = corners;
-    let facing = orient2d(drop_axis(a, 0), drop_axis(b, 0), drop_axis(c, 0));
-    // Positive if the query is behind the triangle, on the side its normal points away from.
-    let behind = orient3d(coord3(a), coord3(b), coord3(c), coord3(query));
-    if behind == 0.0 {
-        return Some(0);
-    }
-    let direction = if facing > 0.0 { 1 } else { -1 };
-    ((behind > 0.0) == (facing > 0.0)).then_some(direction)
+    let facing = turn(corners, 0) == Sign::Positive;
+    let behind = match side_of_plane(corners, query) {
+        Sign::Zero => return Some(0),
+        side => side == Sign::Positive,
+    };
+    (behind == facing).then_some(if facing { 1 } else { -1 })
 }
 
 /// Whether `query` is exactly on the closed triangle.
 fn contains(corners: [DVec3; 3], query: DVec3) -> bool {
-    let [a, b, c] = corners;
-    if orient3d(coord3(a), coord3(b), coord3(c), coord3(query)) != 0.0 {
+    if side_of_plane(corners, query) != Sign::Zero {
         return false;
     }
+    let [a, b, c] = corners;
     for axis in 0..3 {
-        let [a, b, c, q] = [a, b, c, query].map(|point| drop_axis(point, axis));
-        let facing = orient2d(a, b, c);
-        if facing != 0.0 {
-            let sides = [orient2d(a, b, q), orient2d(b, c, q), orient2d(c, a, q)];
-            return sides.iter().all(|&side| side == 0.0 || (side > 0.0) == (facing > 0.0));
+        let facing = turn(corners, axis);
+        if facing != Sign::Zero {
+            let sides = [[a, b, query], [b, c, query], [c, a, query]].map(|points| turn(points, axis));
+            return sides.iter().all(|&side| side == Sign::Zero || side == facing);
         }
     }
     // A segment or a point: on the line in every projection, and between the ends.
     let between = |from: DVec3, to: DVec3| {
-        let on_line = (0..3)
-            .all(|axis| orient2d(drop_axis(from, axis), drop_axis(to, axis), drop_axis(query, axis)) == 0.0);
+        let on_line = (0..3).all(|axis| turn([from, to, query], axis) == Sign::Zero);
         on_line && query.cmpge(from.min(to)).all() && query.cmple(from.max(to)).all()
     };
     between(a, b) || between(b, c) || between(c, a)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Mesh, primitives};
+
+    #[test]
+    fn crossings_are_exact_at_any_magnitude() {
+        let octahedron = primitives::octahedron(1.0).expect("an octahedron");
+        for scale in [1e-300, 1.0, 1e300] {
+            let positions = octahedron.positions.iter().map(|p| p.map(|x| x * scale)).collect();
+            let tree = TriangleTree::new(&Mesh::new(positions, octahedron.triangles.clone()));
+            // On the face x + y + z = scale, and one bit to either side of it.
+            let [x, y, z] = [0.5, 0.25, 0.25].map(|x| x * scale);
+            assert!(tree.touches([x, y, z]), "{scale}");
+            assert!(!tree.touches([x.next_up(), y, z]) && !tree.touches([x.next_down(), y, z]), "{scale}");
+            let inside = tree.crossings([x.next_down(), y, z]);
+            assert_eq!((inside.count, inside.winding), (1, 1), "{scale}");
+            assert_eq!(tree.crossings([x.next_up(), y, z]).count, 0, "{scale}");
+            // Tiny against the size of the body, or huge.
+            for tiny in [1e-300, -1e-300] {
+                assert_eq!(tree.crossings([0.25 * tiny, 0.25 * tiny, 0.25 * tiny]).winding, 1, "{scale}");
+            }
+            assert_eq!(tree.crossings([-1e301, 0.25 * scale, 0.25 * scale]).winding, 0, "{scale}");
+        }
+    }
 }

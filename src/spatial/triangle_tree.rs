@@ -26,9 +26,6 @@ pub struct TriangleTree {
     pub(super) leaf_of_triangle: Vec<u32>,
     pub(super) low: DVec3,
     pub(super) high: DVec3,
-    /// A power of two that brings coordinates near 1, so that products in the exact predicates neither overflow nor
-    /// underflow.
-    pub(super) unit: f64,
 }
 
 /// A triangle as stored in a leaf.
@@ -81,13 +78,7 @@ impl TriangleTree {
         for (position, leaf) in leaves.iter().enumerate() {
             leaf_of_triangle[leaf.triangle as usize] = position as u32;
         }
-        let largest = low.abs().max_element().max(high.abs().max_element());
-        let unit = if largest > 0.0 && largest.is_finite() {
-            2f64.powi(-(largest.log2().ceil().clamp(-1000.0, 1000.0) as i32))
-        } else {
-            1.0
-        };
-        Self { tree, discs, frame, leaves, leaf_of_triangle, low, high, unit }
+        Self { tree, discs, frame, leaves, leaf_of_triangle, low, high }
     }
 
     /// Whether there are no triangles.

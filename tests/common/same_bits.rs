@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use trisect::{Mesh, Operation, Options, Outcome, Solid};
+use trisect::{BooleanOptions, Mesh, Operation, Outcome, Solid};
 
 /// Operations that one line of the table stands for, at most: few enough to find the first that differs.
 const CASES_A_LINE: usize = 500;
@@ -81,16 +81,16 @@ pub(crate) fn group(name: &'static str) -> Group {
 
 /// Runs a boolean with default settings; within a group on 1 thread and on 8.
 pub(crate) fn run(operation: Operation, operands: &[&Solid]) -> Outcome {
-    run_with(&Options::new(), operation, operands)
+    run_with(&BooleanOptions::new(), operation, operands)
 }
 
 /// Runs a boolean; within a group on 1 thread and on 8.
-pub(crate) fn run_with(options: &Options, operation: Operation, operands: &[&Solid]) -> Outcome {
+pub(crate) fn run_with(options: &BooleanOptions, operation: Operation, operands: &[&Solid]) -> Outcome {
     if OPEN.with_borrow(Option::is_none) {
-        return options.run(operation, operands).expect("no limits");
+        return options.run(operation, operands.iter().copied()).expect("no limits");
     }
-    let one = options.clone().threads(1).run(operation, operands).expect("no limits");
-    let many = eight().install(|| options.run(operation, operands)).expect("no limits");
+    let one = options.clone().threads(1).run(operation, operands.iter().copied()).expect("no limits");
+    let many = eight().install(|| options.run(operation, operands.iter().copied())).expect("no limits");
     let mut of_operands = Hash::START;
     operands.iter().for_each(|solid| of_operands.add_mesh(solid.mesh()));
     note([of_operands, Hash::of_outcome(&one)], &format!("{operation:?}"), &many);

@@ -1,7 +1,7 @@
 //! Pairs of models whose booleans another engine has worked out with exact constructions.
 
 use serde_json::Value;
-use trisect::{Control, Error, Mesh, Operation, Options, Solid};
+use trisect::{BooleanOptions, Control, Error, Mesh, Operation, Solid};
 
 use super::models::{find, fixtures};
 use super::surface::Properties;
@@ -72,8 +72,7 @@ fn judged(entry: &Value) -> Result<Answer, String> {
         }
         solids.push(solid);
     }
-    let operands: Vec<&Solid> = solids.iter().collect();
-    let outcome = Options::new().run(operation, &operands).map_err(|error| error.to_string())?;
+    let outcome = BooleanOptions::new().run(operation, &solids).map_err(|error| error.to_string())?;
     let found = Properties::of(outcome.solid().mesh());
     let expected = &entry["expected"];
     let mut faults = Vec::new();

@@ -1,7 +1,7 @@
 //! Random pairs of real models: what volumes must add up to, however the models lie.
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
-use trisect::{Operation, Options, Solid};
+use trisect::{BooleanOptions, Operation, Solid};
 
 use super::models::{clean_models, number, placed};
 use super::surface::{self, Properties};
@@ -18,7 +18,7 @@ pub(crate) fn sound(solid: &Solid, context: &str) -> f64 {
 /// round both operands; and the union, intersection and difference.
 pub(crate) fn identities(a: &Solid, b: &Solid, context: &str) -> (f64, [Solid; 3]) {
     let results = [Operation::Union, Operation::Intersection, Operation::Difference]
-        .map(|operation| Options::new().run(operation, &[a, b]).expect("no limits").into_solid());
+        .map(|operation| BooleanOptions::new().run(operation, [a, b]).expect("no limits").into_solid());
     let names = ["union", "intersection", "difference"];
     let [union, both, rest] = [0, 1, 2].map(|i| sound(&results[i], &format!("{context}, {}", names[i])));
     let [volume_a, volume_b] = [a, b].map(|solid| surface::volume(solid.mesh()));

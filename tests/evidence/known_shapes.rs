@@ -1,7 +1,7 @@
 //! Simple shapes with known answers, from the tests of other engines.
 
 use trisect::Operation::{self, Difference, Intersection, Union};
-use trisect::{Mesh, Options, Solid, primitives};
+use trisect::{BooleanOptions, Mesh, Solid, primitives};
 
 use super::surface::Properties;
 
@@ -19,7 +19,7 @@ fn cube(low: [f64; 3]) -> Solid {
 
 /// The result, asserted sound.
 fn run(operation: Operation, operands: &[&Solid]) -> (Solid, Properties) {
-    let outcome = Options::new().run(operation, operands).expect("no limits");
+    let outcome = BooleanOptions::new().run(operation, operands.iter().copied()).expect("no limits");
     let found = Properties::of(outcome.solid().mesh());
     assert!(found.closed && found.manifold && found.zero_area == 0, "{found:?}");
     (outcome.into_solid(), found)

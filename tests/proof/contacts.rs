@@ -3,7 +3,7 @@
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use trisect::Operation::{Difference, Intersection, Union};
-use trisect::{Contact, Mesh, Operation, Options, Solid, primitives};
+use trisect::{BooleanOptions, Contact, Mesh, Operation, Solid, primitives};
 
 use crate::common::{self, assert_sound, run, same_bits, solid};
 
@@ -154,7 +154,7 @@ fn contacts_after_a_shared_rotation_stay_closed_and_right() {
 fn separate_contacts_keep_both_bodies() {
     let _bits = same_bits::group("contacts kept apart");
     let (a, b) = (common::cube([0.0; 3], 1.0), common::cube([1.0, 0.0, 0.0], 1.0));
-    let outcome = same_bits::run_with(&Options::new().contact(Contact::Separate), Union, &[&a, &b]);
+    let outcome = same_bits::run_with(&BooleanOptions::new().contact(Contact::Separate), Union, &[&a, &b]);
     assert_sound(&outcome, "separate");
     assert_eq!((outcome.certificate().components, outcome.solid().volume()), (2, 2.0));
 }

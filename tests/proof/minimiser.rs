@@ -1,6 +1,6 @@
 //! The minimiser, tried on engines that are wrong on purpose.
 
-use trisect::{Mesh, Operation, Options, Solid, primitives};
+use trisect::{BooleanOptions, Mesh, Operation, Solid, primitives};
 
 use crate::judge::minimise::{Pair, minimised};
 use crate::judge::oracle;
@@ -9,9 +9,9 @@ type Engine = fn(Operation, &Pair) -> Mesh;
 
 fn right(operation: Operation, pair: &Pair) -> Mesh {
     let solids = pair.each_ref().map(|mesh| Solid::try_from(mesh.clone()).expect("closed"));
-    Options::new()
+    BooleanOptions::new()
         .threads(1)
-        .run(operation, &[&solids[0], &solids[1]])
+        .run(operation, [&solids[0], &solids[1]])
         .expect("no limits")
         .into_solid()
         .into_mesh()

@@ -243,7 +243,7 @@ fn an_operand_that_crosses_itself_is_told() {
     assert!(!crossings.is_clean());
     let outcome = run(Difference, &[&big, &doubled]);
     let states = &outcome.certificate().operands;
-    assert!(matches!(states[1], trisect::boolean::OperandState::Crossing { .. }), "{states:?}");
+    assert!(matches!(states[1], trisect::OperandState::Crossing { .. }), "{states:?}");
     // United part by part, as the message advises, the result is right.
     let parts = [cube([0.5; 3], 1.0), cube([1.0; 3], 1.0)];
     let (united, _) = result(Union, &[&parts[0], &parts[1]]);

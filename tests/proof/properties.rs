@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 use trisect::Operation::{self, Difference, Intersection, SymmetricDifference, Union};
-use trisect::{Mesh, Options, Solid, primitives};
+use trisect::{BooleanOptions, Mesh, Solid, primitives};
 
 use crate::common::{cuboid, solid};
 use crate::judge::cases::OPERATIONS;
@@ -99,7 +99,7 @@ fn pair() -> impl Strategy<Value = [Recipe; 2]> {
 }
 
 fn engine(operation: Operation, operands: [&Solid; 2]) -> Solid {
-    Options::new().threads(1).run(operation, &operands).expect("no limits").into_solid()
+    BooleanOptions::new().threads(1).run(operation, operands).expect("no limits").into_solid()
 }
 
 /// Runs a property over pairs. The seed is fixed, so that a failure stays until it is mended; `TRISECT_PROOF_SEED` sets another.

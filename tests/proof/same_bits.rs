@@ -6,7 +6,7 @@ use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
 #[cfg(feature = "parametric")]
 use trisect::model::{Evaluation, Model};
-use trisect::{Contact, Mesh, Options, Solid};
+use trisect::{BooleanOptions, Contact, Mesh, Solid};
 
 use crate::common::same_bits;
 use crate::judge::cases::{Case, OPERATIONS, models};
@@ -97,7 +97,9 @@ fn random_cases_with_other_options() {
     for seed in 1_000_000..1_000_200 {
         let case = Case::new(seed, &models);
         let [a, b] = [&case.a, &case.b].map(|mesh| Solid::try_from(mesh.clone()).expect("closed"));
-        for options in [Options::new().remove_vertices(false), Options::new().contact(Contact::Separate)] {
+        for options in
+            [BooleanOptions::new().remove_vertices(false), BooleanOptions::new().contact(Contact::Separate)]
+        {
             same_bits::run_with(&options, case.operation, &[&a, &b]);
         }
     }

@@ -5,7 +5,7 @@
 use std::cell::RefCell;
 use std::ffi::{CString, c_char};
 
-use trisect::{Error, Mesh, Operation, Options, Solid};
+use trisect::{BooleanOptions, Error, Mesh, Operation, Solid};
 
 thread_local! {
     static MESSAGE: RefCell<CString> = RefCell::default();
@@ -59,13 +59,12 @@ pub unsafe extern "C" fn trisect_boolean(
     count: usize,
     threads: usize,
 ) -> *mut Solid {
-    let operands: Vec<&Solid> =
-        unsafe { std::slice::from_raw_parts(operands, count).iter().map(|&solid| &*solid).collect() };
+    let operands = unsafe { std::slice::from_raw_parts(operands, count).iter().map(|&solid| &*solid) };
     let operation =
         [Operation::Union, Operation::Intersection, Operation::Difference, Operation::SymmetricDifference]
             [operation as usize % 4];
-    let options = if threads == 0 { Options::new() } else { Options::new().threads(threads) };
-    or_null(options.run(operation, &operands).map(trisect::Outcome::into_solid))
+    let options = if threads == 0 { BooleanOptions::new() } else { BooleanOptions::new().threads(threads) };
+    or_null(options.run(operation, operands).map(trisect::Outcome::into_solid))
 }
 
 /// Number of vertices (0) or triangles (1) of a solid.

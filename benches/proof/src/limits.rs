@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-use trisect::{CancelToken, Control, Error, Operation, Options, Solid, primitives};
+use trisect::{BooleanOptions, CancelToken, Control, Error, Operation, Solid, primitives};
 
 /// The system's allocator, with a count of the bytes in use.
 struct Counting;
@@ -38,8 +38,10 @@ fn pair(frequency: u32) -> [Solid; 2] {
 }
 
 fn union(operands: &[Solid; 2], control: Control, threads: usize) -> Result<Solid, Error> {
-    let outcome =
-        Options::new().control(control).threads(threads).run(Operation::Union, &[&operands[0], &operands[1]])?;
+    let outcome = BooleanOptions::new()
+        .control(control)
+        .threads(threads)
+        .run(Operation::Union, [&operands[0], &operands[1]])?;
     Ok(outcome.into_solid())
 }
 

@@ -7,7 +7,7 @@ use crate::judge::contacts::{self, Parted, Topology};
 use crate::judge::oracle;
 use crate::judge::surface::Properties;
 use crate::judge::vector::extent;
-use trisect::{Control, Mesh, Operation, Options, Solid};
+use trisect::{BooleanOptions, Control, Mesh, Operation, Solid};
 
 /// The topology of a mesh with its contacts parted. Vertices nearer than a part of its size are one: on the grid 1e-9, less
 /// where features are so small that they would collapse.
@@ -58,7 +58,7 @@ pub(crate) struct Found {
 pub(crate) fn attempt(case: &Case) -> (Option<Mesh>, bool) {
     let run = || {
         let solids = [&case.a, &case.b].map(|mesh| Solid::try_from(mesh.clone()).expect("closed operands"));
-        Options::new().threads(1).run(case.operation, &[&solids[0], &solids[1]]).expect("no limits")
+        BooleanOptions::new().threads(1).run(case.operation, [&solids[0], &solids[1]]).expect("no limits")
     };
     let Ok(outcome) = catch_unwind(AssertUnwindSafe(run)) else { return (None, true) };
     let certificate = outcome.certificate();
@@ -102,6 +102,7 @@ fn identity_error(case: &Case, volume: f64) -> f64 {
         Operation::Intersection => volume + volume_of(Operation::Difference, case) - va,
         Operation::Difference => volume + volume_of(either, case) - va,
         Operation::SymmetricDifference => volume + 2.0 * volume_of(either, case) - all,
+        other => unreachable!("nothing is expected of {other}"),
     };
     let [low, high] = extent(case.a.positions.iter().chain(&case.b.positions));
     error / (0..3).map(|k| high[k] - low[k]).product::<f64>()
@@ -178,7 +179,8 @@ pub(crate) fn show(seed: u64, case: &Case) {
     );
     println!("  A {:?}\n  B {:?}", Properties::of(&case.a), Properties::of(&case.b));
     let found = examine(seed, case, 2_000);
-    let faults: Vec<&str> = (0..9).filter(|bit| found.faults >> bit & 1 == 1).map(|bit| FAULTS[bit]).collect();
+    let faults: Vec<&str> =
+        (0..9).filter(|bit| found.faults >> bit & 1 == 1).map(|bit| FAULTS[bit]).collect();
     println!("  faults {faults:?} (identity tolerance {:e})\n  {found:?}", identity_tolerance(case));
     if let (Some(mesh), _) = attempt(case) {
         println!("  result {:?}, contacts parted {:?}", Properties::of(&mesh), parted(&mesh));

@@ -5,87 +5,82 @@
 
 use rustc_hash::FxHashMap;
 
+use super::curve::Curve;
+use super::cut_faces::CutFace;
+use super::face_walk::visit_cut_faces;
+use super::plane_faces::PlaneFaces;
+use super::points::Points;
+use super::sheets::Sheet;
 use crate::Error;
-use crate::boolean::arrangement::crossings::Crossings;
-use crate::boolean::arrangement::cut_edges::CutEdges;
-use crate::boolean::arrangement::cut_faces::{CutFace, CutFaces, UNCUT};
-use crate::boolean::arrangement::plane_faces::PlaneFaces;
-use crate::boolean::complex::operands::Operands;
+use crate::boolean::complex::ids::{CutFaceId, NodeId, PointId};
 use crate::mesh::{BitSet, SparseUnionFind};
 use crate::parallel::Runner;
 
-/// Up to this many points are compared pair by pair.
+/// Up to this many points are compared pair by pair: fewer than sorting them costs.
 const FEW: usize = 12;
+/// Faces that one thread looks at before the limits are checked.
+const FACES_AT_ONCE: usize = 1024;
 
-/// The classes of vertices and nodes that are one; only those that coincide with another are stored.
+/// The classes of points that are one; only those that coincide with another are stored.
 #[derive(Debug, Default)]
 pub(crate) struct Identification {
     /// For every point that is not the lowest of its class, the lowest.
-    parent: FxHashMap<u32, u32>,
-    /// The points that are stored: most are told from them by this alone.
+    parent: FxHashMap<PointId, PointId>,
+    /// The points that are stored: for most points one look at a bit is enough.
     stored: BitSet,
 }
 
 impl Identification {
-    /// Identifies the points of every plane face that is cut, and those of every set of faces that are added up.
+    /// Identifies the points of every plane face that is cut, and those of every sheet.
+    ///
+    /// # Errors
+    /// Only limits.
     pub(crate) fn new(
-        operands: &Operands<'_>,
-        crossings: &Crossings,
-        edges: &CutEdges,
-        faces: &[CutFaces; 2],
+        curve: &Curve<'_>,
         plane_faces: &PlaneFaces,
-        sheets: &[Vec<(usize, u32)>],
+        points: &Points<'_>,
+        sheets: &[Sheet],
         runner: Runner<'_>,
     ) -> Result<Self, Error> {
+        let outline = Outline { curve, plane_faces, points };
         let mut classes = SparseUnionFind::default();
-        let collect = |side: usize, face: &CutFace, points: &mut Vec<Point>| {
-            collect_points(operands, side, face, &faces[side], crossings, edges, plane_faces, points);
-        };
-        for side in 0..2 {
-            let all = &faces[side].faces;
-            let pairs = runner.gather(all.len(), 1024, 0, |range, pairs| {
-                let mut points = Vec::new();
-                faces[side].for_each_place(
-                    range,
-                    side,
-                    operands,
-                    crossings,
-                    edges,
-                    |_| 0,
-                    |place| {
-                        if plane_faces.belongs_to_earlier(side, place) {
-                            return;
-                        }
-                        points.clear();
-                        for member in plane_faces.members(side, place) {
-                            collect(side, &all[member as usize], &mut points);
-                        }
-                        coincidences(&mut points, pairs);
-                    },
-                );
+        // 1. Plane face by plane face.
+        for operand in 0..2 {
+            let pairs = runner.gather(curve.faces[operand].len(), FACES_AT_ONCE, 0, |range, pairs| {
+                let mut at = Vec::new();
+                let visit = |face: CutFaceId| {
+                    if plane_faces.belongs_to_earlier(operand, face) {
+                        return;
+                    }
+                    at.clear();
+                    for member in plane_faces.members(operand, face) {
+                        outline.collect(operand, &curve.faces[operand][member], &mut at);
+                    }
+                    find_coincidences(&mut at, pairs);
+                };
+                visit_cut_faces(curve, points, operand, range, |_| 0, visit);
             })?;
-            for [u, v] in pairs {
-                classes.join(u, v);
-            }
+            pairs.into_iter().for_each(|[u, v]| classes.join(PointId::new(u), PointId::new(v)));
         }
+        // 2. Sheet by sheet.
         for sheet in sheets {
-            let (mut points, mut pairs) = (Vec::new(), Vec::new());
-            for &(side, triangle) in sheet {
-                if let Some(face) = faces[side].face(triangle) {
-                    collect(side, &face, &mut points);
+            let (mut at, mut pairs) = (Vec::new(), Vec::new());
+            for &id in sheet {
+                let operand = curve.complex.owner_of_face(id);
+                if let Some(face) = curve.faces[operand].find(id) {
+                    outline.collect(operand, face, &mut at);
                 }
             }
-            coincidences(&mut points, &mut pairs);
-            for [u, v] in pairs {
-                classes.join(u, v);
-            }
+            find_coincidences(&mut at, &mut pairs);
+            pairs.into_iter().for_each(|[u, v]| classes.join(PointId::new(u), PointId::new(v)));
         }
-        if classes.is_empty() {
-            return Ok(Self::default());
-        }
+        // 3. Every point that is stored gets the lowest one of its class.
         let parent = classes.into_roots();
-        let mut stored = BitSet::new(operands.vertex_count() as usize + edges.positions.len());
-        parent.keys().for_each(|&point| stored.insert(point));
+        let mut stored = BitSet::default();
+        if !parent.is_empty() {
+            stored = BitSet::new(points.len());
+            parent.keys().for_each(|point| stored.insert(point.number()));
+        }
         Ok(Self { parent, stored })
     }
 
@@ -96,21 +91,21 @@ impl Identification {
 
     /// The point that stands for a point: the lowest number of its class.
     #[inline]
-    pub(crate) fn representative(&self, point: u32) -> u32 {
-        if self.parent.is_empty() || !self.stored.contains(point) {
+    pub(crate) fn representative(&self, point: PointId) -> PointId {
+        if self.parent.is_empty() || !self.stored.contains(point.number()) {
             return point;
         }
         self.parent.get(&point).copied().unwrap_or(point)
     }
 
     /// All points that another stands for, in no particular order.
-    pub(crate) fn identified(&self) -> impl Iterator<Item = u32> {
+    pub(crate) fn identified(&self) -> impl Iterator<Item = PointId> {
         self.parent.keys().copied()
     }
 
     /// All points that stand for others, ascending.
-    pub(crate) fn representatives(&self) -> Vec<u32> {
-        let mut all: Vec<u32> = self.parent.values().copied().collect();
+    pub(crate) fn representatives(&self) -> Vec<PointId> {
+        let mut all: Vec<PointId> = self.parent.values().copied().collect();
         all.sort_unstable();
         all.dedup();
         all
@@ -118,55 +113,55 @@ impl Identification {
 }
 
 /// A point's number and where it is.
-type Point = (u32, [f64; 3]);
+type Placed = (u32, [f64; 3]);
 
-/// Appends the corners and nodes of a face that are not dropped.
-fn collect_points(
-    operands: &Operands<'_>,
-    side: usize,
-    face: &CutFace,
-    faces: &CutFaces,
-    crossings: &Crossings,
-    edges: &CutEdges,
-    plane_faces: &PlaneFaces,
-    points: &mut Vec<Point>,
-) {
-    let first_node = operands.vertex_count();
-    points.extend(operands.corners(side, face.triangle).map(|corner| (corner.id, corner.position)));
-    let mut add = |node: u32| {
-        if !plane_faces.is_dropped(node) {
-            points.push((first_node + node, edges.positions[node as usize]));
-        }
-    };
-    for edge in face.edges {
-        if edge != UNCUT {
+/// What is known of the points of cut faces.
+#[derive(Clone, Copy)]
+struct Outline<'a> {
+    curve: &'a Curve<'a>,
+    plane_faces: &'a PlaneFaces,
+    points: &'a Points<'a>,
+}
+
+impl Outline<'_> {
+    /// Appends the corners and nodes of a face that are not dropped.
+    fn collect(&self, operand: usize, face: &CutFace, at: &mut Vec<Placed>) {
+        let Curve { complex, crossings, edges, faces } = self.curve;
+        at.extend(complex.corners(face.id).map(|corner| (corner.id.number(), corner.position)));
+        let mut add = |node: NodeId| {
+            if !self.plane_faces.is_dropped(node) {
+                at.push((self.points.of_node(node).number(), *self.points.position_of_node(node)));
+            }
+        };
+        for edge in face.edges.iter().filter_map(|edge| edge.get()) {
             edges.nodes(edge).iter().for_each(|&node| add(node));
         }
-    }
-    for &segment in faces.segments(face) {
-        let segment = &crossings.segments[segment as usize];
-        // Inner nodes are crossings of edges of the other operand; each is the tail of one segment and the head of another.
-        if crossings.side_of_node(segment.tail) != side {
-            add(segment.tail);
+        for &segment in faces[operand].segments(face) {
+            let tail = crossings[segment].tail;
+            // Inner nodes are crossings of edges of the other operand; each is the tail of one segment and the head of
+            // another.
+            if crossings.owner_of_node(tail) != operand {
+                add(tail);
+            }
         }
     }
 }
 
 /// Appends pairs of points that have equal coordinates; enough of them to join all.
-fn coincidences(points: &mut [Point], pairs: &mut Vec<[u32; 2]>) {
-    if points.len() <= FEW {
-        for i in 1..points.len() {
+fn find_coincidences(at: &mut [Placed], pairs: &mut Vec<[u32; 2]>) {
+    if at.len() <= FEW {
+        for i in 1..at.len() {
             for j in 0..i {
-                if points[i].1 == points[j].1 && points[i].0 != points[j].0 {
-                    pairs.push([points[j].0, points[i].0]);
+                if at[i].1 == at[j].1 && at[i].0 != at[j].0 {
+                    pairs.push([at[j].0, at[i].0]);
                 }
             }
         }
         return;
     }
-    let key = |point: &Point| (point.1.map(|x| (x + 0.0).to_bits()), point.0);
-    points.sort_unstable_by_key(key);
-    for pair in points.windows(2) {
+    let key = |point: &Placed| (point.1.map(|x| (x + 0.0).to_bits()), point.0);
+    at.sort_unstable_by_key(key);
+    for pair in at.windows(2) {
         if pair[0].1 == pair[1].1 && pair[0].0 != pair[1].0 {
             pairs.push([pair[0].0, pair[1].0]);
         }

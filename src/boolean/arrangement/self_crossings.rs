@@ -6,7 +6,10 @@
 //! whose winding number is neither 0 nor 1; else it is what rounding does to every computed mesh, and the multiplicities
 //! of the boolean carry it.
 
-use crate::boolean::complex::operands::{Corner, Operand, Operands};
+use crate::boolean::complex::ids::VertexId;
+use crate::boolean::complex::predicates::Predicates;
+use crate::boolean::complex::rays::{Ray, coordinate_past, signed_crossing};
+use crate::boolean::complex::{Complex, Corner, Operand};
 use crate::mesh::{SelfCrossing, SelfCrossings};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame, self_overlapping_pairs};
@@ -46,12 +49,14 @@ fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     let largest = mesh.positions.iter().flatten().fold(0.0f64, |largest, x| largest.max(x.abs()));
     let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
-    let operands = Operands::alone(operand, largest);
+    let complex = Complex::alone(operand, largest);
     let frame = Frame::of(bounds.low, bounds.high);
     let tree = BoxTree::new(&all, |t| {
         frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]))
     });
-    let surface = Surface { operands, tree, frame, high: bounds.high, low: bounds.low, tolerance };
+    let predicates = Predicates::new(&complex);
+    let surface =
+        Surface { complex: &complex, predicates, tree, frame, high: bounds.high, low: bounds.low, tolerance };
     let pairs = self_overlapping_pairs(&surface.tree, runner, |[s, t]| {
         let (a, b) = (mesh.triangles[s as usize], mesh.triangles[t as usize]);
         // Two triangles with a common edge meet in that edge alone; on all three corners they are one triangle twice.
@@ -89,7 +94,8 @@ struct Found {
 
 /// A surface to be tested against itself.
 struct Surface<'a> {
-    operands: Operands<'a>,
+    complex: &'a Complex<'a>,
+    predicates: Predicates<'a>,
     tree: BoxTree,
     frame: Frame,
     low: [f64; 3],
@@ -99,7 +105,8 @@ struct Surface<'a> {
 
 impl Surface<'_> {
     fn examine(&self, pair: [u32; 2]) -> Option<Found> {
-        let (a, b) = (self.operands.corners(0, pair[0]), self.operands.corners(0, pair[1]));
+        let (a, b) =
+            (self.complex.corners_of_triangle(0, pair[0]), self.complex.corners_of_triangle(0, pair[1]));
         let common = a.iter().filter(|x| b.iter().any(|y| y.id == x.id)).count();
         let segment = match common {
             0 => self.crossing(&a, &b)?,
@@ -119,11 +126,11 @@ impl Surface<'_> {
 
     /// The ends of the segment in which two triangles without common corners meet, roughly.
     fn crossing(&self, a: &[Corner; 3], b: &[Corner; 3]) -> Option<[[f64; 3]; 2]> {
-        let a_inside = [0, 1, 2].map(|i| self.operands.positive(&b[0], &b[1], &b[2], &a[i]));
+        let a_inside = [0, 1, 2].map(|i| self.predicates.is_positive(&b[0], &b[1], &b[2], &a[i]));
         if a_inside == [a_inside[0]; 3] {
             return None;
         }
-        let b_inside = [0, 1, 2].map(|i| self.operands.positive(&a[0], &a[1], &a[2], &b[i]));
+        let b_inside = [0, 1, 2].map(|i| self.predicates.is_positive(&a[0], &a[1], &a[2], &b[i]));
         if b_inside == [b_inside[0]; 3] {
             return None;
         }
@@ -147,7 +154,7 @@ impl Surface<'_> {
         let (i, j) = (shared(a, b)?, shared(b, a)?);
         for (t, k, plane) in [(a, i, b), (b, j, a)] {
             let (p, q) = (&t[(k + 1) % 3], &t[(k + 2) % 3]);
-            let inside = |x: &Corner| self.operands.positive(&plane[0], &plane[1], &plane[2], x);
+            let inside = |x: &Corner| self.predicates.is_positive(&plane[0], &plane[1], &plane[2], x);
             if inside(p) != inside(q) && self.passes(p, q, plane) {
                 return Some([t[k].position, meeting(&p.position, &q.position, plane)]);
             }
@@ -157,9 +164,9 @@ impl Surface<'_> {
 
     /// Whether a line through a plane passes the triangle in it.
     fn passes(&self, p: &Corner, q: &Corner, t: &[Corner; 3]) -> bool {
-        let first = self.operands.positive(p, q, &t[0], &t[1]);
-        self.operands.positive(p, q, &t[1], &t[2]) == first
-            && self.operands.positive(p, q, &t[2], &t[0]) == first
+        let first = self.predicates.is_positive(p, q, &t[0], &t[1]);
+        self.predicates.is_positive(p, q, &t[1], &t[2]) == first
+            && self.predicates.is_positive(p, q, &t[2], &t[0]) == first
     }
 
     /// Whether some point beside a shallow crossing, clear of the surface, has a winding number other than 0 and 1.
@@ -185,15 +192,14 @@ impl Surface<'_> {
 
     /// The winding number round a point, by a ray in +x.
     fn winding(&self, point: &[f64; 3]) -> i32 {
-        let first_free = self.operands.vertex_count();
-        let start = Corner { id: first_free, position: *point };
-        let end_x =
-            crate::boolean::classify::winding::beyond(self.low[0].min(point[0]), self.high[0].max(point[0]));
-        let end = Corner { id: first_free + 1, position: [end_x, point[1], point[2]] };
-        let query = self.frame.triangle([&start.position, &start.position, &end.position]);
+        let first_free = self.complex.vertex_count();
+        let corner = |i: u32, position| Corner { id: VertexId::new(first_free + i), position };
+        let end_x = coordinate_past(self.low[0].min(point[0]), self.high[0].max(point[0]));
+        let ray = Ray { start: corner(0, *point), end: corner(1, [end_x, point[1], point[2]]) };
+        let query = self.frame.triangle([&ray.start.position, &ray.start.position, &ray.end.position]);
         let mut sum = 0;
         self.tree.meeting(&query, |t| {
-            sum += crate::boolean::classify::winding::ray_crossing(&self.operands, 0, t, &start, &end)
+            sum += signed_crossing(&self.predicates, &self.complex.corners_of_triangle(0, t), &ray);
         });
         sum
     }
@@ -204,7 +210,7 @@ impl Surface<'_> {
         let (low, high) = (point.map(|x| x - reach), point.map(|x| x + reach));
         let mut clear = true;
         self.tree.meeting(&self.frame.triangle([&low, &high, &high]), |t| {
-            let corners = self.operands.corners(0, t);
+            let corners = self.complex.corners_of_triangle(0, t);
             let near = unit_normal(&corners)
                 .is_none_or(|normal| height(&normal, &corners[0].position, point).abs() < reach);
             let boxed = (0..3).all(|k| {

@@ -8,7 +8,7 @@ use glam::Vec3A;
 use super::refined_boxes::Corners;
 use super::{SAMPLE, corners};
 use crate::Error;
-use crate::boolean::complex::operands::Operands;
+use crate::boolean::complex::Complex;
 use crate::parallel::Runner;
 use crate::spatial::{Cell, Frame, Occupancy, read_ahead};
 
@@ -35,16 +35,16 @@ const TRIANGLES_AT_ONCE: usize = 64;
 /// # Errors
 /// Only limits.
 pub(super) fn cull(
-    operands: &Operands<'_>,
+    complex: &Complex<'_>,
     frame: &Frame,
     coarse_cell: f32,
     runner: Runner<'_>,
 ) -> Result<Option<[Vec<u32>; 2]>, Error> {
-    let near = [operands.near(0), operands.near(1)];
+    let near = [complex.near(0), complex.near(1)];
     // 1. A grid that fits the triangles, if there is one.
-    let Some(grid) = fitting_grid(operands, frame, near, coarse_cell) else { return Ok(None) };
+    let Some(grid) = fitting_grid(complex, frame, near, coarse_cell) else { return Ok(None) };
     // 2. The cells of the vertices.
-    let culling = Culling::new(operands, frame, near, grid, runner);
+    let culling = Culling::new(complex, frame, near, grid, runner);
     // 3. What A passes; a sample of B tells whether to go on.
     let by_a = culling.marked_by(0, near[0])?;
     if culling.is_useless(&by_a) {
@@ -59,12 +59,12 @@ pub(super) fn cull(
 /// An empty grid with cells for the smaller triangles, unless it is hardly finer than cells of `coarse_cell` or too fine for
 /// the larger triangles.
 fn fitting_grid(
-    operands: &Operands<'_>,
+    complex: &Complex<'_>,
     frame: &Frame,
     near: [&[u32]; 2],
     coarse_cell: f32,
 ) -> Option<Occupancy> {
-    let usual = [0, 1].map(|side| UsualSize::new(near[side], |t| corners(operands, frame, side, t)));
+    let usual = [0, 1].map(|side| UsualSize::new(near[side], |t| corners(complex, frame, side, t)));
     let grid = Occupancy::new((CELLS_PER_LENGTH / usual[0].length.min(usual[1].length)) as u32);
     if grid.cell_length() * FINER > coarse_cell {
         return None;
@@ -102,7 +102,7 @@ impl UsualSize {
 
 /// Both operands and a grid.
 struct Culling<'a> {
-    operands: &'a Operands<'a>,
+    complex: &'a Complex<'a>,
     frame: &'a Frame,
     near: [&'a [u32]; 2],
     /// The grid, nothing marked.
@@ -114,25 +114,25 @@ struct Culling<'a> {
 
 impl<'a> Culling<'a> {
     fn new(
-        operands: &'a Operands<'a>,
+        complex: &'a Complex<'a>,
         frame: &'a Frame,
         near: [&'a [u32]; 2],
         grid: Occupancy,
         runner: Runner<'a>,
     ) -> Self {
         let cells_of_vertices = |side: usize| -> Vec<Cell> {
-            let positions = operands.sides[side].positions;
+            let positions = complex.operands[side].positions;
             if 3 * near[side].len() < positions.len() {
                 return Vec::new();
             }
             positions.iter().map(|position| grid.cell(frame.point(position))).collect()
         };
         let (of_a, of_b) = runner.both(|| cells_of_vertices(0), || cells_of_vertices(1));
-        Self { operands, frame, near, of_vertices: [of_a, of_b], grid, runner }
+        Self { complex, frame, near, of_vertices: [of_a, of_b], grid, runner }
     }
 
     fn corners(&self, side: usize, triangle: u32) -> Corners {
-        corners(self.operands, self.frame, side, triangle)
+        corners(self.complex, self.frame, side, triangle)
     }
 
     /// The cells of a triangle's corners.
@@ -140,7 +140,7 @@ impl<'a> Culling<'a> {
         if self.of_vertices[side].is_empty() {
             return self.corners(side, triangle).map(|corner| self.grid.cell(corner));
         }
-        self.operands.sides[side].triangles[triangle as usize].map(|v| self.of_vertices[side][v as usize])
+        self.complex.operands[side].triangles[triangle as usize].map(|v| self.of_vertices[side][v as usize])
     }
 
     /// Calls `visit` with the cells of some triangles, a batch at a time.
@@ -148,7 +148,7 @@ impl<'a> Culling<'a> {
         let mut batch = Vec::with_capacity(TRIANGLES_AT_ONCE);
         for triangles in triangles.chunks(TRIANGLES_AT_ONCE) {
             if self.of_vertices[side].is_empty() {
-                let operand = &self.operands.sides[side];
+                let operand = &self.complex.operands[side];
                 let corners = triangles.iter().flat_map(|&t| operand.triangles[t as usize]);
                 read_ahead(corners.map(|v| operand.positions[v as usize][0].to_bits() as u32));
             }

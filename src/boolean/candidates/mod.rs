@@ -15,7 +15,7 @@ pub(super) mod refined_boxes;
 use obvhs::aabb::Aabb;
 
 use crate::Error;
-use crate::boolean::complex::operands::Operands;
+use crate::boolean::complex::Complex;
 use crate::control::Reservation;
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame, visit_pairs};
@@ -49,7 +49,7 @@ impl Candidates {
     ///
     /// # Errors
     /// Only limits.
-    pub(crate) fn new(operands: &Operands<'_>, overlap: &Overlap, runner: Runner<'_>) -> Result<Self, Error> {
+    pub(crate) fn new(complex: &Complex<'_>, overlap: &Overlap, runner: Runner<'_>) -> Result<Self, Error> {
         runner.control.check()?;
         let Some(common) = overlap.common else {
             let trees = [BoxTree::empty(), BoxTree::empty()];
@@ -58,13 +58,13 @@ impl Candidates {
         };
         // 1. A grid as fine as the triangles rules out most of those that are near.
         let frame = Frame::of(common.low, common.high);
-        let near = [operands.near(0), operands.near(1)];
+        let near = [complex.near(0), complex.near(1)];
         let culled = (near[0].len().min(near[1].len()) >= CULL_FROM)
-            .then(|| cull::cull(operands, &frame, overlap.cell_length, runner))
+            .then(|| cull::cull(complex, &frame, overlap.cell_length, runner))
             .transpose()?
             .flatten();
         let items = [0, 1].map(|side| culled.as_ref().map_or(near[side], |culled| &culled[side]));
-        let corners = |side: usize, t: u32| corners(operands, &frame, side, t);
+        let corners = |side: usize, t: u32| corners(complex, &frame, side, t);
         // 2. Where many are needles, capsules round what is left.
         let many = items[0].len().saturating_mul(items[1].len()) >= CAPSULES_FROM_PAIRS;
         if many && (0..2).any(|side| has_needles(items[side], |t| corners(side, t))) {
@@ -117,7 +117,7 @@ fn has_needles(triangles: &[u32], corners: impl Fn(u32) -> Corners) -> bool {
     needles * NEEDLES_FROM >= sample.len()
 }
 
-fn corners(operands: &Operands<'_>, frame: &Frame, side: usize, triangle: u32) -> Corners {
-    let operand = &operands.sides[side];
+fn corners(complex: &Complex<'_>, frame: &Frame, side: usize, triangle: u32) -> Corners {
+    let operand = &complex.operands[side];
     operand.triangles[triangle as usize].map(|v| frame.point(&operand.positions[v as usize]))
 }

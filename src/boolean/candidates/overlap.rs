@@ -12,7 +12,7 @@
 use obvhs::aabb::Aabb;
 
 use crate::Error;
-use crate::boolean::complex::operands::Operand;
+use crate::boolean::complex::Operand;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::spatial::{Frame, Occupancy, Regions};

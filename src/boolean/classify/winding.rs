@@ -1,4 +1,4 @@
-//! How often the other operand winds round each vertex (kept apart by the intersection curve; step 2 of Vyatkin 2019
+//! How often the other operand winds around each vertex (kept apart by the intersection curve; step 2 of Vyatkin 2019
 //! decides "which parts to throw away").
 //!
 //! Along an edge of A the winding number of B changes by one at every crossing, so one value per connected component of A
@@ -6,69 +6,111 @@
 //! predicate. Vertices in a region of the coarse grid that B does not pass (`overlap`) are one to begin with.
 
 use crate::Error;
-use crate::boolean::arrangement::crossings::Crossings;
-use crate::boolean::arrangement::cut_edges::CutEdges;
-use crate::boolean::arrangement::cut_faces::{CutFaces, UNCUT};
+use crate::boolean::arrangement::curve::Curve;
 use crate::boolean::candidates::overlap::{Overlap, Place};
-use crate::boolean::complex::operands::{Corner, Operand, Operands};
+use crate::boolean::complex::ids::VertexId;
+use crate::boolean::complex::rays;
 use crate::mesh::{Bounds, WeightedUnionFind};
 use crate::parallel::Runner;
-use crate::spatial::{BoxTree, Frame, Regions};
+use crate::spatial::Regions;
 
-/// From this many box tests on, and this many rays, a tree is built for them.
-const TREE_FROM: usize = 1 << 20;
-const TREE_FROM_RAYS: usize = 16;
+/// By operand, the winding number of the other one around each vertex.
+#[derive(Debug)]
+pub(crate) struct Windings {
+    of_vertex: [Vec<i32>; 2],
+    /// How many decisions plain coordinates left open.
+    pub(crate) contacts: u64,
+}
 
-/// The winding number of the other operand round each vertex of `side`. `bounds` is the other operand's box, outside which
-/// all have 0.
-pub(crate) fn of_vertices(
-    operands: &Operands<'_>,
-    side: usize,
-    overlap: &Overlap,
-    bounds: &Bounds,
-    crossings: &Crossings,
-    edges: &CutEdges,
-    faces: &CutFaces,
-    runner: Runner<'_>,
-) -> Result<Vec<i32>, Error> {
-    let operand = &operands.sides[side];
-    let first = operands.first_vertex(side);
-    let places = &overlap.places[side];
-    if places.is_empty() {
-        return Ok(vec![0; operand.positions.len()]);
+impl Windings {
+    /// Finds them for operands with the given boxes, outside which all are 0.
+    ///
+    /// # Errors
+    /// Only limits.
+    pub(crate) fn new(
+        curve: &Curve<'_>,
+        overlap: &Overlap,
+        bounds: &[Bounds; 2],
+        runner: Runner<'_>,
+    ) -> Result<Self, Error> {
+        let of_operand = |operand: usize| winding_numbers(curve, operand, overlap, bounds, runner);
+        let (a, b) = runner.both(|| of_operand(0), || of_operand(1));
+        let ((a, contacts_a), (b, contacts_b)) = (a?, b?);
+        Ok(Self { of_vertex: [a, b], contacts: contacts_a + contacts_b })
     }
-    let mut classes = WindingClasses::new(places, &overlap.regions[side]);
-    let mut next_cut = faces.faces.iter();
-    for &triangle in operands.near(side) {
-        let corners = operand.triangles[triangle as usize];
-        if !faces.is_cut(triangle) {
+
+    /// Around the vertices of an operand.
+    pub(crate) fn of_operand(&self, operand: usize) -> &[i32] {
+        &self.of_vertex[operand]
+    }
+
+    /// Around a vertex of a complex.
+    pub(crate) fn around(&self, curve: &Curve<'_>, vertex: VertexId) -> i32 {
+        let complex = curve.complex;
+        self.of_vertex[complex.owner(vertex)][complex.index_in_operand(vertex)]
+    }
+
+    /// Whether some vertex, or some piece of an edge, has another winding number than 0 and 1: surfaces that cross
+    /// themselves where they were rounded.
+    pub(crate) fn have_repeats(&self, curve: &Curve<'_>) -> bool {
+        let is_repeat = |winding: i32| !(0..=1).contains(&winding);
+        self.of_vertex.iter().flatten().any(|&winding| is_repeat(winding))
+            || curve.edges.iter().any(|(id, edge)| {
+                let mut winding = self.around(curve, edge.low);
+                curve.edges.nodes(id).iter().any(|&node| {
+                    winding += curve.crossings[node].winding_step();
+                    is_repeat(winding)
+                })
+            })
+    }
+}
+
+/// The winding number of the other operand around each vertex of one, and the contacts met.
+fn winding_numbers(
+    curve: &Curve<'_>,
+    operand: usize,
+    overlap: &Overlap,
+    bounds: &[Bounds; 2],
+    runner: Runner<'_>,
+) -> Result<(Vec<i32>, u64), Error> {
+    let Curve { complex, crossings, edges, faces } = curve;
+    let arrays = &complex.operands[operand];
+    let places = &overlap.places[operand];
+    if places.is_empty() {
+        return Ok((vec![0; arrays.positions.len()], 0));
+    }
+    let mut classes = WindingClasses::new(places, &overlap.regions[operand]);
+    // 1. Along edges without crossings nothing changes.
+    let mut next_cut = faces[operand].iter();
+    for &triangle in complex.near(operand) {
+        let corners = arrays.triangles[triangle as usize];
+        if !faces[operand].is_cut(triangle) {
             classes.join(corners[0], corners[1], 0);
             classes.join(corners[1], corners[2], 0);
             continue;
         }
         let face = next_cut.next().expect("cut faces are near, and ascending");
         for k in 0..3 {
-            if face.edges[k] == UNCUT {
+            if face.edges[k].get().is_none() {
                 classes.join(corners[k], corners[(k + 1) % 3], 0);
             }
         }
     }
-    for (index, edge) in edges.edges.iter().enumerate() {
-        if operands.side_of(edge.low) == side {
-            let change: i32 = edges
-                .nodes(index as u32)
-                .iter()
-                .map(|&node| if crossings.nodes[node as usize].leaves { -1 } else { 1 })
-                .sum();
-            classes.join(edge.low - first, edge.high - first, change);
+    // 2. Along the others, each crossing changes it by one.
+    let first = complex.first_vertex(operand);
+    for (id, edge) in edges.iter() {
+        if complex.owner(edge.low) == operand {
+            let change = edges.nodes(id).iter().map(|&node| crossings[node].winding_step()).sum();
+            classes.join(edge.low.number() - first, edge.high.number() - first, change);
         }
     }
+    // 3. One vertex of every component that has none outside the other operand's box is decided by a ray.
     let seeds = classes.unsettled();
-    let values = cast_rays(operands, side, &seeds, bounds, runner)?;
+    let (values, contacts) = rays::winding_numbers(complex, operand, &seeds, &bounds[1 - operand], runner)?;
     for (&seed, value) in seeds.iter().zip(values) {
         classes.settle(seed, value);
     }
-    Ok(classes.values())
+    Ok((classes.values(), contacts))
 }
 
 /// Sets of vertices of one operand whose winding numbers are known relative to each other, with the regions of the coarse
@@ -157,104 +199,4 @@ impl<'a> WindingClasses<'a> {
             })
             .collect()
     }
-}
-
-/// The winding numbers of the other operand round some vertices of `side`, by rays in +x.
-fn cast_rays(
-    operands: &Operands<'_>,
-    side: usize,
-    seeds: &[u32],
-    bounds: &Bounds,
-    runner: Runner<'_>,
-) -> Result<Vec<i32>, Error> {
-    let other = &operands.sides[1 - side];
-    let end_x = beyond(bounds.low[0], bounds.high[0]);
-    let ray = |index: usize| {
-        let start = operands.corner(operands.first_vertex(side) + seeds[index]);
-        let end = Corner {
-            id: operands.vertex_count() + index as u32,
-            position: [end_x, start.position[1], start.position[2]],
-        };
-        (start, end)
-    };
-    if seeds.len() * other.triangles.len() < TREE_FROM || seeds.len() < TREE_FROM_RAYS {
-        return runner.pieces(seeds.len(), 1, |range| {
-            let (start, end) = ray(range.start);
-            let beside = Beside::new(other, &start);
-            let meeting = (0..other.triangles.len() as u32).filter(|&t| beside.may_meet(other, t, &start));
-            meeting.map(|t| ray_crossing(operands, 1 - side, t, &start, &end)).sum()
-        });
-    }
-    let frame = Frame::of(bounds.low, bounds.high);
-    let all: Vec<u32> = (0..other.triangles.len() as u32).collect();
-    let box_of = |t: u32| frame.triangle(other.triangles[t as usize].map(|v| &other.positions[v as usize]));
-    let tree = BoxTree::new(&all, box_of);
-    runner.pieces(seeds.len(), 1, |range| {
-        let (start, end) = ray(range.start);
-        let query = frame.triangle([&start.position, &start.position, &end.position]);
-        let mut sum = 0;
-        tree.meeting(&query, |t| sum += ray_crossing(operands, 1 - side, t, &start, &end));
-        sum
-    })
-}
-
-/// A coordinate beyond an interval.
-pub(crate) fn beyond(low: f64, high: f64) -> f64 {
-    let end = high + (high - low);
-    if end.is_finite() && end > high { end } else { high.next_up().min(f64::MAX) }
-}
-
-/// On which sides of a ray in +x the vertices of an operand lie.
-struct Beside(Vec<u8>);
-
-impl Beside {
-    /// From so many triangles on, every vertex is looked at once instead of once for each of its triangles.
-    const FROM: usize = 256;
-
-    fn new(operand: &Operand<'_>, start: &Corner) -> Self {
-        if operand.triangles.len() < Self::FROM {
-            return Self(Vec::new());
-        }
-        Self(operand.positions.iter().map(|position| Self::of(position, &start.position)).collect())
-    }
-
-    #[inline]
-    fn of(position: &[f64; 3], start: &[f64; 3]) -> u8 {
-        let bit = |is_beside: bool, place: u32| u8::from(is_beside) << place;
-        bit(position[0] < start[0], 0)
-            | bit(position[1] < start[1], 1)
-            | bit(position[1] > start[1], 2)
-            | bit(position[2] < start[2], 3)
-            | bit(position[2] > start[2], 4)
-    }
-
-    /// Whether the ray may meet a triangle: not if all its corners lie on one side.
-    #[inline]
-    fn may_meet(&self, operand: &Operand<'_>, triangle: u32, start: &Corner) -> bool {
-        let of_corners = operand.triangles[triangle as usize].map(|v| match self.0.get(v as usize) {
-            Some(&sides) => sides,
-            None => Self::of(&operand.positions[v as usize], &start.position),
-        });
-        of_corners[0] & of_corners[1] & of_corners[2] == 0
-    }
-}
-
-/// +1 where the way from `start` to `end` leaves the triangle's solid, -1 where it enters it, 0 where they do not meet.
-pub(crate) fn ray_crossing(
-    operands: &Operands<'_>,
-    side: usize,
-    triangle: u32,
-    start: &Corner,
-    end: &Corner,
-) -> i32 {
-    let [a, b, c] = operands.corners(side, triangle);
-    let start_inside = operands.positive(&a, &b, &c, start);
-    if operands.positive(&a, &b, &c, end) == start_inside {
-        return 0;
-    }
-    let ab = operands.positive(start, end, &a, &b);
-    if operands.positive(start, end, &b, &c) != ab || operands.positive(start, end, &c, &a) != ab {
-        return 0;
-    }
-    if start_inside { 1 } else { -1 }
 }

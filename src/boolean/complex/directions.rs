@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashSet;
 
-use crate::boolean::complex::operands::Operand;
+use super::Operand;
 use crate::mesh::Buckets;
 
 /// Largest component of a quantised direction: 10 bits and a sign.

@@ -5,14 +5,16 @@
 //! smallest operands; a symmetric difference goes from left to right.
 
 mod merge_order;
-mod sheets;
+pub(super) mod options;
 
 use std::borrow::Cow;
 
-use crate::boolean::pair::{self, Settings};
+use crate::boolean::complex::operation::{Contact, Operation};
+use crate::boolean::complex::origin::Origin;
+use crate::boolean::pair::{self, Combined, Settings};
 use crate::boolean::result::certificate::{Notes, OperandState};
 use crate::boolean::result::origins::Origins;
-use crate::boolean::{Contact, Operation, Options, Origin, Outcome};
+use crate::boolean::result::outcome::Outcome;
 use crate::exact::{Projection, Sign, orient2d};
 use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
@@ -21,6 +23,15 @@ use crate::{Error, Mesh, Solid};
 /// From this many triangles on, threads are worth waking.
 const PARALLEL_FROM: usize = 4_096;
 
+/// What a result is to be like.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Policy {
+    /// What becomes of operands that touch.
+    pub(crate) contact: Contact,
+    /// Whether vertices that nobody needs are left out where the operation cuts.
+    pub(crate) remove_vertices: bool,
+}
+
 /// An operand, or what some of them have become.
 struct Partial<'a> {
     solid: Cow<'a, Solid>,
@@ -28,14 +39,17 @@ struct Partial<'a> {
     origins: Origins,
     /// The result's group of each triangle; empty if no operand has groups.
     groups: Vec<u32>,
-    ties: u64,
+    /// How many decisions on the way plain coordinates left open.
+    contacts: u64,
     /// Whether rounding turned over some triangle on the way.
     may_be_inverted: bool,
+    /// How often a step of the clean-up stopped at its bound on the way.
+    clean_up_stopped: u64,
 }
 
 impl<'a> Partial<'a> {
     fn new(solid: Cow<'a, Solid>, origins: Origins, groups: Vec<u32>) -> Self {
-        Self { solid, origins, groups, ties: 0, may_be_inverted: false }
+        Self { solid, origins, groups, contacts: 0, may_be_inverted: false, clean_up_stopped: 0 }
     }
 
     /// The middle of its box.
@@ -46,7 +60,7 @@ impl<'a> Partial<'a> {
 
 /// Runs an operation over all operands.
 pub(crate) fn run(
-    options: &Options,
+    policy: Policy,
     operation: Operation,
     operands: &[&Solid],
     runner: Runner<'_>,
@@ -61,12 +75,14 @@ pub(crate) fn run(
                 let origins = Origins::of_operand(i as u32, solid.mesh().triangles.len());
                 return Partial::new(Cow::Borrowed(*solid), origins, groups);
             }
+            // The perturbation moves vertices: surfaces that touch in one need a vertex each.
             let (solid, source) = solid.separated();
             let groups = groups.of_operand(i, &solid);
-            Partial::new(Cow::Owned(solid), sheets::origins(i as u32, &source), groups)
+            let origin = |&triangle: &u32| Origin { operand: i as u32, triangle, reversed: false };
+            Partial::new(Cow::Owned(solid), source.iter().map(origin).collect(), groups)
         })
         .collect();
-    let engine = Engine { options, runner };
+    let engine = Engine { policy, runner };
     let result = match operation {
         Operation::Union => engine.union(partials)?,
         Operation::Difference => {
@@ -85,15 +101,16 @@ pub(crate) fn run(
         Operation::SymmetricDifference => engine.fold(Operation::SymmetricDifference, partials)?,
     };
     let notes = Notes {
-        contacts: result.ties,
+        contacts: result.contacts,
         inverted: if result.may_be_inverted { count_inverted(&result, operands) } else { 0 },
+        clean_up_stopped: result.clean_up_stopped,
         operands: operands.iter().map(|solid| OperandState::of(solid)).collect(),
     };
     Ok(finish(result, groups.list, notes))
 }
 
 struct Engine<'o> {
-    options: &'o Options,
+    policy: Policy,
     runner: Runner<'o>,
 }
 
@@ -118,7 +135,7 @@ impl Engine<'_> {
             self.runner.control.report("uniting", done as f64 / merges as f64)?;
             // Whole merges side by side while there are enough of them, else parallel inside each.
             let inside = if pairs.len() >= 8 { self.runner.serial() } else { self.runner };
-            let engine = Engine { options: self.options, runner: inside };
+            let engine = Engine { policy: self.policy, runner: inside };
             let merged = self.runner.pieces(pairs.len(), 1, |range| {
                 let [x, y] = pairs[range.start].map(|place| places[place].as_ref());
                 let both = x.zip(y).expect("a place is taken until it is merged into another");
@@ -139,14 +156,15 @@ impl Engine<'_> {
         b: &Partial<'_>,
     ) -> Result<Partial<'a>, Error> {
         let settings = Settings {
-            fuse: self.options.contact == Contact::Fuse,
+            fuse: self.policy.contact == Contact::Fuse,
             glue: operation == Operation::SymmetricDifference,
-            remove_vertices: self.options.remove_vertices,
+            remove_vertices: self.policy.remove_vertices,
             groups: [&a.groups, &b.groups],
         };
         let triangles = a.solid.mesh().triangles.len() + b.solid.mesh().triangles.len();
         let runner = if triangles < PARALLEL_FROM { self.runner.serial() } else { self.runner };
-        let made = pair::combine(operation, &a.solid, &b.solid, settings, runner)?;
+        let Combined { arrays: made, contacts } =
+            pair::combine(operation, &a.solid, &b.solid, settings, runner)?;
         let sources = [a, b];
         let groups = if a.groups.is_empty() {
             Vec::new()
@@ -156,13 +174,14 @@ impl Engine<'_> {
                 .map(|origin| sources[origin.operand as usize].groups[origin.triangle as usize])
                 .collect()
         };
-        let origins = made.origins.through([&a.origins, &b.origins]);
+        let origins = made.origins.compose([&a.origins, &b.origins]);
         Ok(Partial {
             solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(made.positions, made.triangles))),
             origins,
             groups,
-            ties: a.ties + b.ties + made.ties,
+            contacts: a.contacts + b.contacts + contacts,
             may_be_inverted: a.may_be_inverted || b.may_be_inverted || made.has_inverted,
+            clean_up_stopped: a.clean_up_stopped + b.clean_up_stopped + made.clean_up_stopped,
         })
     }
 }

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rustc_hash::FxHashMap;
 
 use crate::Error;
+use crate::boolean::complex::ids::PointId;
 use crate::parallel::{Runner, parts};
 
 /// Which points a result uses, and their numbers in it.
@@ -16,17 +17,17 @@ pub(crate) struct Numbers {
     /// By point; first one of the states below, then its number.
     numbers: Vec<u32>,
     /// Numbers of vertices that are not kept where they were, and stand for another point.
-    of_others: FxHashMap<u32, u32>,
+    of_others: FxHashMap<PointId, u32>,
     /// Points that were once in doubt.
-    doubtful: Vec<u32>,
-    /// By side, whether every kept vertex has the winding number 0 or 1.
+    doubtful: Vec<PointId>,
+    /// By operand, whether every kept vertex has the winding number 0 or 1.
     once: Vec<bool>,
     positions: Vec<[f64; 3]>,
     points: usize,
 }
 
-/// So many points are looked at by one thread at once.
-const PIECE: usize = 1 << 16;
+/// Points that one thread looks at before another may take the rest.
+const POINTS_PER_SHARE: usize = 1 << 16;
 
 /// States of points before they are numbered. A vertex that is not kept but in use stands for another point.
 const KEPT: u32 = u32::MAX - 1;
@@ -37,7 +38,7 @@ impl Numbers {
     /// The number of what is not in the result.
     pub(crate) const NONE: u32 = u32::MAX;
 
-    /// For so many points.
+    /// For a number of points.
     pub(crate) fn new(points: usize) -> Self {
         Self {
             numbers: Vec::with_capacity(points),
@@ -49,7 +50,7 @@ impl Numbers {
         }
     }
 
-    /// Adds the vertices of the next side by their winding numbers.
+    /// Adds the vertices of the next operand by their winding numbers.
     ///
     /// # Errors
     /// Only limits.
@@ -72,7 +73,7 @@ impl Numbers {
         if runner.is_parallel() {
             let start = self.numbers.len();
             self.numbers.resize(start + windings.len(), 0);
-            runner.fill(&mut self.numbers[start..], PIECE, |first, states| {
+            runner.fill(&mut self.numbers[start..], POINTS_PER_SHARE, |first, states| {
                 states.iter_mut().zip(&windings[first..]).for_each(|(of, winding)| *of = state(winding));
             })?;
         } else {
@@ -87,15 +88,15 @@ impl Numbers {
         self.numbers.resize(self.points, DOUBTFUL);
     }
 
-    /// Whether all winding numbers round the vertices of a side are 0 or 1.
-    pub(crate) fn are_once(&self, side: usize) -> bool {
-        self.once[side]
+    /// Whether all winding numbers around the vertices of an operand are 0 or 1.
+    pub(crate) fn are_once(&self, operand: usize) -> bool {
+        self.once[operand]
     }
 
     /// Doubts that a point is in use.
     #[inline]
-    pub(crate) fn doubt(&mut self, point: u32) {
-        let state = &mut self.numbers[point as usize];
+    pub(crate) fn doubt(&mut self, point: PointId) {
+        let state = &mut self.numbers[point.index()];
         if *state == KEPT {
             *state = DOUBTFUL;
             self.doubtful.push(point);
@@ -104,8 +105,8 @@ impl Numbers {
 
     /// Marks a point as in use.
     #[inline]
-    pub(crate) fn mark(&mut self, point: u32) {
-        let state = &mut self.numbers[point as usize];
+    pub(crate) fn mark(&mut self, point: PointId) {
+        let state = &mut self.numbers[point.index()];
         *state = match *state {
             Self::NONE | STANDS => STANDS,
             _ => KEPT,
@@ -114,8 +115,8 @@ impl Numbers {
 
     /// Whether it is not known whether a point is in use.
     #[inline]
-    pub(crate) fn is_doubtful(&self, point: u32) -> bool {
-        self.numbers[point as usize] == DOUBTFUL
+    pub(crate) fn is_doubtful(&self, point: PointId) -> bool {
+        self.numbers[point.index()] == DOUBTFUL
     }
 
     /// Whether that is not known of some point.
@@ -129,12 +130,12 @@ impl Numbers {
     /// Only limits.
     pub(crate) fn count(
         &mut self,
-        position: impl Fn(u32) -> [f64; 3] + Sync,
-        representative: impl Fn(u32) -> u32,
+        position: impl Fn(PointId) -> [f64; 3] + Sync,
+        representative: impl Fn(PointId) -> PointId,
         runner: Runner<'_>,
     ) -> Result<(), Error> {
         let of_others = if runner.is_parallel() {
-            self.count_side_by_side(position, runner)?
+            self.count_in_parallel(position, runner)?
         } else {
             self.positions.reserve(self.points);
             number(&mut self.numbers, 0, 0, |point| self.positions.push(position(point)))
@@ -143,25 +144,25 @@ impl Numbers {
         for &point in &self.doubtful {
             let other = representative(point);
             if other != point {
-                self.numbers[point as usize] = self.of(other);
+                self.numbers[point.index()] = self.of(other);
             }
         }
         Ok(())
     }
 
-    /// Numbers the points piece by piece, after those in use have been counted in each.
-    fn count_side_by_side(
+    /// Numbers the points share by share, after those in use have been counted in each.
+    fn count_in_parallel(
         &mut self,
-        position: impl Fn(u32) -> [f64; 3] + Sync,
+        position: impl Fn(PointId) -> [f64; 3] + Sync,
         runner: Runner<'_>,
-    ) -> Result<Vec<(u32, u32)>, Error> {
+    ) -> Result<Vec<(PointId, u32)>, Error> {
         let states = &self.numbers;
         let is_used = |state: &&u32| [KEPT, STANDS].contains(state);
-        let counts =
-            runner.pieces(states.len(), PIECE, |range| states[range].iter().filter(is_used).count())?;
+        let counts = runner
+            .pieces(states.len(), POINTS_PER_SHARE, |range| states[range].iter().filter(is_used).count())?;
         self.positions = vec![[0.0; 3]; counts.iter().sum()];
         let (mut start, mut next) = (0, 0);
-        let pieces = self.numbers.chunks_mut(PIECE).zip(parts(&mut self.positions, counts));
+        let pieces = self.numbers.chunks_mut(POINTS_PER_SHARE).zip(parts(&mut self.positions, counts));
         let pieces = pieces.map(|(states, positions)| {
             let first = (start, next);
             (start, next) = (start + states.len() as u32, next + positions.len() as u32);
@@ -180,16 +181,16 @@ impl Numbers {
 
     /// The number of a point in use.
     #[inline]
-    pub(crate) fn of(&self, point: u32) -> u32 {
-        match self.numbers[point as usize] {
+    pub(crate) fn of(&self, point: PointId) -> u32 {
+        match self.numbers[point.index()] {
             Self::NONE => self.of_others.get(&point).copied().unwrap_or(Self::NONE),
             number => number,
         }
     }
 
-    /// The numbers of kept vertices from the first of a side on; [`NONE`](Self::NONE) for the others.
-    pub(crate) fn of_side(&self, first: u32) -> &[u32] {
-        &self.numbers[first as usize..]
+    /// The numbers of points from `first` on that are kept where they were; [`NONE`](Self::NONE) for the others.
+    pub(crate) fn from(&self, first: PointId) -> &[u32] {
+        &self.numbers[first.index()..]
     }
 
     /// The positions of the points in use, by number.
@@ -200,9 +201,14 @@ impl Numbers {
 
 /// Numbers the points in use from `next` on, of points from `start` on with the given states, and calls `add` for each.
 /// Returns those that stand for others with their numbers.
-fn number(states: &mut [u32], start: u32, mut next: u32, mut add: impl FnMut(u32)) -> Vec<(u32, u32)> {
+fn number(
+    states: &mut [u32],
+    start: u32,
+    mut next: u32,
+    mut add: impl FnMut(PointId),
+) -> Vec<(PointId, u32)> {
     let mut of_others = Vec::new();
-    for (point, state) in (start..).zip(states) {
+    for (point, state) in (start..).map(PointId::new).zip(states) {
         *state = match *state {
             KEPT => next,
             STANDS => {

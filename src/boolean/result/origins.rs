@@ -1,15 +1,15 @@
 //! Where triangles came from: untouched triangles keep their order, so a bit for each triangle of an operand tells most of it.
 
-use crate::boolean::result::outcome::Origin;
+use crate::boolean::complex::origin::Origin;
 
 /// A list of [`Origin`]s.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Origins {
-    pieces: Vec<Piece>,
+    stretches: Vec<Stretch>,
 }
 
 #[derive(Clone, Debug)]
-enum Piece {
+enum Stretch {
     Kept(Kept),
     Runs(Vec<Run>),
 }
@@ -24,7 +24,7 @@ pub(crate) struct Kept {
 
 impl Kept {
     /// None yet of `count` triangles of an operand from `first` on.
-    pub(crate) fn none_of(first: Origin, count: usize) -> Self {
+    pub(crate) fn none(first: Origin, count: usize) -> Self {
         Self { first, bits: vec![0; count.div_ceil(64)] }
     }
 
@@ -65,7 +65,7 @@ struct Run {
 
 impl Run {
     /// Whether another run follows on this one.
-    fn goes_on_with(&self, next: &Origin) -> bool {
+    fn is_continued_by(&self, next: &Origin) -> bool {
         let Origin { operand, triangle, reversed } = self.first;
         (operand, reversed) == (next.operand, next.reversed) && triangle + self.count == next.triangle
     }
@@ -88,7 +88,7 @@ impl Origins {
 
     /// Appends kept triangles.
     pub(crate) fn push_kept(&mut self, kept: Kept) {
-        self.pieces.push(Piece::Kept(kept));
+        self.stretches.push(Stretch::Kept(kept));
     }
 
     #[inline]
@@ -96,12 +96,12 @@ impl Origins {
         if run.count == 0 {
             return;
         }
-        if !matches!(self.pieces.last(), Some(Piece::Runs(_))) {
-            self.pieces.push(Piece::Runs(Vec::new()));
+        if !matches!(self.stretches.last(), Some(Stretch::Runs(_))) {
+            self.stretches.push(Stretch::Runs(Vec::new()));
         }
-        if let Some(Piece::Runs(runs)) = self.pieces.last_mut() {
+        if let Some(Stretch::Runs(runs)) = self.stretches.last_mut() {
             match runs.last_mut() {
-                Some(last) if last.goes_on_with(&run.first) => last.count += run.count,
+                Some(last) if last.is_continued_by(&run.first) => last.count += run.count,
                 _ => runs.push(run),
             }
         }
@@ -109,7 +109,7 @@ impl Origins {
 
     /// Appends another list.
     pub(crate) fn append(&mut self, other: Self) {
-        self.pieces.extend(other.pieces);
+        self.stretches.extend(other.stretches);
     }
 
     /// All, one by one.
@@ -120,14 +120,14 @@ impl Origins {
     }
 
     /// The origins of the origins: `sources` are those of the operands.
-    pub(crate) fn through(mut self, sources: [&Self; 2]) -> Self {
+    pub(crate) fn compose(mut self, sources: [&Self; 2]) -> Self {
         // Nearly always the operands are whole: only their numbers change.
         if let [Some(a), Some(b)] = sources.map(Self::whole_operand) {
-            for piece in &mut self.pieces {
+            for stretch in &mut self.stretches {
                 let renumber = |origin: &mut Origin| origin.operand = [a, b][origin.operand as usize];
-                match piece {
-                    Piece::Kept(kept) => renumber(&mut kept.first),
-                    Piece::Runs(runs) => runs.iter_mut().for_each(|run| renumber(&mut run.first)),
+                match stretch {
+                    Stretch::Kept(kept) => renumber(&mut kept.first),
+                    Stretch::Runs(runs) => runs.iter_mut().for_each(|run| renumber(&mut run.first)),
                 }
             }
             return self;
@@ -145,16 +145,16 @@ impl Origins {
 
     /// The operand, if these are its first triangles.
     fn whole_operand(&self) -> Option<u32> {
-        let [Piece::Runs(runs)] = self.pieces.as_slice() else { return None };
+        let [Stretch::Runs(runs)] = self.stretches.as_slice() else { return None };
         let [run] = runs.as_slice() else { return None };
         (run.first.triangle == 0 && !run.first.reversed).then_some(run.first.operand)
     }
 
     fn runs(&self) -> impl Iterator<Item = Run> {
-        self.pieces.iter().flat_map(|piece| {
-            let (kept, runs) = match piece {
-                Piece::Kept(kept) => (Some(kept.runs()), [].iter()),
-                Piece::Runs(runs) => (None, runs.iter()),
+        self.stretches.iter().flat_map(|stretch| {
+            let (kept, runs) = match stretch {
+                Stretch::Kept(kept) => (Some(kept.runs()), [].iter()),
+                Stretch::Runs(runs) => (None, runs.iter()),
             };
             kept.into_iter().flatten().chain(runs.copied())
         })
@@ -239,7 +239,7 @@ mod tests {
                     Origin { reversed: source.reversed != origin.reversed, ..source }
                 })
                 .collect();
-            let through = runs.through(sources.each_ref());
+            let through = runs.compose(sources.each_ref());
             assert_eq!(through.iter().collect::<Vec<_>>(), expected);
         }
     }
@@ -250,7 +250,7 @@ mod tests {
         for count in [0, 1, 63, 64, 65, 128, 1_000] {
             for share in [0.0, 0.3, 0.9, 1.0] {
                 let first = Origin { operand: 1, triangle: 17, reversed: rng.random() };
-                let (mut kept, mut list) = (Kept::none_of(first, count), Vec::new());
+                let (mut kept, mut list) = (Kept::none(first, count), Vec::new());
                 for place in (0..count).filter(|_| rng.random_bool(share)).collect::<Vec<_>>() {
                     kept.bits_mut()[place / 64] |= 1 << (place % 64);
                     list.push(Origin { triangle: 17 + place as u32, ..first });
@@ -263,7 +263,7 @@ mod tests {
                 assert_eq!(origins.iter().collect::<Vec<_>>(), list, "{share} of {count}");
 
                 let whole = [7, 5].map(|operand| Origins::of_operand(operand, 2_000));
-                let renumbered = origins.clone().through(whole.each_ref());
+                let renumbered = origins.clone().compose(whole.each_ref());
                 let expected =
                     list.iter().map(|origin| Origin { operand: [7, 5][origin.operand as usize], ..*origin });
                 assert!(renumbered.iter().eq(expected));
@@ -271,7 +271,7 @@ mod tests {
                     .filter(|_| rng.random_bool(0.5))
                     .map(|triangle| Origin { operand: 0, triangle, reversed: true })
                     .collect();
-                let through = places.iter().copied().collect::<Origins>().through([&origins, &whole[1]]);
+                let through = places.iter().copied().collect::<Origins>().compose([&origins, &whole[1]]);
                 let turned = |origin: &Origin| {
                     let source = list[origin.triangle as usize];
                     Origin { reversed: !source.reversed, ..source }

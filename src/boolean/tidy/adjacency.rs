@@ -2,41 +2,39 @@
 
 use rustc_hash::FxHashMap;
 
-use super::patch::Face;
+use super::face::{Face, LocalFace, LocalPoint, sides};
 use crate::mesh::Buckets;
 
 /// No triangle.
-const NONE: u32 = u32::MAX;
-/// Up to so many edges of a point are looked through one by one.
-const FEW: usize = 16;
+const NONE: LocalFace = LocalFace(u32::MAX);
+/// Edges that start at one point up to which a linear search is used: a binary search mispredicts its branches, which costs
+/// more than reading 128 bytes.
+const LINEAR_SEARCH_EDGES: usize = 16;
 
 /// The adjacency of a surface in which every directed edge occurs once.
 ///
-/// The edges there are at first are kept by the point they start at: looking one up then touches memory near that of its
-/// neighbours, which a hash map would not. Edges made later are few.
+/// The first edges are kept by the point they start at: looking one up then touches memory near that of its neighbours, which
+/// a hash map would not. Edges made later are few.
 #[derive(Default)]
 pub(super) struct Adjacency {
     /// For each point the edges that start at it: where they end, ascending, and the triangle to their left, or [`NONE`].
-    edges: Option<Buckets<(u32, u32)>>,
+    edges: Option<Buckets<(LocalPoint, LocalFace)>>,
     /// The triangles to the left of other edges.
-    more: FxHashMap<(u32, u32), u32>,
+    more: FxHashMap<(LocalPoint, LocalPoint), LocalFace>,
     /// Some triangle at each point, or [`NONE`].
-    some_face: Vec<u32>,
+    some_face: Vec<LocalFace>,
 }
 
 impl Adjacency {
-    /// The adjacency of triangles between so many points.
+    /// The adjacency of triangles between `points` points. O(triangles), and a sort of the edges at each point.
     pub(super) fn new(points: usize, faces: &[Face]) -> Self {
-        let alive = (0..).zip(faces).filter(|(_, face)| face.alive);
+        let alive = (0..).map(LocalFace).zip(faces).filter(|(_, face)| face.alive);
         let mut some_face = vec![NONE; points];
         for (index, face) in alive.clone() {
-            face.corners.iter().for_each(|&corner| some_face[corner as usize] = index);
+            face.corners.iter().for_each(|corner| some_face[corner.index()] = index);
         }
-        let sides = alive.flat_map(|(index, face)| {
-            let [a, b, c] = face.corners;
-            [(a, (b, index)), (b, (c, index)), (c, (a, index))]
-        });
-        let mut edges = Buckets::new(points, sides);
+        let by_start = alive.flat_map(|(index, face)| face.sides().map(|(from, to)| (from.0, (to, index))));
+        let mut edges = Buckets::new(points, by_start);
         for edges in edges.each_mut() {
             edges.sort_unstable();
             // At the border an edge may occur more than once; the last one counts, and the first is what is found.
@@ -51,9 +49,9 @@ impl Adjacency {
 
     /// The triangle to the left of a directed edge.
     #[inline]
-    pub(super) fn left_of(&self, from: u32, to: u32) -> Option<u32> {
-        let edges = self.edges.as_ref()?.get(from as usize);
-        match place(edges, to) {
+    pub(super) fn left_of(&self, from: LocalPoint, to: LocalPoint) -> Option<LocalFace> {
+        let edges = self.edges.as_ref()?.get(from.index());
+        match find_edge(edges, to) {
             Some(place) => Some(edges[place].1).filter(|&face| face != NONE),
             None if self.more.is_empty() => None,
             None => self.more.get(&(from, to)).copied(),
@@ -61,42 +59,41 @@ impl Adjacency {
     }
 
     /// Some triangle at a point.
-    pub(super) fn some_face(&self, point: u32) -> Option<u32> {
-        self.some_face.get(point as usize).copied().filter(|&face| face != NONE)
+    pub(super) fn some_face(&self, point: LocalPoint) -> Option<LocalFace> {
+        self.some_face.get(point.index()).copied().filter(|&face| face != NONE)
     }
 
     /// Takes a triangle in.
-    pub(super) fn link(&mut self, index: u32, corners: [u32; 3]) {
-        for k in 0..3 {
-            self.set(corners[k], corners[(k + 1) % 3], index);
-            self.some_face[corners[k] as usize] = index;
+    pub(super) fn link(&mut self, face: LocalFace, corners: [LocalPoint; 3]) {
+        for (from, to) in sides(corners) {
+            self.set(from, to, face);
+            self.some_face[from.index()] = face;
         }
     }
 
     /// Leaves a triangle out; its corners have no triangle then that they are known by.
-    pub(super) fn unlink(&mut self, corners: [u32; 3]) {
-        for k in 0..3 {
-            self.set(corners[k], corners[(k + 1) % 3], NONE);
-            self.some_face[corners[k] as usize] = NONE;
+    pub(super) fn unlink(&mut self, corners: [LocalPoint; 3]) {
+        for (from, to) in sides(corners) {
+            self.set(from, to, NONE);
+            self.some_face[from.index()] = NONE;
         }
     }
 
     /// Finds triangles for those corners of a triangle that are known by none.
-    pub(super) fn find_some_faces(&mut self, corners: [u32; 3]) {
-        for k in 0..3 {
-            let (from, to) = (corners[k], corners[(k + 1) % 3]);
-            if self.some_face[from as usize] == NONE
+    pub(super) fn find_some_faces(&mut self, corners: [LocalPoint; 3]) {
+        for (from, to) in sides(corners) {
+            if self.some_face[from.index()] == NONE
                 && let Some(face) = self.left_of(from, to)
             {
-                self.some_face[from as usize] = face;
+                self.some_face[from.index()] = face;
             }
         }
     }
 
-    fn set(&mut self, from: u32, to: u32, face: u32) {
+    fn set(&mut self, from: LocalPoint, to: LocalPoint, face: LocalFace) {
         if let Some(buckets) = &mut self.edges {
-            let edges = buckets.get_mut(from as usize);
-            if let Some(place) = place(edges, to) {
+            let edges = buckets.get_mut(from.index());
+            if let Some(place) = find_edge(edges, to) {
                 edges[place].1 = face;
                 return;
             }
@@ -109,10 +106,10 @@ impl Adjacency {
     }
 }
 
-/// Where an edge is among those from its start.
+/// The position of the edge to a point among those from its start, which are sorted.
 #[inline]
-fn place(edges: &[(u32, u32)], to: u32) -> Option<usize> {
-    let place = if edges.len() <= FEW {
+fn find_edge(edges: &[(LocalPoint, LocalFace)], to: LocalPoint) -> Option<usize> {
+    let place = if edges.len() <= LINEAR_SEARCH_EDGES {
         edges.iter().position(|edge| edge.0 >= to)?
     } else {
         edges.partition_point(|edge| edge.0 < to)

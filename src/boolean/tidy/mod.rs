@@ -1,164 +1,209 @@
-//! Tidying what identification and rounding left behind, near the intersection curve only.
+//! Clean-up of what snapping and rounding left behind, near the intersection curve only.
 //!
 //! Cutting always gives a closed surface, but where bodies touch it may pass through an edge or a vertex more than once,
-//! hold opposite copies of a triangle, triangles without area, and vertices nobody needs. Five steps mend that: cancel,
-//! pair (make it 2-manifold), flip, remove, collapse. They work on a patch: the pieces of cut faces and the kept triangles
-//! round their points. All else keeps its bits and its order.
+//! hold opposite copies of a triangle, triangles without area, and needless vertices. The steps of [`attempt`] mend that, on
+//! a [`Patch`]: the pieces of cut faces and the kept triangles around their points. All else keeps its bits and its order.
+//!
+//! Every loop that could go on for long has a bound; where one stops with work left, the result is still closed, and
+//! [`Tidied::stopped`] counts it.
 
 mod adjacency;
-mod kept;
+mod chain;
+mod edge_points;
+mod face;
+mod flatness;
+mod flip;
+mod gather;
 mod lines;
 mod patch;
 mod point_grid;
-mod remove;
+mod remove_vertices;
+mod separate;
 mod shared_edges;
 mod short_edges;
+mod snap;
+mod source;
 mod split_faces;
-mod zero_area;
+mod splits;
 
-use crate::boolean::classify::multiplicity::Part;
-use crate::boolean::complex::planes::Planes;
-use crate::boolean::cut::Cutter;
-use crate::boolean::result::assemble::NewTriangle;
-use crate::mesh::BitSet;
-use crate::mesh::{HalfEdges, make_manifold};
+use crate::boolean::classify::body::Body;
+use crate::boolean::complex::ids::PointId;
+use crate::boolean::cut::piece::Piece;
 use crate::parallel::Runner;
 use crate::{Control, Error};
-use patch::Patch;
-use rustc_hash::FxHashSet;
+use face::LocalPoint;
+use patch::{Patch, Tidied};
+use separate::Separation;
+use source::Source;
 
-/// How often all steps are repeated while triangles without area are left.
-const ROUNDS: usize = 3;
+/// Rounds of all steps while triangles without area are left. Collapsing and flipping may leave some for the next round;
+/// what is left after three is kept by the rest of the surface, and further rounds would leave it too.
+const MOST_ROUNDS: usize = 3;
 
-/// What tidying made of the pieces.
-pub(super) struct Tidied {
-    pub(super) new: Vec<NewTriangle>,
-    /// Uncut triangles that are replaced, by side.
-    pub(super) replaced: [BitSet; 2],
-    /// Positions of points made here; they are numbered after the nodes.
-    pub(super) copies: Vec<[f64; 3]>,
-}
-
-/// Settings of tidying.
+/// Settings of the clean-up.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Settings {
-    /// Whether vertices that nobody needs are removed.
+    /// Whether needless vertices are removed, and faces of one plane triangulated together.
     pub(super) remove_vertices: bool,
-    /// The size of rounding: edges and heights up to this are not worth a triangle.
+    /// What a rounded point can be off, in units of the coordinates: edges and heights up to this are not worth a triangle.
     pub(super) rounding: f64,
-    /// Whether points at the same place become one where operands touch.
+    /// Whether points at the same place are snapped to one where operands touch.
     pub(super) glue: bool,
-    /// Whether to look even where nothing points to work.
+    /// How many decisions plain coordinates left open: without any, nothing touches.
+    pub(super) contacts: u64,
+    /// Whether to clean up even where nothing points to work.
     pub(super) always: bool,
 }
 
-/// Tidies the pieces of a result; `None` where there is nothing to do.
+/// Cleans up the pieces of a result; `None` where there is nothing to do. O(n) to look, and O(k log k) for the k triangles
+/// near the curve.
+///
+/// # Errors
+/// Those of the limits.
 pub(super) fn tidy(
-    cutter: &Cutter<'_>,
-    planes: &Planes<'_>,
-    parts: &[Part],
-    pieces: &[NewTriangle],
+    body: Body<'_>,
+    pieces: &[Piece],
     settings: &Settings,
     runner: Runner<'_>,
 ) -> Result<Option<Tidied>, Error> {
-    let first_node = cutter.operands.vertex_count();
-    let mut candidates: Vec<u32> = cutter.plane_faces.left().iter().map(|node| first_node + node).collect();
-    let regular =
-        !settings.always && cutter.identification.is_empty() && candidates.is_empty() && !has_repeats(cutter);
-    if regular {
+    let source = Source { body, rounding: settings.rounding, has_contacts: settings.contacts > 0 };
+    if !settings.always && !source.needs_clean_up() {
         return Ok(None);
     }
     runner.control.check()?;
+    let mut candidates = source.points_on_coplanar_edges();
     if settings.remove_vertices {
-        candidates.extend(cutter.identification.representatives());
+        candidates.extend(source.representatives());
     }
     // Where an operand touches itself, triangles may come apart at points that are not wholly in the patch. Then all starts
     // again with those; each is taken in but once.
-    let mut others = FxHashSet::default();
+    let mut extra: Vec<PointId> = Vec::new();
     loop {
-        let patch = Patch::new(cutter, parts, pieces, &others);
-        match tidied(patch, cutter, settings, planes, candidates.clone(), runner)? {
-            Ok(tidied) => return Ok(Some(tidied)),
-            Err(pinched) => others.extend(pinched),
+        let patch = gather::gather(source, pieces, &extra);
+        // Candidates that are not in the patch need no look.
+        let local = candidates.iter().filter_map(|&point| patch.find_point(point)).collect();
+        match attempt(patch, local, settings, runner.control)? {
+            Attempt::Done(tidied) => return Ok(Some(tidied)),
+            Attempt::Widen(points) => extra.extend(points),
         }
     }
 }
 
-/// Runs all steps on a patch; or the points that must be wholly in it.
-fn tidied(
+/// What one attempt came to.
+enum Attempt {
+    Done(Tidied),
+    /// The patch was too small: it must have all triangles at these vertices or nodes too.
+    Widen(Vec<PointId>),
+}
+
+/// Runs all steps on a patch. The candidates are the points that may turn out to be needless.
+fn attempt(
     mut patch: Patch<'_>,
-    cutter: &Cutter<'_>,
+    mut candidates: Vec<LocalPoint>,
     settings: &Settings,
-    planes: &Planes<'_>,
-    mut candidates: Vec<u32>,
-    runner: Runner<'_>,
-) -> Result<Result<Tidied, FxHashSet<u32>>, Error> {
-    // By the patch's own numbers; those that are not in it need no look.
-    candidates = candidates.into_iter().filter_map(|point| patch.here(point)).collect();
-    if cutter.operands.ties() > 0 {
-        zero_area::mark_flat(&mut patch, cutter);
+    control: &Control,
+) -> Result<Attempt, Error> {
+    let has_contacts = patch.source().has_contacts;
+    let merge = settings.remove_vertices;
+    if has_contacts {
+        flatness::mark_flat(&mut patch);
     }
-    let mergeable = settings.remove_vertices.then_some(planes);
-    for round in 0..ROUNDS {
-        let glue = settings.glue && round == 0;
-        let copied_from = separate(&mut patch, cutter, glue, mergeable, runner.control)?;
-        let pinched = patch.pinched(&copied_from);
-        if !pinched.is_empty() {
-            return Ok(Err(pinched.into_iter().map(|point| patch.number(point)).collect()));
+    for round in 1.. {
+        // 1. Triangles without area: first all those of one line at once, then what is left one by one.
+        lines::remove_flat_by_line(&mut patch, merge);
+        chain::remove_flat(&mut patch);
+        patch.cancel();
+        // 2. Points at the same place become one, where that is asked for.
+        if settings.glue && has_contacts && round == 1 {
+            snap::snap_coincident(&mut patch);
         }
-        candidates.extend(copied_from.into_iter().flat_map(|(copy, of)| [copy, of]));
-        runner.control.check()?;
+        // 3. Edges that lie on one another are subdivided alike; coplanar strips are triangulated as one.
+        let half_edges = shared_edges::subdivide(&mut patch, has_contacts, merge, control)?;
+        // 4. Triangles are paired at edges, and vertices with several fans are split: a 2-manifold.
+        match separate::separate(&mut patch, &half_edges) {
+            Separation::Connected(points) => candidates.extend(points),
+            Separation::Incomplete(points) => {
+                let points = points.into_iter().map(|point| patch.source_point(point));
+                return Ok(Attempt::Widen(points.collect()));
+            }
+        }
+        control.check()?;
+        // 5. Needless vertices are removed.
         if settings.remove_vertices {
-            zero_area::flip(&mut patch, 0.0);
-            remove::remove(&mut patch, planes, candidates.clone(), runner.control)?;
+            flip::flip_low(&mut patch, 0.0);
+            remove_vertices::remove_vertices(&mut patch, candidates.clone(), control)?;
         }
-        short_edges::collapse(&mut patch, settings.rounding);
-        zero_area::flip(&mut patch, settings.rounding);
-        if round + 1 == ROUNDS || !zero_area::any_flat(&patch) {
+        // 6. Edges within rounding are collapsed, and slivers within rounding flipped.
+        let rounding = patch.source().rounding;
+        short_edges::collapse(&mut patch, rounding);
+        flip::flip_low(&mut patch, rounding);
+        // 7. Again, if that has left triangles without area.
+        if !flatness::has_flat(&patch) {
+            break;
+        }
+        if round == MOST_ROUNDS {
+            patch.count_stop();
             break;
         }
     }
-    Ok(Ok(patch.collect()))
+    Ok(Attempt::Done(patch.collect()))
 }
 
-/// Makes the patch a 2-manifold without triangles that have no area. Returns the points made, with those they are copies
-/// of.
-fn separate(
-    patch: &mut Patch<'_>,
-    cutter: &Cutter<'_>,
-    glue: bool,
-    planes: Option<&Planes<'_>>,
-    control: &Control,
-) -> Result<Vec<(u32, u32)>, Error> {
-    lines::straighten(patch, planes);
-    zero_area::split_chain(patch);
-    patch.cancel();
-    if glue && cutter.operands.ties() > 0 {
-        shared_edges::identify(patch);
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boolean::Operation;
+    use crate::boolean::arrangement::Arrangement;
+    use crate::boolean::arrangement::crossings::Crossings;
+    use crate::boolean::arrangement::curve::Curve;
+    use crate::boolean::candidates::Candidates;
+    use crate::boolean::candidates::overlap::Overlap;
+    use crate::boolean::classify::multiplicity;
+    use crate::boolean::classify::winding::Windings;
+    use crate::boolean::complex::origin::Origin;
+    use crate::boolean::complex::{Complex, Motion, Operand};
+    use crate::mesh::Bounds;
+
+    /// Cleans up pieces with the vertices of the first of two tetrahedra that are apart, of which nothing else is kept.
+    fn tidy_pieces(pieces: &[Piece]) -> Tidied {
+        let (control, triangles) = (Control::default(), [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
+        let runner = Runner::new(&control, false);
+        let corners = |x: f64| [[x, 0.0, 0.0], [x + 1.0, 0.0, 0.0], [x, 1.0, 0.0], [x, 0.0, 1.0]];
+        let positions = [corners(0.0), corners(5.0)];
+        let operands = positions.each_ref().map(|positions| Operand { positions, triangles: &triangles });
+        let bounds = [0.0, 5.0].map(|x| Bounds { low: [x, 0.0, 0.0], high: [x + 1.0, 1.0, 1.0] });
+        let mut overlap = Overlap::new(&operands, &bounds, runner).unwrap();
+        let near = std::mem::take(&mut overlap.near);
+        let complex = Complex::new(operands, [&[]; 2], Motion::Shrink, 6.0, near);
+        let candidates = Candidates::new(&complex, &overlap, runner).unwrap();
+        let crossings = Crossings::find(&complex, &candidates, runner).unwrap();
+        let curve = Curve::new(&complex, crossings, &[], runner).unwrap();
+        let windings = Windings::new(&curve, &overlap, &bounds, runner).unwrap();
+        let arrangement = Arrangement::new(curve, Vec::new(), true, runner).unwrap();
+        let parts = multiplicity::parts(Operation::Intersection);
+        let body = Body { arrangement: &arrangement, windings: &windings, parts };
+        let settings =
+            Settings { remove_vertices: true, rounding: 1e-15, glue: false, contacts: 0, always: true };
+        tidy(body, pieces, &settings, runner).unwrap().expect("it was asked for")
     }
-    #[cfg(debug_assertions)]
-    let boundary = patch.boundary();
-    let half_edges = if cutter.operands.ties() > 0 {
-        shared_edges::split(patch, cutter, planes, control)?
-    } else {
-        HalfEdges::of(patch)
-    };
-    #[cfg(debug_assertions)]
-    assert_eq!(patch.boundary(), boundary, "splitting edges opened the surface");
-    let copied_from = make_manifold(patch, &half_edges);
-    patch.connect();
-    Ok(copied_from)
-}
 
-/// Whether some piece of an edge counts more than once or negatively: rounded surfaces that cross themselves.
-fn has_repeats(cutter: &Cutter<'_>) -> bool {
-    cutter.windings.iter().flatten().any(|&winding| !(0..=1).contains(&winding))
-        || cutter.edges.edges.iter().enumerate().any(|(index, edge)| {
-            let side = cutter.operands.side_of(edge.low);
-            let mut winding = cutter.windings[side][(edge.low - cutter.operands.first_vertex(side)) as usize];
-            cutter.edges.nodes(index as u32).iter().any(|&node| {
-                winding += if cutter.crossings.nodes[node as usize].leaves { -1 } else { 1 };
-                !(0..=1).contains(&winding)
-            })
-        })
+    fn piece(corners: [u32; 3], flat: bool) -> Piece {
+        let origin = Origin { operand: 0, triangle: 0, reversed: false };
+        Piece { corners: corners.map(PointId::new), origin, flat }
+    }
+
+    #[test]
+    fn a_clean_up_that_stops_with_work_left_is_counted() {
+        // Nothing lies beside the triangle that it could be flipped or split with.
+        let tidied = tidy_pieces(&[piece([0, 2, 1], true)]);
+        assert_eq!((tidied.new.len(), tidied.stopped), (1, 1));
+    }
+
+    #[test]
+    fn a_clean_up_that_comes_to_an_end_is_not_counted() {
+        let tidied = tidy_pieces(&[piece([0, 2, 1], false)]);
+        assert_eq!((tidied.new.len(), tidied.stopped), (1, 0));
+        let opposite = tidy_pieces(&[piece([0, 2, 1], false), piece([0, 1, 2], false)]);
+        assert_eq!((opposite.new.len(), opposite.stopped), (0, 0));
+    }
 }

@@ -1,43 +1,57 @@
-//! The part of the result that tidying works on.
+//! The part of the result that the clean-up works on.
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use std::ops::Index;
 
-use super::Tidied;
+use rustc_hash::FxHashSet;
+
 use super::adjacency::Adjacency;
-use super::kept::{Renumbering, edges_beyond, kept_triangles};
-use crate::boolean::classify::multiplicity::Part;
-use crate::boolean::complex::planes::source_and_projection;
-use crate::boolean::cut::Cutter;
-use crate::boolean::result::assemble::NewTriangle;
-use crate::boolean::result::outcome::Origin;
+#[cfg(debug_assertions)]
+use super::face::{Edge, edge_between};
+use super::face::{Face, LocalFace, LocalPoint};
+use super::source::Source;
+use crate::boolean::complex::ids::PointId;
+use crate::boolean::complex::origin::Origin;
+use crate::boolean::cut::piece::Piece;
 use crate::exact::{Sign, orient2d};
-use crate::mesh::BitSet;
-use crate::mesh::Buckets;
-use crate::mesh::Surface;
+use crate::mesh::{BitSet, Buckets};
 
-/// A triangle of the patch.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Face {
-    pub(super) corners: [u32; 3],
-    pub(super) origin: Origin,
-    /// The only copy of an uncut triangle, with its corners as they were.
-    pub(super) untouched: bool,
-    /// Whether its corners lay on one line before they were rounded.
-    pub(super) flat: bool,
-    pub(super) alive: bool,
+/// What the clean-up made of the pieces.
+pub(crate) struct Tidied {
+    /// The triangles of the patch that were cut or changed.
+    pub(crate) new: Vec<Piece>,
+    /// Uncut triangles that are replaced, by side.
+    pub(crate) replaced: [BitSet; 2],
+    /// Positions of points made here; they are numbered after all others.
+    pub(crate) copies: Vec<[f64; 3]>,
+    /// How often a step stopped at its bound with work left.
+    pub(crate) stopped: u64,
 }
 
-/// Triangles round the intersection curve with their adjacency.
+/// What a patch begins with.
+pub(super) struct Contents {
+    pub(super) faces: Vec<Face>,
+    /// For each point which vertex or node of the source it is, ascending.
+    pub(super) numbers: Vec<PointId>,
+    /// Points all of whose triangles are among the faces.
+    pub(super) complete: BitSet,
+    /// Directed edges of the result outside the patch between points of the patch.
+    pub(super) outer_edges: FxHashSet<(LocalPoint, LocalPoint)>,
+    /// Uncut triangles that are among the faces, by side.
+    pub(super) taken: [Vec<u32>; 2],
+}
+
+/// Triangles around the intersection curve, the one value that every step of the clean-up changes.
 ///
 /// The patch has numbers of its own for its points, without gaps and in the order of the others: what is kept for each point
-/// is then a list, and points near each other are so in memory.
+/// is then a list, and points near each other are so in memory. Its triangles are at first a chain: an edge may have any
+/// number of them. From [`connect`](Self::connect) on they are a 2-manifold with adjacency.
 pub(super) struct Patch<'a> {
-    cutter: &'a Cutter<'a>,
-    pub(super) faces: Vec<Face>,
-    /// For each point which vertex or node it is, ascending; copies are not among them.
-    numbers: Vec<u32>,
+    source: Source<'a>,
+    faces: Vec<Face>,
+    /// For each point which vertex or node of the source it is, ascending; copies are not among them.
+    numbers: Vec<PointId>,
     /// How many of the points are vertices; they come first.
-    vertices: u32,
+    vertex_count: u32,
     /// Where each point is, the copies last.
     positions: Vec<[f64; 3]>,
     /// Points all of whose triangles are here.
@@ -45,132 +59,157 @@ pub(super) struct Patch<'a> {
     /// Filled by [`connect`](Self::connect).
     adjacency: Adjacency,
     /// Directed edges of the result outside the patch between points of the patch.
-    beyond: FxHashSet<(u32, u32)>,
-    /// Uncut triangles that were taken into the patch.
+    outer_edges: FxHashSet<(LocalPoint, LocalPoint)>,
+    /// Uncut triangles that were taken into the patch, by side.
     taken: [Vec<u32>; 2],
+    /// How often a step stopped at its bound with work left.
+    stopped: u64,
+}
+
+impl Index<LocalFace> for Patch<'_> {
+    type Output = Face;
+
+    #[inline]
+    fn index(&self, face: LocalFace) -> &Face {
+        &self.faces[face.index()]
+    }
 }
 
 impl<'a> Patch<'a> {
-    /// The pieces and all kept triangles round their points, and round some others.
-    pub(super) fn new(
-        cutter: &'a Cutter<'a>,
-        parts: &[Part],
-        pieces: &[NewTriangle],
-        others: &FxHashSet<u32>,
-    ) -> Self {
-        let count = cutter.operands.vertex_count() as usize + cutter.edges.positions.len();
-        let mut complete = BitSet::new(count);
-        for point in pieces.iter().flat_map(|piece| piece.corners) {
-            complete.insert(point);
-        }
-        // Kept triangles of both operands may share a point where all that was cut cancelled.
-        for point in cutter.identification.representatives().into_iter().chain(others.iter().copied()) {
-            complete.insert(point);
-        }
-        let (mut faces, taken) = kept_triangles(cutter, parts, &complete);
-        faces.extend(pieces.iter().map(|piece| Face {
-            corners: piece.corners,
-            origin: piece.origin,
-            untouched: false,
-            flat: piece.flat,
-            alive: true,
-        }));
-        let numbers = Renumbering::of(count, faces.iter().flat_map(|face| face.corners));
-        let beyond = edges_beyond(cutter, parts, &complete, &numbers);
-        for face in &mut faces {
-            face.corners = face.corners.map(|point| numbers.here(point));
-        }
-        let numbers = numbers.all();
-        let mut complete_here = BitSet::new(numbers.len());
-        for (here, &point) in (0..).zip(&numbers) {
-            if complete.contains(point) {
-                complete_here.insert(here);
-            }
-        }
+    pub(super) fn new(source: Source<'a>, contents: Contents) -> Self {
+        let Contents { faces, numbers, complete, outer_edges, taken } = contents;
         Self {
-            cutter,
+            source,
             faces,
-            vertices: numbers.partition_point(|&point| point < cutter.operands.vertex_count()) as u32,
-            positions: numbers.iter().map(|&point| *cutter.position(point)).collect(),
+            vertex_count: numbers.partition_point(|point| point.number() < source.vertex_count()) as u32,
+            positions: numbers.iter().map(|&point| source.position(point)).collect(),
             numbers,
-            complete: complete_here,
+            complete,
             adjacency: Adjacency::default(),
-            beyond,
+            outer_edges,
             taken,
+            stopped: 0,
         }
+    }
+
+    /// The rest of the arrangement.
+    pub(super) fn source(&self) -> Source<'a> {
+        self.source
     }
 
     /// The patch's number of a vertex or node; `None` if it is not in the patch.
-    pub(super) fn here(&self, point: u32) -> Option<u32> {
-        self.numbers.binary_search(&point).ok().map(|here| here as u32)
+    pub(super) fn find_point(&self, point: PointId) -> Option<LocalPoint> {
+        self.numbers.binary_search(&point).ok().map(|local| LocalPoint(local as u32))
     }
 
     /// The number of a point outside the patch: copies come after the nodes.
-    pub(super) fn number(&self, point: u32) -> u32 {
-        match self.numbers.get(point as usize) {
+    pub(super) fn source_point(&self, point: LocalPoint) -> PointId {
+        match self.numbers.get(point.index()) {
             Some(&number) => number,
-            None => self.first_copy() + (point - self.numbers.len() as u32),
+            None => PointId::new((self.source.point_count() + point.index() - self.numbers.len()) as u32),
         }
     }
 
-    /// The number outside the patch of the first copy.
-    fn first_copy(&self) -> u32 {
-        self.cutter.operands.vertex_count() + self.cutter.edges.positions.len() as u32
+    /// Number of points, the copies included.
+    pub(super) fn point_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Number of faces, the dropped ones included.
+    pub(super) fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// The numbers of all faces, the dropped ones included.
+    pub(super) fn face_numbers(&self) -> impl Iterator<Item = LocalFace> + use<> {
+        (0..self.faces.len() as u32).map(LocalFace)
+    }
+
+    /// The faces that were not dropped.
+    pub(super) fn faces(&self) -> impl Iterator<Item = (LocalFace, &Face)> + Clone {
+        (0..).map(LocalFace).zip(&self.faces).filter(|(_, face)| face.alive)
     }
 
     /// Whether all triangles at a point are in the patch.
     #[inline]
-    pub(super) fn is_complete(&self, point: u32) -> bool {
-        point as usize >= self.numbers.len() || self.complete.contains(point)
+    pub(super) fn is_complete(&self, point: LocalPoint) -> bool {
+        point.index() >= self.numbers.len() || self.complete.contains(point.0)
     }
 
-    /// Points, not all of whose triangles are here, at which triangles came apart all the same: at edges to a point of
-    /// which copies were made.
-    pub(super) fn pinched(&self, copied_from: &[(u32, u32)]) -> FxHashSet<u32> {
-        let original: FxHashMap<u32, u32> = copied_from.iter().copied().collect();
-        let copied: FxHashSet<u32> = copied_from.iter().map(|&(_, of)| of).collect();
-        let mut seen: FxHashMap<(u32, u32), u32> = FxHashMap::default();
-        let mut pinched = FxHashSet::default();
-        for face in self.faces.iter().filter(|face| face.alive && !copied_from.is_empty()) {
-            for &point in face.corners.iter().filter(|&&point| !self.is_complete(point)) {
-                for &other in &face.corners {
-                    let of = original.get(&other).copied().unwrap_or(other);
-                    if copied.contains(&of) && *seen.entry((point, of)).or_insert(other) != other {
-                        pinched.insert(point);
-                    }
-                }
-            }
-        }
-        pinched
+    /// Notes that a step stopped at its bound with work left.
+    pub(super) fn count_stop(&mut self) {
+        self.stopped += 1;
     }
 
     /// Whether the operation made a point.
-    pub(super) fn is_new(&self, point: u32) -> bool {
-        point >= self.vertices
+    pub(super) fn is_new(&self, point: LocalPoint) -> bool {
+        point.0 >= self.vertex_count
     }
 
     /// Where a point is.
     #[inline]
-    pub(super) fn position(&self, point: u32) -> &[f64; 3] {
-        &self.positions[point as usize]
+    pub(super) fn position(&self, point: LocalPoint) -> &[f64; 3] {
+        &self.positions[point.index()]
     }
 
-    /// The size of rounding.
-    pub(super) fn rounding(&self) -> f64 {
-        self.cutter.rounding
-    }
-
-    /// Points along the axis a face looks along most, so that it is seen counter-clockwise.
-    pub(super) fn projected(&self, points: &[u32], origin: Origin) -> Vec<[f64; 2]> {
-        let (_, seen) = source_and_projection(self.cutter.operands, origin);
-        points.iter().map(|&point| seen.project(self.position(point))).collect()
+    /// Points in the projection of the plane of a face, so that the face is seen counter-clockwise.
+    pub(super) fn project(&self, points: &[LocalPoint], origin: Origin) -> Vec<[f64; 2]> {
+        let (_, projection) = self.source.source_and_projection(origin);
+        points.iter().map(|&point| projection.project(self.position(point))).collect()
     }
 
     /// Whether a triangle looks the way of the face it was cut from.
-    pub(super) fn is_sound(&self, corners: &[u32; 3], origin: Origin) -> bool {
-        let (_, seen) = source_and_projection(self.cutter.operands, origin);
-        let [a, b, c] = corners.map(|point| seen.project(self.position(point)));
+    pub(super) fn is_sound(&self, corners: [LocalPoint; 3], origin: Origin) -> bool {
+        let (_, projection) = self.source.source_and_projection(origin);
+        let [a, b, c] = corners.map(|point| projection.project(self.position(point)));
         orient2d(a, b, c) == Sign::Positive
+    }
+
+    /// Marks a face whose corners lay on one line before they were rounded.
+    pub(super) fn mark_flat(&mut self, face: LocalFace) {
+        self.faces[face.index()].flat = true;
+    }
+
+    /// Gives a face other corners.
+    pub(super) fn set_corners(&mut self, face: LocalFace, corners: [LocalPoint; 3]) {
+        let face = &mut self.faces[face.index()];
+        face.corners = corners;
+        face.untouched = false;
+    }
+
+    /// Makes a face a part of the face that another was cut from.
+    pub(super) fn set_plane_of(&mut self, face: LocalFace, other: LocalFace) {
+        let Face { origin, flat, .. } = self.faces[other.index()];
+        let face = &mut self.faces[face.index()];
+        (face.origin, face.flat) = (origin, flat);
+    }
+
+    /// Adds a face that is a part of another.
+    pub(super) fn add_part(&mut self, of: LocalFace, corners: [LocalPoint; 3]) -> LocalFace {
+        self.faces.push(Face { corners, untouched: false, alive: true, ..self.faces[of.index()] });
+        LocalFace(self.faces.len() as u32 - 1)
+    }
+
+    /// Drops a face.
+    pub(super) fn drop_face(&mut self, face: LocalFace) {
+        self.faces[face.index()].alive = false;
+    }
+
+    /// Adds a copy.
+    pub(super) fn add_point(&mut self, position: [f64; 3]) -> LocalPoint {
+        self.positions.push(position);
+        LocalPoint(self.positions.len() as u32 - 1)
+    }
+
+    /// Puts other points into the place of points, in all faces.
+    pub(super) fn substitute(&mut self, substitute: impl Fn(LocalPoint) -> LocalPoint) {
+        for face in self.faces.iter_mut().filter(|face| face.alive) {
+            let corners = face.corners.map(&substitute);
+            if corners != face.corners {
+                face.corners = corners;
+                face.untouched = false;
+            }
+        }
     }
 
     /// Drops triangles with a repeated corner, and pairs of opposite triangles.
@@ -180,10 +219,9 @@ impl<'a> Patch<'a> {
             face.alive = a != b && b != c && c != a;
         }
         // Triangles with the same corners have the same lowest one.
-        let alive = (0..).zip(&self.faces).filter(|(_, face)| face.alive);
         let mut by_lowest = Buckets::new(
             self.positions.len(),
-            alive.map(|(i, face)| {
+            self.faces().map(|(number, face)| {
                 let [a, b, c] = face.corners;
                 let lowest = a.min(b).min(c);
                 let (next, last) = match lowest {
@@ -191,7 +229,7 @@ impl<'a> Patch<'a> {
                     _ if lowest == b => (c, a),
                     _ => (a, b),
                 };
-                (lowest, (next.min(last), next.max(last), next < last, i))
+                (lowest.0, (next.min(last), next.max(last), next < last, number))
             }),
         );
         for bucket in by_lowest.each_mut().filter(|bucket| bucket.len() > 1) {
@@ -200,7 +238,7 @@ impl<'a> Patch<'a> {
                 let odd = group.partition_point(|entry| !entry.2);
                 let pairs = odd.min(group.len() - odd);
                 for entry in group[..pairs].iter().chain(&group[group.len() - pairs..]) {
-                    self.faces[entry.3 as usize].alive = false;
+                    self.faces[entry.3.index()].alive = false;
                 }
             }
         }
@@ -208,39 +246,38 @@ impl<'a> Patch<'a> {
 
     /// The boundary of the sum of all triangles: directed edges that do not cancel, ascending.
     #[cfg(debug_assertions)]
-    pub(super) fn boundary(&self) -> Vec<((u32, u32), i32)> {
-        let mut counts: std::collections::BTreeMap<(u32, u32), i32> = std::collections::BTreeMap::new();
-        for face in self.faces.iter().filter(|face| face.alive) {
-            for k in 0..3 {
-                let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
-                *counts.entry((u.min(v), u.max(v))).or_default() += if u < v { 1 } else { -1 };
+    pub(super) fn boundary(&self) -> Vec<(Edge, i32)> {
+        let mut counts: std::collections::BTreeMap<Edge, i32> = std::collections::BTreeMap::new();
+        for (_, face) in self.faces() {
+            for (u, v) in face.sides() {
+                *counts.entry(edge_between(u, v)).or_default() += if u < v { 1 } else { -1 };
             }
         }
         counts.into_iter().filter(|&((u, v), count)| count != 0 && u != v).collect()
     }
 
-    /// Builds the adjacency; from now on every directed edge occurs once.
+    /// Builds the adjacency of what must be a 2-manifold by now.
     pub(super) fn connect(&mut self) {
-        self.adjacency = Adjacency::new(self.positions.len(), &self.faces);
+        self.adjacency = Adjacency::new(self.point_count(), &self.faces);
     }
 
     /// The triangle to the left of a directed edge.
-    pub(super) fn left_of(&self, from: u32, to: u32) -> Option<u32> {
+    pub(super) fn left_of(&self, from: LocalPoint, to: LocalPoint) -> Option<LocalFace> {
         self.adjacency.left_of(from, to)
     }
 
-    /// Whether a directed edge exists, here or beyond.
-    pub(super) fn has_edge(&self, from: u32, to: u32) -> bool {
-        self.left_of(from, to).is_some() || self.beyond.contains(&(from, to))
+    /// Whether the result has a directed edge, in the patch or outside.
+    pub(super) fn has_edge(&self, from: LocalPoint, to: LocalPoint) -> bool {
+        self.left_of(from, to).is_some() || self.outer_edges.contains(&(from, to))
     }
 
-    /// The triangles round a complete point with the corner that follows it in each, counter-clockwise.
-    pub(super) fn star(&self, point: u32) -> Option<Vec<(u32, u32)>> {
+    /// The triangles around a complete point with the corner that follows it in each, counter-clockwise.
+    pub(super) fn star(&self, point: LocalPoint) -> Option<Vec<(LocalFace, LocalPoint)>> {
         let start = self.adjacency.some_face(point)?;
         let mut star = Vec::new();
         let mut face = start;
         loop {
-            let corners = self.faces[face as usize].corners;
+            let corners = self[face].corners;
             let k = corners.iter().position(|&corner| corner == point)?;
             star.push((face, corners[(k + 1) % 3]));
             face = self.left_of(point, corners[(k + 2) % 3])?;
@@ -254,106 +291,49 @@ impl<'a> Patch<'a> {
     }
 
     /// Replaces triangles by others.
-    pub(super) fn replace(&mut self, old: &[u32], new: &[([u32; 3], Origin)]) {
+    pub(super) fn replace(&mut self, old: &[LocalFace], new: &[([LocalPoint; 3], Origin)]) {
         for &index in old {
-            let corners = self.faces[index as usize].corners;
-            self.adjacency.unlink(corners);
-            self.faces[index as usize].alive = false;
+            self.adjacency.unlink(self[index].corners);
+            self.drop_face(index);
         }
         for (i, &(corners, origin)) in new.iter().enumerate() {
             let face = Face { corners, origin, untouched: false, flat: false, alive: true };
             let index = match old.get(i) {
                 Some(&index) => {
-                    self.faces[index as usize] = face;
+                    self.faces[index.index()] = face;
                     index
                 }
                 None => {
                     self.faces.push(face);
-                    self.faces.len() as u32 - 1
+                    LocalFace(self.faces.len() as u32 - 1)
                 }
             };
             self.adjacency.link(index, corners);
         }
         // Points that lost the triangle they were known by, but still have others.
         for &index in old {
-            self.adjacency.find_some_faces(self.faces[index as usize].corners);
+            self.adjacency.find_some_faces(self.faces[index.index()].corners);
         }
     }
 
     /// The new triangles, and which uncut ones they replace.
     pub(super) fn collect(self) -> Tidied {
-        let operands = self.cutter.operands;
-        let mut replaced = [0, 1].map(|side| BitSet::new(operands.sides[side].triangles.len()));
+        let mut replaced = [0, 1].map(|side| BitSet::new(self.source.triangle_count(side)));
         for side in 0..2 {
             self.taken[side].iter().for_each(|&t| replaced[side].insert(t));
         }
         let mut new = Vec::new();
-        for face in self.faces.iter().filter(|face| face.alive) {
+        for (_, face) in self.faces() {
             if face.untouched {
                 // It stays as it was.
                 replaced[face.origin.operand as usize].remove(face.origin.triangle);
             } else {
-                let corners = face.corners.map(|point| self.number(point));
-                new.push(NewTriangle { corners, origin: face.origin, flat: face.flat });
+                let corners = face.corners.map(|point| self.source_point(point));
+                new.push(Piece { corners, origin: face.origin, flat: face.flat });
             }
         }
         new.sort_by_key(|triangle| (triangle.origin.operand, triangle.origin.triangle));
         let copies = self.positions[self.numbers.len()..].to_vec();
-        Tidied { new, replaced, copies }
-    }
-}
-
-impl Surface for Patch<'_> {
-    fn len(&self) -> usize {
-        self.faces.len()
-    }
-
-    fn corners(&self, triangle: u32) -> Option<[u32; 3]> {
-        let face = &self.faces[triangle as usize];
-        face.alive.then_some(face.corners)
-    }
-
-    fn set_corners(&mut self, triangle: u32, corners: [u32; 3]) {
-        let face = &mut self.faces[triangle as usize];
-        *face = Face { corners, untouched: false, ..*face };
-    }
-
-    fn add_part(&mut self, of: u32, corners: [u32; 3]) {
-        self.faces.push(Face { corners, untouched: false, ..self.faces[of as usize] });
-    }
-
-    fn position(&self, point: u32) -> [f64; 3] {
-        *self.position(point)
-    }
-
-    /// The corner of the face a triangle was cut from that lies furthest to the left: a narrow triangle's own corner would
-    /// tell nothing but how it was rounded.
-    fn left_of_side(&self, triangle: u32, side: usize) -> [f64; 3] {
-        let face = &self.faces[triangle as usize];
-        let corners = [0, 1, 2].map(|k| *self.position(face.corners[(side + k) % 3]));
-        let (source, seen) = source_and_projection(self.cutter.operands, face.origin);
-        let [p, q] = [corners[0], corners[1]].map(|point| seen.project(&point));
-        let left = |c: &[f64; 3]| {
-            let [x, y] = seen.project(c);
-            (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])
-        };
-        source
-            .into_iter()
-            .max_by(|c, d| left(c).total_cmp(&left(d)))
-            .filter(|corner| left(corner) > 0.0)
-            .unwrap_or(corners[2])
-    }
-
-    fn point_count(&self) -> usize {
-        self.positions.len()
-    }
-
-    fn add_point(&mut self, position: [f64; 3]) -> u32 {
-        self.positions.push(position);
-        self.positions.len() as u32 - 1
-    }
-
-    fn is_complete(&self, point: u32) -> bool {
-        self.is_complete(point)
+        Tidied { new, replaced, copies, stopped: self.stopped }
     }
 }

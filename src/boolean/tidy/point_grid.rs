@@ -1,14 +1,15 @@
 //! Points in the cells of a grid.
 
+use super::face::LocalPoint;
 use crate::mesh::Buckets;
 
-/// So many points for each cell looked at are few enough to look at them all.
+/// Points per cell of a search, on average, beyond which the search is left to another structure: four times as many as
+/// there should be.
 const MOST_POINTS_PER_CELL: usize = 8;
-
-/// So many points there are for a cell.
+/// Points per cell that the size of the cells is chosen for, if the points fill their box.
 const POINTS_PER_CELL: usize = 2;
-/// At most so many cells along an axis.
-const MOST_CELLS: usize = 1 << 10;
+/// Cells along an axis at most: bounds the memory of grids of points on a line.
+const MOST_CELLS_PER_AXIS: usize = 1 << 10;
 
 /// Points by cell. The cell along an axis never falls while the coordinate rises, so that nothing is missed by rounding.
 pub(super) struct PointGrid {
@@ -16,12 +17,12 @@ pub(super) struct PointGrid {
     cells_per_unit: [f64; 3],
     /// Number of cells along each axis.
     counts: [usize; 3],
-    cells: Buckets<u32>,
+    cells: Buckets<LocalPoint>,
 }
 
 impl PointGrid {
-    /// The given points; those that are not finite are nowhere in particular.
-    pub(super) fn new<'p>(points: &[u32], position: impl Fn(u32) -> &'p [f64; 3]) -> Self {
+    /// A grid of the given points. O(points).
+    pub(super) fn new<'p>(points: &[LocalPoint], position: impl Fn(LocalPoint) -> &'p [f64; 3]) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for at in points.iter().map(|&point| position(point)) {
             for k in 0..3 {
@@ -32,21 +33,21 @@ impl PointGrid {
         // Cubes, as many as wanted if the points fill their box. Half lengths do not overflow.
         let half: [f64; 3] = std::array::from_fn(|k| (0.5 * high[k] - 0.5 * low[k]).max(0.0));
         let longest = half.iter().fold(0.0f64, |longest, &x| longest.max(x));
-        let fill: f64 = half.iter().map(|&x| (x / longest).max(1.0 / MOST_CELLS as f64)).product();
+        let fill: f64 = half.iter().map(|&x| (x / longest).max(1.0 / MOST_CELLS_PER_AXIS as f64)).product();
         let wanted = (points.len() / POINTS_PER_CELL).max(1) as f64;
         let along_longest = (wanted / fill).cbrt();
         let mut counts = [1; 3];
         let mut cells_per_unit = [0.0; 3];
         for k in 0..3 {
-            let count = (along_longest * (half[k] / longest)).clamp(1.0, MOST_CELLS as f64).floor();
+            let count = (along_longest * (half[k] / longest)).clamp(1.0, MOST_CELLS_PER_AXIS as f64).floor();
             let per_unit = 0.5 * (count / half[k]);
             if count > 1.0 && per_unit.is_finite() {
                 (counts[k], cells_per_unit[k]) = (count as usize, per_unit);
             }
         }
         let mut grid = Self { low, cells_per_unit, counts, cells: Buckets::new(0, std::iter::empty()) };
-        let cell_of = |&point: &u32| (grid.number(grid.cell(position(point))), point);
-        let cells = Buckets::new(counts.iter().product(), points.iter().map(cell_of));
+        let in_cell = |&point: &LocalPoint| (grid.number(grid.cell(position(point))), point);
+        let cells = Buckets::new(counts.iter().product(), points.iter().map(in_cell));
         grid.cells = cells;
         grid
     }
@@ -63,13 +64,19 @@ impl PointGrid {
         ((x * self.counts[1] + y) * self.counts[2] + z) as u32
     }
 
-    /// Calls `found` for all points in the box with corners `p` and `q`, once each, and for some others, unless there are
-    /// more than `most` cells to look at, or [`MOST_POINTS_PER_CELL`] times as many points in them (points may be crowded into few
-    /// cells); then nothing is found and the answer is false.
-    pub(super) fn in_box(&self, p: &[f64; 3], q: &[f64; 3], most: usize, mut found: impl FnMut(u32)) -> bool {
+    /// Calls `visit` for all points in the box with corners `p` and `q`, once each, and for some others. Where that box covers
+    /// more than `most_cells` cells, or these hold more than [`MOST_POINTS_PER_CELL`] times as many points, nothing is
+    /// visited and the answer is false.
+    pub(super) fn visit_box(
+        &self,
+        p: &[f64; 3],
+        q: &[f64; 3],
+        most_cells: usize,
+        mut visit: impl FnMut(LocalPoint),
+    ) -> bool {
         let (from, to) = (self.cell(p), self.cell(q));
         let ranges: [_; 3] = std::array::from_fn(|k| from[k].min(to[k])..from[k].max(to[k]) + 1);
-        if ranges.iter().map(ExactSizeIterator::len).product::<usize>() > most {
+        if ranges.iter().map(ExactSizeIterator::len).product::<usize>() > most_cells {
             return false;
         }
         let [xs, ys, zs] = ranges;
@@ -79,11 +86,11 @@ impl PointGrid {
         });
         let points = |cell: [usize; 3]| self.cells.get(self.number(cell) as usize);
         if cells.clone().map(|cell| points(cell).len()).sum::<usize>()
-            > most.saturating_mul(MOST_POINTS_PER_CELL)
+            > most_cells.saturating_mul(MOST_POINTS_PER_CELL)
         {
             return false;
         }
-        cells.for_each(|cell| points(cell).iter().for_each(|&point| found(point)));
+        cells.for_each(|cell| points(cell).iter().for_each(|&point| visit(point)));
         true
     }
 }
@@ -100,16 +107,16 @@ mod tests {
         for extent in [[1.0, 1.0, 1.0], [1e3, 1e-9, 1.0], [0.0, 2.0, 0.0], [0.0; 3], [1.7e308; 3]] {
             let mut at = || -> [f64; 3] { extent.map(|x| (rng.random_range(-8..=8) as f64 / 8.0) * x) };
             let positions: Vec<[f64; 3]> = (0..400).map(|_| at()).collect();
-            let points: Vec<u32> = (0..400).collect();
-            let grid = PointGrid::new(&points, |point| &positions[point as usize]);
+            let points: Vec<LocalPoint> = (0..400).map(LocalPoint).collect();
+            let grid = PointGrid::new(&points, |point| &positions[point.index()]);
             for _ in 0..100 {
                 let (p, q) = (at(), at());
                 let mut found = Vec::new();
-                assert!(grid.in_box(&p, &q, usize::MAX, |point| found.push(point)));
+                assert!(grid.visit_box(&p, &q, usize::MAX, |point| found.push(point)));
                 found.sort_unstable();
                 assert!(found.windows(2).all(|pair| pair[0] < pair[1]));
                 for &point in &points {
-                    let x = &positions[point as usize];
+                    let x = &positions[point.index()];
                     let is_within = (0..3).all(|k| p[k].min(q[k]) <= x[k] && x[k] <= p[k].max(q[k]));
                     assert!(!is_within || found.contains(&point));
                 }
@@ -122,9 +129,9 @@ mod tests {
         // All points but one in one cell.
         let positions: Vec<[f64; 3]> =
             (0..5_000).map(|i| if i == 0 { [1e6; 3] } else { [f64::from(i) * 1e-6; 3] }).collect();
-        let points: Vec<u32> = (0..5_000).collect();
-        let grid = PointGrid::new(&points, |point| &positions[point as usize]);
-        assert!(!grid.in_box(&[0.0; 3], &[1e-6; 3], 64, |_| panic!("too many")));
-        assert!(grid.in_box(&[9e5; 3], &[9e5; 3], 64, |_| {}));
+        let points: Vec<LocalPoint> = (0..5_000).map(LocalPoint).collect();
+        let grid = PointGrid::new(&points, |point| &positions[point.index()]);
+        assert!(!grid.visit_box(&[0.0; 3], &[1e-6; 3], 64, |_| panic!("too many")));
+        assert!(grid.visit_box(&[9e5; 3], &[9e5; 3], 64, |_| {}));
     }
 }

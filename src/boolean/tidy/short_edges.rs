@@ -1,14 +1,14 @@
-//! Edges no longer than rounding: where faces are coplanar but for rounding, a crossing falls into two that lie a unit in
-//! the last place apart. The vertex that the operation made is drawn into its neighbour; no other vertex moves.
+//! Edges no longer than rounding: where faces are coplanar up to rounding, a crossing falls into two that lie a unit in the
+//! last place apart. The vertex that the operation made is collapsed into its neighbour; no other vertex moves.
 
+use super::face::{Face, LocalPoint};
 use super::patch::Patch;
 
 /// Collapses edges up to `length` long (in the largest coordinate difference) at points made by the operation.
 pub(super) fn collapse(patch: &mut Patch<'_>, length: f64) {
-    let mut queue: Vec<(u32, u32)> = Vec::new();
-    for face in patch.faces.iter().filter(|face| face.alive && !face.untouched) {
-        for k in 0..3 {
-            let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
+    let mut queue: Vec<(LocalPoint, LocalPoint)> = Vec::new();
+    for (_, face) in patch.faces().filter(|(_, face)| !face.untouched) {
+        for (u, v) in face.sides() {
             if patch.is_new(u) && is_short(patch, u, v, length) {
                 queue.push((u, v));
             }
@@ -24,13 +24,13 @@ pub(super) fn collapse(patch: &mut Patch<'_>, length: f64) {
     }
 }
 
-fn is_short(patch: &Patch<'_>, u: u32, v: u32, length: f64) -> bool {
+fn is_short(patch: &Patch<'_>, u: LocalPoint, v: LocalPoint, length: f64) -> bool {
     let (p, q) = (patch.position(u), patch.position(v));
     (0..3).all(|k| (p[k] - q[k]).abs() <= length)
 }
 
-/// Draws `u` into `v` if what is left is a sound 2-manifold.
-fn try_collapse(patch: &mut Patch<'_>, u: u32, v: u32) {
+/// Collapses `u` into `v` if what is left is a sound 2-manifold.
+fn try_collapse(patch: &mut Patch<'_>, u: LocalPoint, v: LocalPoint) {
     if !patch.is_complete(u) || !patch.is_complete(v) {
         return;
     }
@@ -42,17 +42,17 @@ fn try_collapse(patch: &mut Patch<'_>, u: u32, v: u32) {
     }
     let mut old = Vec::with_capacity(star_u.len());
     let mut new = Vec::with_capacity(star_u.len());
-    for &(index, _) in &star_u {
-        let face = patch.faces[index as usize];
-        old.push(index);
-        if face.corners.contains(&v) {
+    for &(number, _) in &star_u {
+        let Face { corners, origin, .. } = patch[number];
+        old.push(number);
+        if corners.contains(&v) {
             continue;
         }
-        let moved = face.corners.map(|point| if point == u { v } else { point });
-        if patch.is_sound(&face.corners, face.origin) && !patch.is_sound(&moved, face.origin) {
+        let moved = corners.map(|point| if point == u { v } else { point });
+        if patch.is_sound(corners, origin) && !patch.is_sound(moved, origin) {
             return;
         }
-        new.push((moved, face.origin));
+        new.push((moved, origin));
     }
     patch.replace(&old, &new);
 }

@@ -1,109 +1,55 @@
 //! Faces whose sides get vertices: triangulated anew, those of one plane side by side as one.
 //!
-//! A long side with many vertices makes a fan of needles of the triangle it belongs to; together with the triangle beyond its
-//! diagonal it is a strip, which has a sound triangulation.
+//! A long side with many vertices makes a fan of needles of the triangle it belongs to; together with the triangle on the
+//! other side of its diagonal it is a strip, which has a sound triangulation.
 
-use rustc_hash::FxHashMap;
-
-use super::patch::{Face, Patch};
-use super::zero_area::is_low;
-use crate::boolean::complex::planes::Planes;
-use crate::mesh::BitSet;
-use crate::mesh::Surface;
-use crate::mesh::{Buckets, UnionFind};
+use super::face::{Edge, LocalFace, LocalPoint, edge_between};
+use super::flatness::is_triangle_low;
+use super::patch::Patch;
+use super::splits::Splits;
+use crate::mesh::{BitSet, Buckets, UnionFind};
 use crate::polygon::Triangulator;
 
-/// An edge, from its lower point to its higher one.
-pub(super) type Edge = (u32, u32);
-
-/// Edges to split, with the vertices on them.
-pub(super) struct Splits {
-    /// The vertices from the lower end to the higher one.
-    on: FxHashMap<Edge, Vec<u32>>,
-    /// The lower ends: most edges are told from those to split by this alone.
-    lower_ends: BitSet,
-}
-
-impl Splits {
-    pub(super) fn new(patch: &Patch<'_>) -> Self {
-        Self { on: FxHashMap::default(), lower_ends: BitSet::new(patch.point_count()) }
-    }
-
-    pub(super) fn insert(&mut self, edge: Edge, on: Vec<u32>) {
-        self.lower_ends.insert(edge.0);
-        self.on.insert(edge, on);
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.on.is_empty()
-    }
-
-    /// The vertices on the edge between two points, from its lower end to its higher one, if it is to be split.
-    fn get(&self, from: u32, to: u32) -> Option<&Vec<u32>> {
-        let edge = (from.min(to), from.max(to));
-        if self.lower_ends.contains(edge.0) { self.on.get(&edge) } else { None }
-    }
-
-    /// Appends the way along an edge, but for its end.
-    fn add_way(&self, from: u32, to: u32, way: &mut Vec<u32>) {
-        way.push(from);
-        match self.get(from, to) {
-            Some(on) if from < to => way.extend(on),
-            Some(on) => way.extend(on.iter().rev()),
-            None => {}
-        }
-    }
-
-    fn is_split(&self, face: &Face) -> bool {
-        face.alive && (0..3).any(|k| self.get(face.corners[k], face.corners[(k + 1) % 3]).is_some())
-    }
-}
-
 /// Splits the sides of all faces that are to be split. Diagonals are left alone, whatever else runs along them: they bound two
-/// triangles of one face and so do not matter to others. Faces are put together where `planes` says that the border between
-/// them means nothing.
-pub(super) fn split_faces(patch: &mut Patch<'_>, splits: &Splits, planes: Option<&Planes<'_>>) {
-    let faces: Vec<u32> = (0..patch.faces.len() as u32)
-        .filter(|&index| splits.is_split(&patch.faces[index as usize]))
-        .collect();
-    if let Some(planes) = planes {
+/// triangles of one face and so do not matter to others. With `merge`, faces on both sides of a coplanar edge are
+/// triangulated together.
+pub(super) fn split_faces(patch: &mut Patch<'_>, splits: &Splits, merge: bool) {
+    let faces: Vec<LocalFace> = patch.face_numbers().filter(|&face| splits.concern(&patch[face])).collect();
+    if merge {
         let mut triangulator = Triangulator::default();
-        for strip in strips(patch, &faces, splits, planes).each().filter(|strip| strip.len() > 1) {
-            triangulate(patch, strip, splits, &mut triangulator);
+        for strip in strips(patch, &faces, splits).each().filter(|strip| strip.len() > 1) {
+            triangulate_strip(patch, strip, splits, &mut triangulator);
         }
     }
-    for index in faces {
-        split_face(patch, index, splits);
+    for face in faces {
+        split_face(patch, face, splits);
     }
 }
 
 /// The faces that are to be split, those of one plane side by side together.
-fn strips(patch: &Patch<'_>, faces: &[u32], splits: &Splits, planes: &Planes<'_>) -> Buckets<u32> {
-    // Every side that is not to be split: its ends, whether it runs from the lower one, and the place of its face.
+fn strips(patch: &Patch<'_>, faces: &[LocalFace], splits: &Splits) -> Buckets<LocalFace> {
+    // 1. Every side that is not to be split: its ends, whether it runs from the lower one, and the place of its face.
     let mut sides: Vec<(Edge, bool, u32)> = Vec::with_capacity(2 * faces.len());
-    for (place, &index) in (0..).zip(faces) {
-        let face = &patch.faces[index as usize];
-        if face.flat {
-            continue;
-        }
-        for k in 0..3 {
-            let (from, to) = (face.corners[k], face.corners[(k + 1) % 3]);
-            if splits.get(from, to).is_none() {
-                sides.push(((from.min(to), from.max(to)), from < to, place));
+    for (place, &face) in (0..).zip(faces).filter(|&(_, &face)| !patch[face].flat) {
+        for (from, to) in patch[face].sides() {
+            if !splits.contains(from, to) {
+                sides.push((edge_between(from, to), from < to, place));
             }
         }
     }
+    // 2. The borders between two of the faces.
     sides.sort_unstable();
     let between = sides.chunk_by(|x, y| x.0 == y.0).filter_map(|group| match *group {
         [(edge, false, one), (_, true, other)] => Some((edge, one, other)),
         _ => None,
     });
     let borders: Vec<(Edge, u32, u32)> = between.collect();
-    let is_crowded = crowded(patch, &borders);
-    let origin = |place: u32| patch.faces[faces[place as usize] as usize].origin;
+    // 3. Those that are coplanar edges, and needed by nobody else, join their faces.
+    let are_crowded = find_crowded(patch, &borders);
+    let origin = |place: u32| patch[faces[place as usize]].origin;
     let mut together = UnionFind::new(faces.len());
-    for (&(_, one, other), is_crowded) in borders.iter().zip(is_crowded) {
-        if !is_crowded && planes.mergeable(origin(one), origin(other)) {
+    for (&(_, one, other), is_crowded) in borders.iter().zip(are_crowded) {
+        if !is_crowded && patch.source().are_mergeable(origin(one), origin(other)) {
             together.join(one, other);
         }
     }
@@ -113,15 +59,14 @@ fn strips(patch: &Patch<'_>, faces: &[u32], splits: &Splits, planes: &Planes<'_>
 
 /// For each of some edges, ascending, whether there are, or may be, more than two triangles: bodies touch there, and come apart
 /// only if all of them keep the edge.
-fn crowded(patch: &Patch<'_>, edges: &[(Edge, u32, u32)]) -> Vec<bool> {
+fn find_crowded(patch: &Patch<'_>, edges: &[(Edge, u32, u32)]) -> Vec<bool> {
     let mut lower_ends = BitSet::new(patch.point_count());
-    edges.iter().for_each(|(edge, ..)| lower_ends.insert(edge.0));
+    edges.iter().for_each(|(edge, ..)| lower_ends.insert(edge.0.0));
     let mut triangles = vec![0u32; edges.len()];
-    for face in patch.faces.iter().filter(|face| face.alive) {
-        for k in 0..3 {
-            let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
-            let edge = (u.min(v), u.max(v));
-            if lower_ends.contains(edge.0)
+    for (_, face) in patch.faces() {
+        for (u, v) in face.sides() {
+            let edge = edge_between(u, v);
+            if lower_ends.contains(edge.0.0)
                 && let Ok(place) = edges.binary_search_by_key(&edge, |entry| entry.0)
             {
                 triangles[place] += 1;
@@ -132,93 +77,124 @@ fn crowded(patch: &Patch<'_>, edges: &[(Edge, u32, u32)]) -> Vec<bool> {
     edges.iter().zip(triangles).map(|((edge, ..), count)| count != 2 || !is_known(edge)).collect()
 }
 
+/// The outline of a strip.
+struct Outline {
+    /// Its directed edges, in [`border_order`].
+    boundary: Vec<[LocalPoint; 2]>,
+    /// Its points, ascending.
+    points: Vec<LocalPoint>,
+    /// The edges between faces of the strip, ascending.
+    borders: Vec<Edge>,
+}
+
+/// The two directions of an edge side by side, the ascending one first.
+fn border_order(&[u, v]: &[LocalPoint; 2]) -> (LocalPoint, LocalPoint, bool) {
+    (u.min(v), u.max(v), u > v)
+}
+
+impl Outline {
+    /// The sides of all faces, split, less those that cancel.
+    fn of(patch: &Patch<'_>, strip: &[LocalFace], splits: &Splits) -> Self {
+        let mut edges: Vec<[LocalPoint; 2]> = Vec::new();
+        let mut path = Vec::new();
+        for &face in strip {
+            for (from, to) in patch[face].sides() {
+                splits.trace(from, to, &mut path);
+                edges.extend(path.windows(2).map(|pair| [pair[0], pair[1]]));
+            }
+        }
+        edges.sort_unstable_by_key(border_order);
+        let mut borders: Vec<Edge> = Vec::new();
+        let mut boundary: Vec<[LocalPoint; 2]> = Vec::with_capacity(edges.len());
+        for edge in edges {
+            if boundary.last() == Some(&[edge[1], edge[0]]) {
+                boundary.pop();
+                borders.push((edge[1], edge[0]));
+            } else {
+                boundary.push(edge);
+            }
+        }
+        let mut points: Vec<LocalPoint> = boundary.iter().map(|edge| edge[0]).collect();
+        points.sort_unstable();
+        points.dedup();
+        Self { boundary, points, borders }
+    }
+
+    /// Whether some point of the strip is inside it: a triangulation of the outline would lose it.
+    fn has_inner_point(&self) -> bool {
+        let is_outer = |end: &LocalPoint| self.points.binary_search(end).is_ok();
+        !self.borders.iter().all(|&(u, v)| [u, v].iter().all(is_outer))
+    }
+
+    /// Whether the strip has an edge already, inside or on its boundary, as directed.
+    fn has_edge(&self, u: LocalPoint, v: LocalPoint) -> bool {
+        self.borders.binary_search(&edge_between(u, v)).is_ok()
+            || self.boundary.binary_search_by_key(&border_order(&[u, v]), border_order).is_ok()
+    }
+}
+
 /// Triangulates some faces of one plane as one, if that is possible soundly.
-fn triangulate(patch: &mut Patch<'_>, strip: &[u32], splits: &Splits, triangulator: &mut Triangulator) {
-    // The directed edges of all, less those that cancel: the borders between them.
-    let mut edges: Vec<[u32; 2]> = Vec::new();
-    let mut borders: Vec<Edge> = Vec::new();
-    let mut way = Vec::new();
-    for &index in strip {
-        let corners = patch.faces[index as usize].corners;
-        for k in 0..3 {
-            let (from, to) = (corners[k], corners[(k + 1) % 3]);
-            way.clear();
-            splits.add_way(from, to, &mut way);
-            way.push(to);
-            edges.extend(way.windows(2).map(|pair| [pair[0], pair[1]]));
-        }
-    }
-    let order = |&[u, v]: &[u32; 2]| (u.min(v), u.max(v), u > v);
-    edges.sort_unstable_by_key(order);
-    let mut boundary: Vec<[u32; 2]> = Vec::with_capacity(edges.len());
-    for edge in edges {
-        if boundary.last() == Some(&[edge[1], edge[0]]) {
-            boundary.pop();
-            borders.push((edge[1], edge[0]));
-        } else {
-            boundary.push(edge);
-        }
-    }
-    let mut points: Vec<u32> = boundary.iter().map(|edge| edge[0]).collect();
-    points.sort_unstable();
-    points.dedup();
-    // A point inside would be lost.
-    let all_on_boundary =
-        borders.iter().all(|&(u, v)| [u, v].iter().all(|end| points.binary_search(end).is_ok()));
-    if !all_on_boundary {
+fn triangulate_strip(
+    patch: &mut Patch<'_>,
+    strip: &[LocalFace],
+    splits: &Splits,
+    triangulator: &mut Triangulator,
+) {
+    // 1. The outline, by numbers without gaps.
+    let outline = Outline::of(patch, strip, splits);
+    if outline.has_inner_point() {
         return;
     }
-    let face = patch.faces[strip[0] as usize];
-    let flat = patch.projected(&points, face.origin);
-    let local = |point: u32| points.binary_search(&point).map_or(u32::MAX, |place| place as u32);
-    let local_boundary: Vec<[u32; 2]> = boundary.iter().map(|edge| edge.map(local)).collect();
+    let Outline { boundary, points, .. } = &outline;
+    let place = |point: LocalPoint| points.binary_search(&point).map_or(u32::MAX, |place| place as u32);
+    let numbered: Vec<[u32; 2]> = boundary.iter().map(|edge| edge.map(place)).collect();
+    // 2. Its triangulation in the plane.
+    let projected = patch.project(points, patch[strip[0]].origin);
     let mut triangles = Vec::new();
-    if !triangulator.soundly(&flat, &local_boundary, &mut triangles) {
+    if !triangulator.soundly(&projected, &numbered, &mut triangles) {
         return;
     }
-    let triangles: Vec<[u32; 3]> =
+    // 3. It must have no needles, and no new edge that others may have too: those between points not all of whose triangles
+    //    are in the patch.
+    let triangles: Vec<[LocalPoint; 3]> =
         triangles.into_iter().map(|corners| corners.map(|place| points[place as usize])).collect();
-    let is_known = |u: u32, v: u32| {
-        // Others may lie beside an edge between points whose triangles are not all here.
-        patch.is_complete(u)
-            || patch.is_complete(v)
-            || borders.binary_search(&(u.min(v), u.max(v))).is_ok()
-            || boundary.binary_search_by_key(&order(&[u, v]), order).is_ok()
-    };
-    let is_fine = |corners: &[u32; 3]| {
-        !is_low(corners.map(|point| patch.position(point)), patch.rounding())
+    let is_known =
+        |u: LocalPoint, v: LocalPoint| patch.is_complete(u) || patch.is_complete(v) || outline.has_edge(u, v);
+    let is_fine = |&corners: &[LocalPoint; 3]| {
+        !is_triangle_low(patch, corners, patch.source().rounding)
             && (0..3).all(|k| is_known(corners[k], corners[(k + 1) % 3]))
     };
     if !triangles.iter().all(is_fine) {
         return;
     }
-    for &index in strip {
-        patch.faces[index as usize].alive = false;
+    // 4. The exchange.
+    for &face in strip {
+        patch.drop_face(face);
     }
-    patch.faces.extend(triangles.into_iter().map(|corners| Face { corners, untouched: false, ..face }));
+    for corners in triangles {
+        patch.add_part(strip[0], corners);
+    }
 }
 
-/// Splits the sides of a face: a fan round the opposite corner for each.
-fn split_face(patch: &mut Patch<'_>, index: u32, splits: &Splits) {
-    let face = patch.faces[index as usize];
-    if !face.alive {
+/// Splits the sides of a face: a fan around the opposite corner for each.
+fn split_face(patch: &mut Patch<'_>, face: LocalFace, splits: &Splits) {
+    if !patch[face].alive {
         return;
     }
-    patch.faces[index as usize].alive = false;
     // Triangles with, for each side from corner k, whether it is (part of) a side of the face.
-    let mut stack = vec![(face.corners, [true; 3])];
+    let mut stack = vec![(patch[face].corners, [true; 3])];
+    let mut path = Vec::new();
+    patch.drop_face(face);
     while let Some((corners, is_side)) = stack.pop() {
-        let side = (0..3).find(|&k| is_side[k] && splits.get(corners[k], corners[(k + 1) % 3]).is_some());
+        let side = (0..3).find(|&k| is_side[k] && splits.contains(corners[k], corners[(k + 1) % 3]));
         let Some(k) = side else {
-            patch.faces.push(Face { corners, untouched: false, ..face });
+            patch.add_part(face, corners);
             continue;
         };
         let [from, to, opposite] = [0, 1, 2].map(|i| corners[(k + i) % 3]);
-        let mut way = Vec::new();
-        splits.add_way(from, to, &mut way);
-        way.push(to);
-        for (i, pair) in way.windows(2).enumerate() {
-            let (first, last) = (i == 0, i + 2 == way.len());
+        splits.trace(from, to, &mut path);
+        for (i, pair) in path.windows(2).enumerate() {
+            let (first, last) = (i == 0, i + 2 == path.len());
             let sides = [true, last && is_side[(k + 1) % 3], first && is_side[(k + 2) % 3]];
             stack.push(([pair[0], pair[1], opposite], sides));
         }

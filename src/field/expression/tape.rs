@@ -5,8 +5,10 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{Binary, Graph, Leaf, Node, NodeId, Unary};
+use crate::field::dual::{Dual, Slope};
 use crate::field::interval::Interval;
-use crate::field::number::{Dual, Number, Slope};
+use crate::field::number::Number;
+use crate::field::rfunction::RFunctions;
 
 /// One instruction; operands are positions of earlier instructions.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +54,7 @@ pub(crate) struct Scratch {
 }
 
 /// A number with everything a leaf needs to be evaluated over it.
-trait Field: Number {
+trait Field: RFunctions {
     fn leaf(leaf: &dyn Leaf, at: [Self; 3]) -> Self;
     fn leaf_slope(leaf: &dyn Leaf, axis: usize, at: [Self; 3]) -> Self;
     /// -1 if certainly less, 1 if certainly greater or equal, 0 if either.
@@ -150,7 +152,7 @@ pub(super) fn unary<N: Number>(operation: Unary, a: N) -> N {
 }
 
 /// Applies a function of two arguments.
-pub(super) fn binary<N: Number>(operation: Binary, a: N, b: N) -> N {
+pub(super) fn binary<N: RFunctions>(operation: Binary, a: N, b: N) -> N {
     match operation {
         Binary::Add => a.add(b),
         Binary::Sub => a.sub(b),
@@ -211,7 +213,7 @@ impl Tape {
         self.branchings as usize
     }
 
-    /// Runs the instructions. `branch` is told every branching's number and its comparison (as of
+    /// Runs the instructions. `branch` is given every branching's number and its comparison (as of
     /// [`Field::compare`]) and says which branch counts.
     fn run<N: Field>(
         &self,

@@ -1,4 +1,4 @@
-//! The boundaries of cells, looked up once: their undivided faces, the points round each face, and whether these are
+//! The boundaries of cells, looked up once: their undivided faces, the points around each face, and whether these are
 //! inside.
 
 use rustc_hash::FxHashMap;
@@ -20,9 +20,9 @@ pub(super) struct Boundaries {
     inside: Vec<bool>,
 }
 
-/// A face of a cell with the points round it, counter-clockwise seen from outside the cell.
+/// A face of a cell with the points around it, counter-clockwise seen from outside the cell.
 #[derive(Clone, Copy)]
-pub(super) struct Side<'a> {
+pub(super) struct CellFace<'a> {
     pub(super) face: Face,
     pub(super) points: &'a [Key],
     /// Whether each of the points is inside; empty until signs are known.
@@ -76,7 +76,7 @@ impl Boundaries {
     }
 
     /// The faces of a cell.
-    pub(super) fn of(&self, cell: usize) -> impl Iterator<Item = Side<'_>> {
+    pub(super) fn of(&self, cell: usize) -> impl Iterator<Item = CellFace<'_>> {
         let start =
             |ends: &[u32], index: usize| index.checked_sub(1).map_or(0, |before| ends[before]) as usize;
         let faces = start(&self.cells, cell)..self.cells[cell] as usize;
@@ -85,7 +85,7 @@ impl Boundaries {
             let first = index.checked_sub(1).map_or(0, |before| self.faces[before].1) as usize;
             let range = first..end as usize;
             let inside = self.inside.get(range.clone()).unwrap_or(&[]);
-            Side { face, points: &self.points[range], inside }
+            CellFace { face, points: &self.points[range], inside }
         })
     }
 

@@ -211,7 +211,7 @@ struct Lines<'a> {
     values: FxHashMap<Key, f64>,
 }
 
-/// One end of a line's piece: the crossing of a lattice edge, or of a spoke from a square's middle to a point.
+/// One end of a line: the crossing of a lattice edge, or of a spoke from a square's middle to a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum End {
     Edge(u64),
@@ -255,94 +255,137 @@ impl<'a> Lines<'a> {
     }
 
     fn contours(&self) -> Result<Contours, Error> {
-        let mut scratch = Scratch::default();
-        let lattice = &self.settings.lattice;
-        let mut places: FxHashMap<End, DVec3> = FxHashMap::default();
-        // From the end of a piece to its start, since pieces have the inside on their right.
-        let mut before: FxHashMap<End, (End, Option<DVec3>)> = FxHashMap::default();
-        let mut starts = Vec::new();
+        let mut drawing = Drawing::default();
         for &(square, tape) in &self.squares {
             let outline = self.corners.outline(square.face);
-            let next = |k: usize| outline[(k + 1) % outline.len()];
             let inside: SmallVec<[bool; 8]> = outline.iter().map(|&point| self.is_inside(point)).collect();
-            let cuts = stretches(&inside);
-            let edge = |k: usize| {
-                let (point, axis) = edge_between(outline[k], next(k));
-                End::Edge(directed(point, axis))
-            };
-            for k in 0..outline.len() {
-                if inside[k] != inside[(k + 1) % outline.len()] {
-                    let End::Edge(name) = edge(k) else { continue };
-                    // Always from the edge's lower point, so that both squares agree.
-                    let (low, _) = undirected(name);
-                    let high = if low == outline[k] { next(k) } else { outline[k] };
-                    let values = [low, high].map(|point| self.values.get(&point).copied().unwrap_or(0.0));
-                    let ends = [low, high].map(|point| lattice.place(unkey(point)));
-                    places
-                        .entry(edge(k))
-                        .or_insert_with(|| crossing(tape, ends[0], ends[1], values, 60, &mut scratch));
+            self.cross_edges(&outline, &inside, tape, &mut drawing);
+            match stretches(&inside)[..] {
+                [] => {}
+                [(enter, exit)] => {
+                    let ends = [end_on_edge(&outline, enter), end_on_edge(&outline, exit)];
+                    self.join_with_kink(square.face, tape, ends, &mut drawing);
                 }
-            }
-            let mut join = |from: End, to: End, bend: Option<DVec3>| {
-                before.insert(to, (from, bend));
-                starts.push(to);
-            };
-            if let [(enter, exit)] = cuts[..] {
-                let [from, to] = [edge(enter), edge(exit)];
-                let points = points_of(square.face).map(|point| lattice.place(point));
-                let ends = [places[&from], places[&to]];
-                let span = (points[0], points[2]);
-                join(from, to, kink(tape, ends, span, 2, self.settings.tolerance, &mut scratch));
-            } else if cuts.len() > 1 {
-                let points = points_of(square.face).map(|point| lattice.place(point));
-                let middle = (points[0] + points[2]) * 0.5;
-                let value = value_at(tape, middle, &mut scratch)?;
-                let name = key(square.face.corner);
-                for k in 0..outline.len() {
-                    let end = |number: usize| match number {
-                        0 => edge(k),
-                        1 => End::Spoke(name, next(k)),
-                        _ => End::Spoke(name, outline[k]),
-                    };
-                    for point in [outline[k], next(k)] {
-                        let ends = [value, self.values.get(&point).copied().unwrap_or(0.0)];
-                        if (ends[0] > 0.0) != (ends[1] > 0.0) {
-                            let place = lattice.place(unkey(point));
-                            places
-                                .entry(End::Spoke(name, point))
-                                .or_insert_with(|| crossing(tape, middle, place, ends, 60, &mut scratch));
-                        }
-                    }
-                    let signs = [self.is_inside(outline[k]), self.is_inside(next(k)), value > 0.0];
-                    for (enter, exit) in stretches(&signs) {
-                        join(end(enter), end(exit), None);
-                    }
-                }
+                // Several lines may run either way: over the square's middle only one way is left.
+                _ => self.join_over_middle(square.face, tape, &outline, &mut drawing)?,
             }
         }
-        Ok(chained(&starts, &before, &places))
+        Ok(drawing.chained())
+    }
+
+    /// Finds the crossings of the outline's edges that begin inside and end outside, or the other way.
+    fn cross_edges(&self, outline: &[Key], inside: &[bool], tape: &Tape, drawing: &mut Drawing) {
+        let lattice = &self.settings.lattice;
+        for k in 0..outline.len() {
+            let after = (k + 1) % outline.len();
+            let End::Edge(name) = end_on_edge(outline, k) else { continue };
+            if inside[k] != inside[after] {
+                // Always from the edge's lower point, so that both squares agree.
+                let (low, _) = undirected(name);
+                let high = if low == outline[k] { outline[after] } else { outline[k] };
+                let values = [low, high].map(|point| self.value(point));
+                let ends = [low, high].map(|point| lattice.place(unkey(point)));
+                let Drawing { places, scratch, .. } = drawing;
+                places
+                    .entry(End::Edge(name))
+                    .or_insert_with(|| crossing(tape, ends[0], ends[1], values, 60, scratch));
+            }
+        }
+    }
+
+    /// The one line of a square, with a kink where two branches meet.
+    fn join_with_kink(&self, face: Face, tape: &Tape, [from, to]: [End; 2], drawing: &mut Drawing) {
+        let lattice = &self.settings.lattice;
+        let points = points_of(face).map(|point| lattice.place(point));
+        let ends = [drawing.places[&from], drawing.places[&to]];
+        let span = (points[0], points[2]);
+        let bend = kink(tape, ends, span, 2, self.settings.tolerance, &mut drawing.scratch);
+        drawing.join(from, to, bend);
+    }
+
+    /// The lines of a square that has several: of the triangles between its middle and its edges.
+    fn join_over_middle(
+        &self,
+        face: Face,
+        tape: &Tape,
+        outline: &[Key],
+        drawing: &mut Drawing,
+    ) -> Result<(), Error> {
+        let lattice = &self.settings.lattice;
+        let points = points_of(face).map(|point| lattice.place(point));
+        let middle = (points[0] + points[2]) * 0.5;
+        let value = value_at(tape, middle, &mut drawing.scratch)?;
+        let name = key(face.corner);
+        for (k, &start) in outline.iter().enumerate() {
+            let next = outline[(k + 1) % outline.len()];
+            let end = |number: usize| match number {
+                0 => end_on_edge(outline, k),
+                1 => End::Spoke(name, next),
+                _ => End::Spoke(name, start),
+            };
+            for point in [start, next] {
+                let ends = [value, self.value(point)];
+                if (ends[0] > 0.0) != (ends[1] > 0.0) {
+                    let place = lattice.place(unkey(point));
+                    let Drawing { places, scratch, .. } = drawing;
+                    places
+                        .entry(End::Spoke(name, point))
+                        .or_insert_with(|| crossing(tape, middle, place, ends, 60, scratch));
+                }
+            }
+            let signs = [self.is_inside(start), self.is_inside(next), value > 0.0];
+            for (enter, exit) in stretches(&signs) {
+                drawing.join(end(enter), end(exit), None);
+            }
+        }
+        Ok(())
+    }
+
+    /// The field at a point of the lattice that was looked at.
+    fn value(&self, point: Key) -> f64 {
+        self.values.get(&point).copied().unwrap_or(0.0)
     }
 }
 
-fn chained(
-    starts: &[End],
-    before: &FxHashMap<End, (End, Option<DVec3>)>,
-    places: &FxHashMap<End, DVec3>,
-) -> Contours {
-    let mut used = rustc_hash::FxHashSet::default();
-    let mut contours = Contours::default();
-    for &start in starts {
-        let mut points = Vec::new();
-        let mut at = start;
-        while used.insert(at) {
-            let Some(&(previous, bend)) = before.get(&at) else { break };
-            points.extend(places.get(&at).map(|place| [place.x, place.y]));
-            points.extend(bend.map(|place| [place.x, place.y]));
-            at = previous;
-        }
-        if points.len() > 2 {
-            contours.loops.push(points);
-        }
+/// The crossing of edge `k` of an outline.
+fn end_on_edge(outline: &[Key], k: usize) -> End {
+    let (point, axis) = edge_between(outline[k], outline[(k + 1) % outline.len()]);
+    End::Edge(directed(point, axis))
+}
+
+/// The lines found so far.
+#[derive(Default)]
+struct Drawing {
+    places: FxHashMap<End, DVec3>,
+    /// From the end of a line to its start, since lines have the inside on their right.
+    before: FxHashMap<End, (End, Option<DVec3>)>,
+    starts: Vec<End>,
+    scratch: Scratch,
+}
+
+impl Drawing {
+    fn join(&mut self, from: End, to: End, bend: Option<DVec3>) {
+        self.before.insert(to, (from, bend));
+        self.starts.push(to);
     }
-    contours
+
+    /// The lines end to end.
+    fn chained(&self) -> Contours {
+        let mut used = rustc_hash::FxHashSet::default();
+        let mut contours = Contours::default();
+        for &start in &self.starts {
+            let mut points = Vec::new();
+            let mut at = start;
+            while used.insert(at) {
+                let Some(&(previous, bend)) = self.before.get(&at) else { break };
+                points.extend(self.places.get(&at).map(|place| [place.x, place.y]));
+                points.extend(bend.map(|place| [place.x, place.y]));
+                at = previous;
+            }
+            if points.len() > 2 {
+                contours.loops.push(points);
+            }
+        }
+        contours
+    }
 }

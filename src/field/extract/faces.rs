@@ -1,7 +1,7 @@
 //! Faces of cells as polygons, and the lines in which the surface cuts them.
 //!
 //! A cell's boundary is tiled by the smallest faces of the cells on either side; a face's outline is divided at
-//! every corner of another cell. Both cells of a face, and all cells round an edge, therefore see the same points.
+//! every corner of another cell. Both cells of a face, and all cells around an edge, therefore see the same points.
 
 use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
@@ -94,7 +94,7 @@ impl Corners {
     }
 }
 
-/// Points round a face.
+/// Points around a face.
 pub(super) type Outline = SmallVec<[Key; 8]>;
 
 impl Face {

@@ -1,4 +1,4 @@
-//! Lines in which the surface cuts faces, chained to closed loops round a cell.
+//! Lines in which the surface cuts faces, chained to closed loops around a cell.
 
 use smallvec::SmallVec;
 
@@ -15,7 +15,7 @@ pub(super) fn stretches(inside: &[bool]) -> SmallVec<[(usize, usize); 2]> {
             .collect::<SmallVec<[usize; 4]>>()
     };
     let (enters, mut exits) = (changes(false), changes(true));
-    // The exit that follows an enter round the outline.
+    // The exit that follows an enter around the outline.
     if let (Some(&enter), Some(&exit)) = (enters.first(), exits.first())
         && exit < enter
     {
@@ -26,7 +26,7 @@ pub(super) fn stretches(inside: &[bool]) -> SmallVec<[(usize, usize); 2]> {
 
 /// One piece of a loop, from one vertex to the next, perhaps over a kink.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Segment {
+pub(super) struct LoopLink {
     pub(super) from: u32,
     pub(super) to: u32,
     pub(super) kink: Option<u32>,
@@ -34,7 +34,7 @@ pub(super) struct Segment {
 
 /// Chains segments to loops; every vertex begins one segment and ends one. Loops are lists of segments, each begun at
 /// its earliest segment. A segment that leads nowhere is left out.
-pub(super) fn chain(segments: &[Segment]) -> Vec<Vec<Segment>> {
+pub(super) fn chain(segments: &[LoopLink]) -> Vec<Vec<LoopLink>> {
     let mut used = vec![false; segments.len()];
     let mut loops = Vec::new();
     for start in 0..segments.len() {
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn loops_are_found_and_dead_ends_left_out() {
-        let segment = |from, to| Segment { from, to, kink: None };
+        let segment = |from, to| LoopLink { from, to, kink: None };
         let loops = chain(&[segment(1, 2), segment(5, 6), segment(2, 3), segment(6, 5), segment(3, 1)]);
         let starts: Vec<Vec<u32>> = loops.iter().map(|l| l.iter().map(|s| s.from).collect()).collect();
         assert_eq!(starts, [vec![1, 2, 3], vec![5, 6]]);

@@ -2,8 +2,8 @@
 //!
 //! # How
 //! Space is divided into cubes (an octree) until each is certainly empty, by interval arithmetic, or holds a piece of
-//! surface that one small patch follows to within the tolerance. On every face of the cubes the surface's cut is a
-//! line between crossings of lattice edges, with a kink where a crease passes; the lines round a cube form a loop, and
+//! surface that one small filling follows to within the tolerance. On every face of the cubes the surface's cut is a
+//! line between crossings of lattice edges, with a kink where a crease passes; the lines around a cube form a loop, and
 //! the loop is filled with triangles, from a point on the crease or corner inside the cube if there is one. This is
 //! cubical marching squares (Ho, Wu, Chen, Chuang, Ouhyoung 2005: features on faces and in cells, no cracks between
 //! cells of different size), with the positions of features from Newton's method on the branches of minima and maxima
@@ -14,7 +14,7 @@
 //! - **Closed and 2-manifold, always**: every face of a cube has one line, seen alike from both sides; every cube
 //!   fills its loop with a disc. Should bounds have been wrong and a cube held to be empty have a cut face, it is looked
 //!   at again.
-//! - **No self-crossings**, up to the rounding of coordinates: each patch stays in its cube, and patches in one cube do
+//! - **No self-crossings**, up to the rounding of coordinates: each filling stays in its cube, and fillings in one cube do
 //!   not cross.
 //! - Deterministic: the same bytes for any number of threads.
 //!
@@ -24,29 +24,32 @@
 mod boundaries;
 mod contour;
 mod faces;
+mod filling;
 mod lattice;
 mod loops;
 mod octree;
-mod patch;
 mod solve;
 mod surface;
 mod tables;
 mod tetrahedra;
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Expression;
+use super::expression::Tape;
 use crate::{Control, Error, Mesh};
 pub use contour::ContourExtraction;
 use faces::Corners;
-use lattice::{Cube, DEEPEST, Lattice};
-use octree::Leaf;
+use lattice::{Cube, DEEPEST, Key, Lattice};
+use octree::{Leaf, Settings};
 use tables::Tables;
 
-/// How often cells are divided again after their neighbours are known.
+/// Rounds in which cells are divided again after their neighbours are known: each halves the cells that need it.
 const ROUNDS: usize = 6;
-/// How often cubes are looked at again that were held to be empty, but have a cut face.
+/// Rounds in which cubes are looked at again that were held to be empty but have a cut face.
 const OPENINGS: usize = 16;
 
 /// Settings of an extraction.
@@ -102,8 +105,8 @@ impl Extraction {
         self
     }
 
-    /// Side of the smallest cubes, which are reached where features meet and along edges that cannot be told by
-    /// branches. Default: the tolerance. Rounded down to a halving of the whole box.
+    /// Side of the smallest cubes, which are reached where features meet and along edges that branches
+    /// do not show. Default: the tolerance. Rounded down to a halving of the whole box.
     #[must_use]
     pub fn smallest(mut self, smallest: f64) -> Self {
         self.smallest = Some(smallest);
@@ -133,19 +136,29 @@ impl Extraction {
     ///   surface;
     /// - the limits of the control.
     pub fn run(&self, field: &Expression) -> Result<Extracted, Error> {
-        let (low, high) = (DVec3::from_array(self.low), DVec3::from_array(self.high));
-        if !(low.is_finite() && high.is_finite() && low.cmplt(high).all()) {
-            let what = format!("the box from {:?} to {:?} is empty or not finite", self.low, self.high);
-            return Err(Error::InvalidArgument(what));
-        }
-        let positive = |value: f64, name: &str| {
-            if value > 0.0 && value.is_finite() {
-                Ok(value)
-            } else {
-                Err(Error::InvalidArgument(format!("the {name} must be positive, not {value}")))
-            }
-        };
+        let (low, high) = self.checked_box()?;
         let tolerance = positive(self.tolerance, "tolerance")?;
+        let extent = (high - low).max_element();
+        let lattice = self.lattice(low, high, tolerance)?;
+        let field = if self.clip { self.clipped(field) } else { field.clone() }.sign_form();
+        let usual = octree::usual_resolution(field.tape(), extent, tolerance);
+        let resolution = positive(self.resolution.unwrap_or(usual), "resolution")?;
+        let settings = Settings { lattice, tolerance, resolution, control: &self.control };
+        Rounds::new(field.tape(), settings)?.run()
+    }
+
+    fn checked_box(&self) -> Result<(DVec3, DVec3), Error> {
+        let (low, high) = (DVec3::from_array(self.low), DVec3::from_array(self.high));
+        if low.is_finite() && high.is_finite() && low.cmplt(high).all() {
+            Ok((low, high))
+        } else {
+            let what = format!("the box from {:?} to {:?} is empty or not finite", self.low, self.high);
+            Err(Error::InvalidArgument(what))
+        }
+    }
+
+    /// The lattice of the smallest cells over the box.
+    fn lattice(&self, low: DVec3, high: DVec3, tolerance: f64) -> Result<Lattice, Error> {
         let extent = (high - low).max_element();
         let smallest = positive(self.smallest.unwrap_or(tolerance), "smallest cell")?;
         let depth = (extent / smallest).log2().ceil().max(3.0);
@@ -155,69 +168,7 @@ impl Extraction {
             );
             return Err(Error::InvalidArgument(what));
         }
-        let lattice = Lattice::around(low, high, depth as u32);
-        let field = if self.clip { self.clipped(field) } else { field.clone() }.sign_form();
-        let usual = octree::usual_resolution(field.tape(), extent, tolerance);
-        let resolution = positive(self.resolution.unwrap_or(usual), "resolution")?;
-        let settings = octree::Settings { lattice, tolerance, resolution, control: &self.control };
-        let mut leaves = octree::subdivide(field.tape(), &settings)?;
-        let mut corners = Corners::of(leaves.iter().map(|leaf| leaf.cube));
-        let mut values = FxHashMap::default();
-        // The cells to look at: all, or those whose neighbours have changed since they were looked at.
-        let mut changed: Option<FxHashSet<Cube>> = None;
-        // Whether the field is known at all corners.
-        let mut known = false;
-        let (mut refinements, mut openings) = (0, 0);
-        loop {
-            if let Some(leaf) = leaves.iter().find(|leaf| leaf.inside && at_edge(&lattice, leaf.cube)) {
-                let place = leaf.cube.points().into_iter().find(|&point| lattice.on_boundary(point));
-                return Err(tables::unbounded(lattice.place(place.unwrap_or(leaf.cube.corner)).to_array()));
-            }
-            let looked_at = |leaf: &Leaf| {
-                leaf.tape.is_some() && changed.as_ref().is_none_or(|changed| changed.contains(&leaf.cube))
-            };
-            let chosen: Vec<usize> = (0..leaves.len()).filter(|&index| looked_at(&leaves[index])).collect();
-            let cells = chosen.iter().map(|&index| &leaves[index]).collect();
-            let control = &self.control;
-            let tables = Tables::new(cells, &corners, &mut values, known, lattice, tolerance, control)?;
-            if changed.is_none() && !tables.one_sided.is_empty() && openings < OPENINGS {
-                let faces = tables.one_sided;
-                octree::reopen(&mut leaves, &faces, field.tape());
-                openings += 1;
-                known = false;
-                continue;
-            }
-            let (mesh, deviations) = surface::assemble(&tables, &self.control)?;
-            let divided = tables.divided;
-            // Finer neighbours may have shown what a cell's own corners did not.
-            let mut wanted = vec![false; leaves.len()];
-            for (&index, (&divided, &error)) in chosen.iter().zip(divided.iter().zip(&deviations)) {
-                wanted[index] = leaves[index].cube.size > 1 && (divided || error > tolerance);
-            }
-            if refinements < ROUNDS && wanted.contains(&true) {
-                let first = octree::refine(&mut leaves, |leaf| wanted[leaf], &settings)?;
-                let new_points = corners.extend(leaves[first..].iter().map(|leaf| leaf.cube));
-                let mut cubes = octree::touching(&leaves, &new_points, &lattice);
-                cubes.extend(leaves[first..].iter().map(|leaf| leaf.cube));
-                changed = Some(cubes);
-                refinements += 1;
-                known = false;
-                continue;
-            }
-            // The surface is put together only from all cells.
-            if changed.take().is_some() {
-                known = true;
-                continue;
-            }
-            let finest = chosen.iter().map(|&index| leaves[index].cube.size).min().unwrap_or(lattice.count);
-            return Ok(Extracted {
-                mesh,
-                cells: chosen.len(),
-                divided_cells: divided.iter().filter(|&&divided| divided).count(),
-                smallest_cell: f64::from(finest) * lattice.step(),
-                deviation: deviations.iter().copied().fold(0.0, f64::max),
-            });
-        }
+        Ok(Lattice::around(low, high, depth as u32))
     }
 
     /// The field, cut off at the box.
@@ -234,6 +185,118 @@ impl Extraction {
             all = graph.min(all, below);
         }
         Expression::new(graph, all)
+    }
+}
+
+fn positive(value: f64, name: &str) -> Result<f64, Error> {
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Error::InvalidArgument(format!("the {name} must be positive, not {value}")))
+    }
+}
+
+/// The octree between the rounds of an extraction.
+struct Rounds<'a> {
+    tape: &'a Arc<Tape>,
+    settings: Settings<'a>,
+    leaves: Vec<Leaf>,
+    corners: Corners,
+    /// The field at corners, as far as it was needed.
+    values: FxHashMap<Key, f64>,
+    /// Whether the field is known at all corners.
+    known: bool,
+    /// The cells to look at: all, or those whose neighbours have changed since they were looked at.
+    changed: Option<FxHashSet<Cube>>,
+    refinements: usize,
+    openings: usize,
+}
+
+impl<'a> Rounds<'a> {
+    fn new(tape: &'a Arc<Tape>, settings: Settings<'a>) -> Result<Self, Error> {
+        let leaves = octree::subdivide(tape, &settings)?;
+        let corners = Corners::of(leaves.iter().map(|leaf| leaf.cube));
+        let values = FxHashMap::default();
+        let (known, changed, refinements, openings) = (false, None, 0, 0);
+        Ok(Self { tape, settings, leaves, corners, values, known, changed, refinements, openings })
+    }
+
+    fn run(mut self) -> Result<Extracted, Error> {
+        let Settings { lattice, tolerance, control, .. } = self.settings;
+        loop {
+            self.check_bounded()?;
+            // 1. The lines on the faces of the cells to look at.
+            let chosen = self.chosen();
+            let cells = chosen.iter().map(|&index| &self.leaves[index]).collect();
+            let tables =
+                Tables::new(cells, &self.corners, &mut self.values, self.known, lattice, tolerance, control)?;
+            // 2. Cubes held to be empty whose faces are cut are looked at again.
+            if self.changed.is_none() && !tables.one_sided.is_empty() && self.openings < OPENINGS {
+                let faces = tables.one_sided;
+                octree::reopen(&mut self.leaves, &faces, self.tape);
+                self.openings += 1;
+                self.known = false;
+                continue;
+            }
+            // 3. The surface in each cell, and cells that it does not follow closely enough divided.
+            let (mesh, deviations) = surface::assemble(&tables, control)?;
+            let divided = tables.divided;
+            if self.refine(&chosen, &divided, &deviations)? {
+                continue;
+            }
+            // 4. The surface is put together only from all cells.
+            if self.changed.take().is_some() {
+                self.known = true;
+                continue;
+            }
+            let sizes = chosen.iter().map(|&index| self.leaves[index].cube.size);
+            return Ok(Extracted {
+                mesh,
+                cells: chosen.len(),
+                divided_cells: divided.iter().filter(|&&divided| divided).count(),
+                smallest_cell: f64::from(sizes.min().unwrap_or(lattice.count)) * lattice.step(),
+                deviation: deviations.iter().copied().fold(0.0, f64::max),
+            });
+        }
+    }
+
+    /// Fails if the solid does not end inside the box.
+    fn check_bounded(&self) -> Result<(), Error> {
+        let lattice = &self.settings.lattice;
+        let Some(leaf) = self.leaves.iter().find(|leaf| leaf.inside && at_edge(lattice, leaf.cube)) else {
+            return Ok(());
+        };
+        let place = leaf.cube.points().into_iter().find(|&point| lattice.on_boundary(point));
+        Err(tables::unbounded(lattice.place(place.unwrap_or(leaf.cube.corner)).to_array()))
+    }
+
+    /// Positions of the leaves to look at.
+    fn chosen(&self) -> Vec<usize> {
+        let changed = self.changed.as_ref();
+        let looked_at =
+            |leaf: &Leaf| leaf.tape.is_some() && changed.is_none_or(|changed| changed.contains(&leaf.cube));
+        (0..self.leaves.len()).filter(|&index| looked_at(&self.leaves[index])).collect()
+    }
+
+    /// Divides the cells that need it and can be: finer neighbours may have shown what a cell's own corners did not.
+    /// Whether there were any.
+    fn refine(&mut self, chosen: &[usize], divided: &[bool], deviations: &[f64]) -> Result<bool, Error> {
+        let mut wanted = vec![false; self.leaves.len()];
+        for (&index, (&divided, &deviation)) in chosen.iter().zip(divided.iter().zip(deviations)) {
+            let cell = &self.leaves[index];
+            wanted[index] = cell.cube.size > 1 && (divided || deviation > self.settings.tolerance);
+        }
+        if self.refinements >= ROUNDS || !wanted.contains(&true) {
+            return Ok(false);
+        }
+        let first = octree::refine(&mut self.leaves, |leaf| wanted[leaf], &self.settings)?;
+        let new_points = self.corners.extend(self.leaves[first..].iter().map(|leaf| leaf.cube));
+        let mut cubes = octree::touching(&self.leaves, &new_points, &self.settings.lattice);
+        cubes.extend(self.leaves[first..].iter().map(|leaf| leaf.cube));
+        self.changed = Some(cubes);
+        self.refinements += 1;
+        self.known = false;
+        Ok(true)
     }
 }
 

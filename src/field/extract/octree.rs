@@ -1,4 +1,4 @@
-//! Where to look: cubes divided until each is certainly empty, or holds a piece of surface that one patch follows
+//! Where to look: cubes divided until each is certainly empty, or holds a piece of surface that one filling follows
 //! to within the tolerance.
 
 use std::sync::Arc;
@@ -8,9 +8,9 @@ use rustc_hash::FxHashSet;
 use smallvec::SmallVec;
 
 use super::faces::Face;
+use super::filling::{Cell, Corner};
 use super::lattice::{Cube, Key, Lattice, unkey};
-use super::loops::{Segment, chain, stretches};
-use super::patch::{Cell, Corner};
+use super::loops::{LoopLink, chain, stretches};
 use super::solve::{crossing, deviation, kink, sample};
 use crate::field::expression::{Choice, Scratch, Tape};
 use crate::field::interval::Interval;
@@ -36,8 +36,8 @@ pub(super) struct Settings<'a> {
     pub(super) control: &'a Control,
 }
 
-/// The resolution where nobody asks for one. Bounds of formulas find small parts by themselves; those of distances
-/// tell little where a thin part has faces both ways.
+/// The default resolution. Bounds of formulas find small parts by themselves; those of distances are wide where a thin
+/// part has faces both ways.
 pub(super) fn usual_resolution(tape: &Tape, extent: f64, tolerance: f64) -> f64 {
     let coarse = extent / 64.0;
     if tape.has_leaf() { coarse.min(4.0 * tolerance) } else { coarse }
@@ -88,7 +88,7 @@ pub(super) fn touching(leaves: &[Leaf], points: &[Key], lattice: &Lattice) -> Fx
     let mut found = FxHashSet::default();
     for &point in points {
         let point = unkey(point);
-        // The finest cubes round the point, and the cubes that hold them.
+        // The finest cubes around the point, and the cubes that hold them.
         for octant in 0..8 {
             let lower: [u32; 3] = std::array::from_fn(|axis| octant >> axis & 1);
             if (0..3).any(|axis| point[axis] < lower[axis] || point[axis] - lower[axis] >= lattice.count) {
@@ -327,7 +327,92 @@ fn outline(axis: usize, upper: bool) -> [usize; 4] {
     if upper { [0, u, u | v, v].map(|corner| corner | 1 << axis) } else { [0, v, u | v, u] }
 }
 
-/// Whether the surface in the cell, as far as its own eight corners tell, is one piece that a patch follows to within
+/// The lines on the faces of a cell, as far as its own eight corners show.
+#[derive(Default)]
+struct CellLines {
+    /// Crossings of the cell's edges, which are named by two corners, the lower first.
+    crossings: SmallVec<[((usize, usize), DVec3); 12]>,
+    /// The lines, with the axis of their face and whether it is the upper one.
+    lines: SmallVec<[(LoopLink, usize, bool); 6]>,
+}
+
+impl CellLines {
+    /// `None` if a face is cut by several lines, or the lines are not one loop.
+    fn new(cell: &Cell<'_>, points: &[DVec3; 8], values: &[f64; 8], scratch: &mut Scratch) -> Option<Self> {
+        let mut found = Self::default();
+        for axis in 0..3 {
+            for upper in [false, true] {
+                let corners = outline(axis, upper);
+                let inside = corners.map(|corner| values[corner] > 0.0);
+                let stretches = stretches(&inside);
+                if stretches.len() > 1 {
+                    return None;
+                }
+                for (enter, exit) in stretches {
+                    let [from, to] = [enter, exit].map(|k| {
+                        let (a, b) = (corners[k], corners[(k + 1) % 4]);
+                        found.crossing(cell, (a.min(b), a.max(b)), points, values, scratch)
+                    });
+                    found.lines.push((LoopLink { from, to, kink: None }, axis, upper));
+                }
+            }
+        }
+        let segments: Vec<LoopLink> = found.lines.iter().map(|line| line.0).collect();
+        (chain(&segments).len() == 1).then_some(found)
+    }
+
+    /// Number of the crossing of an edge, found if it is not known yet.
+    fn crossing(
+        &mut self,
+        cell: &Cell<'_>,
+        edge: (usize, usize),
+        points: &[DVec3; 8],
+        values: &[f64; 8],
+        scratch: &mut Scratch,
+    ) -> u32 {
+        if let Some(known) = self.crossings.iter().position(|crossing| crossing.0 == edge) {
+            return known as u32;
+        }
+        let (from, to) = edge;
+        let at = crossing(cell.tape, points[from], points[to], [values[from], values[to]], 5, scratch);
+        self.crossings.push((edge, at));
+        (self.crossings.len() - 1) as u32
+    }
+
+    /// Whether all crossings lie on one branch of the field.
+    fn have_one_branch(&self, cell: &Cell<'_>, scratch: &mut Scratch) -> bool {
+        let first = sample(cell.tape, self.crossings[0].1, scratch).branch;
+        self.crossings[1..].iter().all(|crossing| sample(cell.tape, crossing.1, scratch).branch == first)
+    }
+
+    /// The corners of the loop: crossings, and kinks where branches meet on a face.
+    fn corners(&self, cell: &Cell<'_>, scratch: &mut Scratch) -> Vec<Corner> {
+        let mut kinks: Vec<DVec3> = Vec::new();
+        let mut segments = Vec::with_capacity(self.lines.len());
+        for &(segment, axis, upper) in &self.lines {
+            let ends = [segment.from, segment.to].map(|vertex| self.crossings[vertex as usize].1);
+            let (mut low, mut high) = (cell.low, cell.high);
+            if upper {
+                low[axis] = high[axis];
+            } else {
+                high[axis] = low[axis];
+            }
+            let found = kink(cell.tape, ends, (low, high), axis, cell.tolerance, scratch);
+            kinks.extend(found);
+            let number = (self.crossings.len() + kinks.len() - 1) as u32;
+            segments.push(LoopLink { kink: found.map(|_| number), ..segment });
+        }
+        chain(&segments).into_iter().next().map_or_else(Vec::new, |pieces| {
+            corners_of(&pieces, |vertex| {
+                let vertex = vertex as usize;
+                let crossing = self.crossings.get(vertex);
+                crossing.map_or_else(|| kinks[vertex - self.crossings.len()], |crossing| crossing.1)
+            })
+        })
+    }
+}
+
+/// Whether the surface in the cell, as far as its own eight corners show, is one piece that a filling follows to within
 /// the tolerance.
 fn is_simple(
     cell: &Cell<'_>,
@@ -336,76 +421,23 @@ fn is_simple(
     crease_may_hide: bool,
     scratch: &mut Scratch,
 ) -> bool {
-    let mut places: SmallVec<[((usize, usize), DVec3); 12]> = SmallVec::new();
-    let mut vertex = |a: usize, b: usize, scratch: &mut Scratch| {
-        let edge = (a.min(b), a.max(b));
-        if let Some(known) = places.iter().position(|place| place.0 == edge) {
-            return known as u32;
-        }
-        let (from, to) = edge;
-        let at = crossing(cell.tape, points[from], points[to], [values[from], values[to]], 5, scratch);
-        places.push((edge, at));
-        (places.len() - 1) as u32
-    };
-    let mut lines = Vec::with_capacity(6);
-    for axis in 0..3 {
-        for upper in [false, true] {
-            let corners = outline(axis, upper);
-            let inside = corners.map(|corner| values[corner] > 0.0);
-            let stretches = stretches(&inside);
-            if stretches.len() > 1 {
-                return false;
-            }
-            for (enter, exit) in stretches {
-                let from = vertex(corners[enter], corners[(enter + 1) % 4], scratch);
-                let to = vertex(corners[exit], corners[(exit + 1) % 4], scratch);
-                lines.push((Segment { from, to, kink: None }, axis, upper));
-            }
-        }
-    }
-    let segments: Vec<Segment> = lines.iter().map(|line| line.0).collect();
-    if chain(&segments).len() != 1 {
+    let Some(lines) = CellLines::new(cell, points, values, scratch) else { return false };
+    if crease_may_hide && lines.have_one_branch(cell, scratch) {
         return false;
     }
-    if crease_may_hide {
-        let first = sample(cell.tape, places[0].1, scratch).branch;
-        if places[1..].iter().all(|place| sample(cell.tape, place.1, scratch).branch == first) {
-            return false;
-        }
-    }
-    let mut kinks: Vec<DVec3> = Vec::new();
-    let mut segments = Vec::with_capacity(lines.len());
-    for (segment, axis, upper) in lines {
-        let ends = [segment.from, segment.to].map(|vertex| places[vertex as usize].1);
-        let (mut low, mut high) = (cell.low, cell.high);
-        if upper {
-            low[axis] = high[axis];
-        } else {
-            high[axis] = low[axis];
-        }
-        let found = kink(cell.tape, ends, (low, high), axis, cell.tolerance, scratch);
-        kinks.extend(found);
-        let number = (places.len() + kinks.len() - 1) as u32;
-        segments.push(Segment { kink: found.map(|_| number), ..segment });
-    }
-    let corners = chain(&segments).into_iter().next().map_or_else(Vec::new, |pieces| {
-        corners_of(&pieces, |vertex| {
-            let vertex = vertex as usize;
-            places.get(vertex).map_or_else(|| kinks[vertex - places.len()], |place| place.1)
-        })
-    });
+    let corners = lines.corners(cell, scratch);
     for (k, corner) in corners.iter().enumerate() {
         let next = corners[(k + 1) % corners.len()];
         if deviation(cell.tape, (corner.place + next.place) * 0.5, scratch) > cell.tolerance {
             return false;
         }
     }
-    let patch = cell.patch(&corners, scratch);
-    cell.error(&corners, &patch, scratch) <= cell.tolerance
+    let filling = cell.fill(&corners, scratch);
+    cell.error(&corners, &filling, scratch) <= cell.tolerance
 }
 
 /// The corners of a loop, kinks included.
-pub(super) fn corners_of(pieces: &[Segment], place: impl Fn(u32) -> DVec3) -> Vec<Corner> {
+pub(super) fn corners_of(pieces: &[LoopLink], place: impl Fn(u32) -> DVec3) -> Vec<Corner> {
     let mut corners = Vec::with_capacity(pieces.len());
     for piece in pieces {
         corners.push(Corner { place: place(piece.from), vertex: piece.from, kink: false });

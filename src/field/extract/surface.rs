@@ -1,12 +1,12 @@
-//! Patches of all cells put together.
+//! Fillings of all cells put together.
 
 use glam::DVec3;
 
-use super::boundaries::Side;
+use super::boundaries::CellFace;
+use super::filling::{Cell, Corner};
 use super::lattice::{Key, unkey};
-use super::loops::{Segment, chain, stretches};
+use super::loops::{LoopLink, chain, stretches};
 use super::octree::{corners_of, value_at};
-use super::patch::{Cell, Corner};
 use super::solve::{crossing, deviation};
 use super::tables::{FaceLine, Tables};
 use super::tetrahedra;
@@ -19,7 +19,7 @@ const WITHIN: u32 = 1 << 31;
 
 /// What a cell adds to the surface.
 #[derive(Default)]
-struct Piece {
+struct CellSurface {
     /// Vertices inside the cell.
     places: Vec<DVec3>,
     /// Triangles; vertices of the cell itself are `WITHIN` plus their position in `places`.
@@ -31,7 +31,9 @@ struct Piece {
 pub(super) fn assemble(tables: &Tables<'_>, control: &Control) -> Result<(Mesh, Vec<f64>), Error> {
     let pieces = work::pieces(tables.cells.len(), 32, control, "surface", |range| {
         let mut scratch = Scratch::default();
-        range.map(|cell| piece(tables, cell, &mut scratch)).collect::<Result<Vec<Piece>, Error>>()
+        range
+            .map(|cell| surface_of_cell(tables, cell, &mut scratch))
+            .collect::<Result<Vec<CellSurface>, Error>>()
     })?;
     let mut mesh = Mesh::new(tables.places.iter().map(DVec3::to_array).collect(), Vec::new());
     let mut deviations = Vec::with_capacity(tables.cells.len());
@@ -49,7 +51,7 @@ pub(super) fn assemble(tables: &Tables<'_>, control: &Control) -> Result<(Mesh, 
     Ok((mesh, deviations))
 }
 
-fn piece(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<Piece, Error> {
+fn surface_of_cell(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<CellSurface, Error> {
     let mut piece = if tables.divided[cell] {
         tetrahedral(tables, cell, scratch)?
     } else {
@@ -66,25 +68,25 @@ fn piece(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<Piec
     Ok(piece)
 }
 
-/// The patches of a cell whose faces are cut in one line each.
-fn patched(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<Piece, Error> {
+/// The fillings of a cell whose faces are cut in one line each.
+fn patched(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<CellSurface, Error> {
     let mut segments = Vec::new();
     for side in tables.boundaries.of(cell) {
         lines(tables, side, &mut segments);
     }
     let (low, high) = tables.lattice.corners(tables.cells[cell].cube);
     let shape = Cell { tape: tables.tape(cell)?, low, high, tolerance: tables.tolerance };
-    let mut piece = Piece::default();
+    let mut piece = CellSurface::default();
     for pieces in chain(&segments) {
         let corners: Vec<Corner> = corners_of(&pieces, |vertex| tables.places[vertex as usize]);
         if corners.len() < 3 {
             continue;
         }
-        let patch = shape.patch(&corners, scratch);
+        let filling = shape.fill(&corners, scratch);
         let apex = WITHIN + piece.places.len() as u32;
-        piece.places.extend(patch.apex);
+        piece.places.extend(filling.apex);
         piece.triangles.extend(
-            patch.triangles.iter().map(|triangle| {
+            filling.triangles.iter().map(|triangle| {
                 triangle.map(|k| corners.get(k as usize).map_or(apex, |corner| corner.vertex))
             }),
         );
@@ -93,8 +95,8 @@ fn patched(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<Pi
 }
 
 /// The lines in which the surface cuts a face, directed so that the inside is on the right seen from outside.
-fn lines(tables: &Tables<'_>, side: Side<'_>, segments: &mut Vec<Segment>) {
-    let Side { face, points: outline, inside } = side;
+fn lines(tables: &Tables<'_>, side: CellFace<'_>, segments: &mut Vec<LoopLink>) {
+    let CellFace { face, points: outline, inside } = side;
     // Most faces are not cut.
     if inside.iter().all(|&point| point == inside[0]) {
         return;
@@ -106,7 +108,7 @@ fn lines(tables: &Tables<'_>, side: Side<'_>, segments: &mut Vec<Segment>) {
             for (enter, exit) in stretches(inside) {
                 let from = tables.on_edge(outline[enter], next(enter));
                 let to = tables.on_edge(outline[exit], next(exit));
-                segments.push(Segment { from, to, kink: *kink });
+                segments.push(LoopLink { from, to, kink: *kink });
             }
         }
         Some(FaceLine::Fanned { inside: middle, spokes }) => {
@@ -119,7 +121,7 @@ fn lines(tables: &Tables<'_>, side: Side<'_>, segments: &mut Vec<Segment>) {
                 };
                 let signs = [inside[k], inside[(k + 1) % outline.len()], *middle];
                 for (enter, exit) in stretches(&signs) {
-                    segments.push(Segment { from: vertex(enter), to: vertex(exit), kink: None });
+                    segments.push(LoopLink { from: vertex(enter), to: vertex(exit), kink: None });
                 }
             }
         }
@@ -132,15 +134,15 @@ fn spoke(spokes: &[(Key, u32)], point: Key) -> u32 {
 }
 
 /// The surface in a cell divided into tetrahedra from its middle over its faces' triangles.
-fn tetrahedral(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<Piece, Error> {
+fn tetrahedral(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<CellSurface, Error> {
     let tape = tables.tape(cell)?;
     let (low, high) = tables.lattice.corners(tables.cells[cell].cube);
     let middle = (low + high) * 0.5;
     let value = value_at(tape, middle, scratch)?;
-    let mut piece = Piece::default();
+    let mut piece = CellSurface::default();
     // Vertices between the cell's middle and a lattice point or the middle of a face.
-    let mut within: Vec<(Place, u32)> = Vec::new();
-    for Side { face, points: outline, inside } in tables.boundaries.of(cell) {
+    let mut within: Vec<(SpokeEnd, u32)> = Vec::new();
+    for CellFace { face, points: outline, inside } in tables.boundaries.of(cell) {
         let (face_low, face_high) = tables.span(face);
         let face_middle = (face_low + face_high) * 0.5;
         let fan = tables.line(face);
@@ -155,21 +157,23 @@ fn tetrahedral(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Resul
             let cut = |p: u32, q: u32| {
                 let (p, q) = (p.min(q), p.max(q));
                 let outer = match p {
-                    0 => Place::Point(a),
-                    1 => Place::Point(b),
-                    _ => Place::Face(face.centre_doubled()),
+                    0 => SpokeEnd::Point(a),
+                    1 => SpokeEnd::Point(b),
+                    _ => SpokeEnd::Face(face.centre_doubled()),
                 };
                 match (p, q, fan) {
                     (0, 1, _) => tables.on_edge(a, b),
                     (_, 2, Some(FaceLine::Fanned { spokes, .. })) => {
                         spoke(spokes, if p == 0 { a } else { b })
                     }
-                    _ => *within_vertex(&mut within, &mut piece.places, outer, || {
+                    _ => *inner_vertex(&mut within, &mut piece.places, outer, || {
                         let (place, outer_value) = match outer {
-                            Place::Point(point) => (tables.lattice.place(unkey(point)), tables.value(point)),
-                            Place::Face(_) => (face_middle, tape.value(face_middle.to_array(), scratch)),
+                            SpokeEnd::Point(point) => {
+                                (tables.lattice.place(unkey(point)), tables.value(point))
+                            }
+                            SpokeEnd::Face(_) => (face_middle, tape.value(face_middle.to_array(), scratch)),
                         };
-                        // A face's middle may have another sign than its outline tells; then half-way.
+                        // A face's middle may have another sign than its outline suggests; then half-way.
                         if (outer_value > 0.0) == (value > 0.0) {
                             (middle + place) * 0.5
                         } else {
@@ -186,16 +190,16 @@ fn tetrahedral(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Resul
 
 /// What a vertex inside a divided cell is on the way to.
 #[derive(Clone, Copy, PartialEq)]
-enum Place {
+enum SpokeEnd {
     Point(Key),
     /// The middle of a face, doubled so that it is whole.
     Face([u32; 3]),
 }
 
-fn within_vertex<'v>(
-    known: &'v mut Vec<(Place, u32)>,
+fn inner_vertex<'v>(
+    known: &'v mut Vec<(SpokeEnd, u32)>,
     places: &mut Vec<DVec3>,
-    outer: Place,
+    outer: SpokeEnd,
     place: impl FnOnce() -> DVec3,
 ) -> &'v u32 {
     let at = known.iter().position(|entry| entry.0 == outer).unwrap_or_else(|| {

@@ -4,17 +4,17 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
-use super::boundaries::{Boundaries, Side};
+use super::boundaries::{Boundaries, CellFace};
 use super::faces::{Corners, Face, edge_between};
 use super::lattice::{Key, Lattice, directed, moved, undirected, unkey};
-use super::loops::{Segment, chain, stretches};
+use super::loops::{LoopLink, chain, stretches};
 use super::octree::{Leaf, value_at};
 use super::solve::{crossing, kink};
 use crate::field::expression::{Scratch, Tape};
 use crate::field::work;
 use crate::{Control, Error};
 
-/// The cells that the surface may meet, and everything about their boundaries that is known before patches are made.
+/// The cells that the surface may meet, and everything about their boundaries that is known before fillings are made.
 pub(super) struct Tables<'a> {
     pub(super) lattice: Lattice,
     pub(super) tolerance: f64,
@@ -194,7 +194,7 @@ impl<'a> Tables<'a> {
                 names.len() - 1
             }) as u32
         };
-        for Side { face, points: outline, inside } in self.boundaries.of(cell) {
+        for CellFace { face, points: outline, inside } in self.boundaries.of(cell) {
             let stretches = stretches(inside);
             if stretches.is_empty() {
                 continue;
@@ -205,7 +205,7 @@ impl<'a> Tables<'a> {
             for (enter, exit) in stretches {
                 let from = number(outline[enter], next(enter));
                 let to = number(outline[exit], next(exit));
-                segments.push(Segment { from, to, kink: None });
+                segments.push(LoopLink { from, to, kink: None });
             }
         }
         found.divided |= chain(&segments).len() > 1;

@@ -68,9 +68,6 @@ pub(super) fn call(
     name: &str,
     arguments: &[NodeId],
 ) -> Result<NodeId, String> {
-    let constant = |graph: &Graph, k: usize, what: &str| {
-        graph.as_constant(arguments[k]).ok_or_else(|| format!("{what} of `{name}` must be a constant"))
-    };
     Ok(match name {
         "sin" => graph.sin(arguments[0]),
         "cos" => graph.cos(arguments[0]),
@@ -95,68 +92,84 @@ pub(super) fn call(
             let above = graph.max(arguments[0], arguments[1]);
             graph.min(above, arguments[2])
         }
-        "repeat" => {
-            let period = constant(graph, 1, "the period")?;
-            if !(period > 0.0) {
-                return Err("the period of `repeat` must be positive".to_owned());
-            }
-            let copies = match arguments.get(2) {
-                Some(_) => match constant(graph, 2, "the number of copies")? {
-                    copies if (0.0..=1e9).contains(&copies) && copies.fract() == 0.0 => Some(copies as u32),
-                    _ => return Err("the number of copies of `repeat` must be a whole number".to_owned()),
-                },
-                None => None,
-            };
-            graph.repeated(arguments[0], period, copies)
-        }
-        // Choporov 2017: 1 - (x^2 + y^2) / r^2
-        "circle" | "sphere" => {
-            let (radius, at) = (arguments[arguments.len() - 1], &arguments[..arguments.len() - 1]);
-            let squares = squares(graph, at);
-            let radius = graph.square(radius);
-            let ratio = graph.div(squares, radius);
-            let one = graph.constant(1.0);
-            graph.sub(one, ratio)
-        }
-        // Choporov 2017: [1 - (2x / w)^2] AND [1 - (2y / h)^2]
-        "rectangle" | "block" => {
-            let half = arguments.len() / 2;
-            let sides: Vec<NodeId> = (0..half)
-                .map(|k| {
-                    let (one, two) = (graph.constant(1.0), graph.constant(2.0));
-                    let doubled = graph.mul(two, arguments[k]);
-                    let ratio = graph.div(doubled, arguments[half + k]);
-                    let square = graph.square(ratio);
-                    graph.sub(one, square)
-                })
-                .collect();
-            sides[1..].iter().fold(sides[0], |a, &b| graph.and(system, a, b))
-        }
-        // Choporov 2010 (w9), axis z: 2R sqrt(x^2 + y^2) - x^2 - y^2 - z^2 - R^2 + r^2
-        "torus" => {
-            let [x, y, z, large, small] = [0, 1, 2, 3, 4].map(|k| arguments[k]);
-            let around = squares(graph, &[x, y]);
-            let distance = graph.sqrt(around);
-            let off = graph.sub(distance, large);
-            let spread = squares(graph, &[off, z]);
-            let radius = graph.square(small);
-            graph.sub(radius, spread)
-        }
-        "blend" => {
-            let amounts = [
-                constant(graph, 2, "the amount")?,
-                constant(graph, 3, "the reach")?,
-                constant(graph, 4, "the reach")?,
-            ];
-            if amounts[1] == 0.0 || amounts[2] == 0.0 {
-                return Err("the reaches of `blend` must not be zero".to_owned());
-            }
-            graph.blending(arguments[0], arguments[1], amounts)
-        }
+        "repeat" => repeat(graph, arguments)?,
+        "circle" | "sphere" => ball(graph, arguments),
+        "rectangle" | "block" => block(graph, system, arguments),
+        "torus" => torus(graph, arguments),
+        "blend" => blend(graph, arguments)?,
         _ => return Err(format!("unknown function `{name}`")),
     })
 }
 
+/// An argument that must be a constant.
+fn constant_argument(graph: &Graph, name: &str, argument: NodeId, what: &str) -> Result<f64, String> {
+    graph.as_constant(argument).ok_or_else(|| format!("{what} of `{name}` must be a constant"))
+}
+
+fn repeat(graph: &mut Graph, arguments: &[NodeId]) -> Result<NodeId, String> {
+    let period = constant_argument(graph, "repeat", arguments[1], "the period")?;
+    if !(period > 0.0) {
+        return Err("the period of `repeat` must be positive".to_owned());
+    }
+    let copies = match arguments.get(2) {
+        Some(&copies) => match constant_argument(graph, "repeat", copies, "the number of copies")? {
+            copies if (0.0..=1e9).contains(&copies) && copies.fract() == 0.0 => Some(copies as u32),
+            _ => return Err("the number of copies of `repeat` must be a whole number".to_owned()),
+        },
+        None => None,
+    };
+    Ok(graph.repeated(arguments[0], period, copies))
+}
+
+/// Circle and sphere (Choporov 2017): 1 - (x^2 + y^2) / r^2.
+fn ball(graph: &mut Graph, arguments: &[NodeId]) -> NodeId {
+    let (radius, at) = (arguments[arguments.len() - 1], &arguments[..arguments.len() - 1]);
+    let squares = squares(graph, at);
+    let radius = graph.square(radius);
+    let ratio = graph.div(squares, radius);
+    let one = graph.constant(1.0);
+    graph.sub(one, ratio)
+}
+
+/// Rectangle and block (Choporov 2017): [1 - (2x / w)^2] AND [1 - (2y / h)^2].
+fn block(graph: &mut Graph, system: System, arguments: &[NodeId]) -> NodeId {
+    let half = arguments.len() / 2;
+    let sides: Vec<NodeId> = (0..half)
+        .map(|k| {
+            let (one, two) = (graph.constant(1.0), graph.constant(2.0));
+            let doubled = graph.mul(two, arguments[k]);
+            let ratio = graph.div(doubled, arguments[half + k]);
+            let square = graph.square(ratio);
+            graph.sub(one, square)
+        })
+        .collect();
+    sides[1..].iter().fold(sides[0], |a, &b| graph.and(system, a, b))
+}
+
+/// Torus about the axis z (Choporov 2010, w9): 2R sqrt(x^2 + y^2) - x^2 - y^2 - z^2 - R^2 + r^2.
+fn torus(graph: &mut Graph, arguments: &[NodeId]) -> NodeId {
+    let [x, y, z, large, small] = [0, 1, 2, 3, 4].map(|k| arguments[k]);
+    let around = squares(graph, &[x, y]);
+    let distance = graph.sqrt(around);
+    let off = graph.sub(distance, large);
+    let spread = squares(graph, &[off, z]);
+    let radius = graph.square(small);
+    graph.sub(radius, spread)
+}
+
+fn blend(graph: &mut Graph, arguments: &[NodeId]) -> Result<NodeId, String> {
+    let amounts = [
+        constant_argument(graph, "blend", arguments[2], "the amount")?,
+        constant_argument(graph, "blend", arguments[3], "the reach")?,
+        constant_argument(graph, "blend", arguments[4], "the reach")?,
+    ];
+    if amounts[1] == 0.0 || amounts[2] == 0.0 {
+        return Err("the reaches of `blend` must not be zero".to_owned());
+    }
+    Ok(graph.blending(arguments[0], arguments[1], amounts))
+}
+
+/// The sum of the squares.
 fn squares(graph: &mut Graph, arguments: &[NodeId]) -> NodeId {
     let mut sum = graph.constant(0.0);
     for &argument in arguments {

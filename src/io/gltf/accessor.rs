@@ -1,67 +1,69 @@
 //! The numbers of accessors. Every count, offset and stride is checked against the bytes that are there.
 
+use gltf::json::accessor::{
+    BYTE, ComponentType, FLOAT, SHORT, Type, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT,
+};
+use gltf::json::validation::Checked;
+
 use super::Reader;
 use super::buffers::{Buffers, Bytes};
-use super::document::{Accessor, Shape};
+use super::document::Accessor;
 use crate::Error;
 
-/// A number type of glTF.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Component {
-    I8,
-    U8,
-    I16,
-    U16,
-    U32,
-    F32,
+/// The number type of a code.
+fn component_type(code: u32) -> Option<ComponentType> {
+    Some(match code {
+        BYTE => ComponentType::I8,
+        UNSIGNED_BYTE => ComponentType::U8,
+        SHORT => ComponentType::I16,
+        UNSIGNED_SHORT => ComponentType::U16,
+        UNSIGNED_INT => ComponentType::U32,
+        FLOAT => ComponentType::F32,
+        _ => return None,
+    })
 }
 
-impl Component {
-    fn from_code(code: u32) -> Option<Self> {
-        Some(match code {
-            5120 => Self::I8,
-            5121 => Self::U8,
-            5122 => Self::I16,
-            5123 => Self::U16,
-            5125 => Self::U32,
-            5126 => Self::F32,
-            _ => return None,
-        })
-    }
-
-    fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::U32 | Self::F32 => 4,
+/// The number at the beginning of `bytes`, which must hold one.
+#[inline(always)]
+fn number(component: ComponentType, bytes: &[u8], normalized: bool) -> f64 {
+    let (value, largest) = match (component, bytes) {
+        (ComponentType::I8, &[a, ..]) => (f64::from(a as i8), 127.0),
+        (ComponentType::U8, &[a, ..]) => (f64::from(a), 255.0),
+        (ComponentType::I16, &[a, b, ..]) => (f64::from(i16::from_le_bytes([a, b])), 32_767.0),
+        (ComponentType::U16, &[a, b, ..]) => (f64::from(u16::from_le_bytes([a, b])), 65_535.0),
+        (ComponentType::U32, &[a, b, c, d, ..]) => {
+            (f64::from(u32::from_le_bytes([a, b, c, d])), 4_294_967_295.0)
         }
-    }
+        (ComponentType::F32, &[a, b, c, d, ..]) => return f64::from(f32::from_le_bytes([a, b, c, d])),
+        _ => return f64::NAN,
+    };
+    if normalized { (value / largest).max(-1.0) } else { value }
+}
 
-    /// The number at the beginning of `bytes`, which must hold one.
-    #[inline(always)]
-    fn number(self, bytes: &[u8], normalized: bool) -> f64 {
-        let (value, largest) = match (self, bytes) {
-            (Self::I8, &[a, ..]) => (f64::from(a as i8), 127.0),
-            (Self::U8, &[a, ..]) => (f64::from(a), 255.0),
-            (Self::I16, &[a, b, ..]) => (f64::from(i16::from_le_bytes([a, b])), 32_767.0),
-            (Self::U16, &[a, b, ..]) => (f64::from(u16::from_le_bytes([a, b])), 65_535.0),
-            (Self::U32, &[a, b, c, d, ..]) => (f64::from(u32::from_le_bytes([a, b, c, d])), 4_294_967_295.0),
-            (Self::F32, &[a, b, c, d, ..]) => return f64::from(f32::from_le_bytes([a, b, c, d])),
-            _ => return f64::NAN,
-        };
-        if normalized { (value / largest).max(-1.0) } else { value }
+/// The index at the beginning of `bytes`.
+#[inline(always)]
+fn index(component: ComponentType, bytes: &[u8]) -> Option<u32> {
+    match (component, bytes) {
+        (ComponentType::U8, &[a, ..]) => Some(u32::from(a)),
+        (ComponentType::U16, &[a, b, ..]) => Some(u32::from(u16::from_le_bytes([a, b]))),
+        (ComponentType::U32, &[a, b, c, d, ..]) => Some(u32::from_le_bytes([a, b, c, d])),
+        _ => None,
     }
+}
 
-    /// The index at the beginning of `bytes`.
-    #[inline(always)]
-    fn index(self, bytes: &[u8]) -> Option<u32> {
-        match (self, bytes) {
-            (Self::U8, &[a, ..]) => Some(u32::from(a)),
-            (Self::U16, &[a, b, ..]) => Some(u32::from(u16::from_le_bytes([a, b]))),
-            (Self::U32, &[a, b, c, d, ..]) => Some(u32::from_le_bytes([a, b, c, d])),
-            _ => None,
-        }
-    }
+/// Items of a buffer view, as an accessor describes them.
+#[derive(Clone, Copy)]
+struct Layout {
+    view: usize,
+    /// Bytes before the first item.
+    offset: u64,
+    /// Whether the view's stride counts; items of sparse accessors follow each other without gaps.
+    strided: bool,
+    component: ComponentType,
+    /// Numbers in an item.
+    width: usize,
+    /// Number of items.
+    count: usize,
 }
 
 /// Items at equal distances in the bytes of a buffer view.
@@ -69,7 +71,7 @@ struct Items<'a> {
     bytes: Bytes<'a>,
     offset: usize,
     stride: usize,
-    component: Component,
+    component: ComponentType,
 }
 
 impl Items<'_> {
@@ -88,19 +90,22 @@ pub(super) struct Accessors<'a> {
 
 impl<'a> Accessors<'a> {
     /// The accessor at an index found at `pointer`, which must have the given shape.
-    pub(super) fn get(&self, index: u32, shape: Shape, pointer: &str) -> Result<&'a Accessor, Error> {
-        let accessor = self.reader.get(&self.reader.document.accessors, "accessors", index, pointer)?;
-        if accessor.shape != shape {
-            let what = format!("has items of type {:?} where {shape:?} is needed", accessor.shape);
-            return Err(self.reader.error(format!("/accessors/{index}"), what));
-        }
-        Ok(accessor)
+    pub(super) fn get(&self, index: u32, shape: Type, pointer: &str) -> Result<&'a Accessor, Error> {
+        let accessor =
+            self.reader.get(&self.reader.document.accessors, "accessors", index as usize, pointer)?;
+        let found = match accessor.shape {
+            Checked::Valid(found) if found == shape => return Ok(accessor),
+            Checked::Valid(found) => format!("{found:?}"),
+            Checked::Invalid => "that glTF does not have".to_string(),
+        };
+        let what = format!("has items of type {found} where {shape:?} is needed");
+        Err(self.reader.error(format!("/accessors/{index}"), what))
     }
 
     /// The accessor's numbers, `N` to an item. The caller has accounted for the memory: an accessor without a buffer
     /// view can announce any count.
     pub(super) fn numbers<const N: usize>(&self, index: u32, pointer: &str) -> Result<Vec<[f64; N]>, Error> {
-        let shape = [Shape::Scalar, Shape::Vec2, Shape::Vec3, Shape::Vec4][N - 1];
+        let shape = [Type::Scalar, Type::Vec2, Type::Vec3, Type::Vec4][N - 1];
         let accessor = self.get(index, shape, pointer)?;
         let pointer = format!("/accessors/{index}");
         let component = self.component(accessor.component_type, &pointer)?;
@@ -108,16 +113,16 @@ impl<'a> Accessors<'a> {
         let size = component.size();
         let item = |bytes: &[u8]| {
             let mut numbers = [0.0; N];
-            for (i, number) in numbers.iter_mut().enumerate() {
-                *number = component.number(&bytes[i * size..], accessor.normalized);
+            for (i, value) in numbers.iter_mut().enumerate() {
+                *value = number(component, &bytes[i * size..], accessor.normalized);
             }
             numbers
         };
         let mut list = match accessor.buffer_view {
             None => vec![[0.0; N]; count],
             Some(view) => {
-                let items = self.items(view, accessor.byte_offset, component, N, true, count, &pointer)?;
-                if component == Component::F32 {
+                let items = self.items(layout(accessor, view, component, N, count), &pointer)?;
+                if component == ComponentType::F32 {
                     // The usual case by itself, so that the loop is free of choices.
                     let number = |bytes: &[u8; 4]| f64::from(f32::from_le_bytes(*bytes));
                     let item = |i: usize| {
@@ -135,33 +140,33 @@ impl<'a> Accessors<'a> {
     }
 
     /// The accessor's indices.
-    pub(super) fn indices(&self, index: u32, pointer: &str) -> Result<Vec<u32>, Error> {
-        let accessor = self.get(index, Shape::Scalar, pointer)?;
-        let pointer = format!("/accessors/{index}");
-        let component = self.component(accessor.component_type, &pointer)?;
-        if component.index(&[0; 4]).is_none() {
-            return Err(self.reader.error(pointer, "indices must be unsigned bytes, shorts or ints"));
+    pub(super) fn indices(&self, accessor: u32, pointer: &str) -> Result<Vec<u32>, Error> {
+        let here = format!("/accessors/{accessor}");
+        let accessor = self.get(accessor, Type::Scalar, pointer)?;
+        let component = self.component(accessor.component_type, &here)?;
+        if index(component, &[0; 4]).is_none() {
+            return Err(self.reader.error(here, "indices must be unsigned bytes, shorts or ints"));
         }
-        let count = self.count(accessor.count, &pointer)?;
-        let index = |bytes: &[u8]| component.index(bytes).unwrap_or(0);
+        let count = self.count(accessor.count, &here)?;
+        let item = |bytes: &[u8]| index(component, bytes).unwrap_or(0);
         let mut list = match accessor.buffer_view {
             None => vec![0; count],
             Some(view) => {
-                let items = self.items(view, accessor.byte_offset, component, 1, true, count, &pointer)?;
-                if component == Component::U32 && items.stride == 4 {
+                let items = self.items(layout(accessor, view, component, 1, count), &here)?;
+                if component == ComponentType::U32 && items.stride == 4 {
                     let bytes = items.at(0).get(..count * 4).unwrap_or_default();
                     bytes.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect()
                 } else {
-                    (0..count).map(|i| index(items.at(i))).collect()
+                    (0..count).map(|i| item(items.at(i))).collect()
                 }
             }
         };
-        self.replace(accessor, component, 1, &pointer, |at, bytes| list[at] = index(bytes))?;
+        self.replace(accessor, component, 1, &here, |at, bytes| list[at] = item(bytes))?;
         Ok(list)
     }
 
-    fn component(&self, code: u32, pointer: &str) -> Result<Component, Error> {
-        Component::from_code(code)
+    fn component(&self, code: u32, pointer: &str) -> Result<ComponentType, Error> {
+        component_type(code)
             .ok_or_else(|| self.reader.error(pointer, format!("{code} is no component type of glTF")))
     }
 
@@ -172,23 +177,15 @@ impl<'a> Accessors<'a> {
     }
 
     /// Items in a buffer view, all of them within it.
-    fn items(
-        &self,
-        view: u32,
-        offset: u64,
-        component: Component,
-        components: usize,
-        strided: bool,
-        count: usize,
-        pointer: &str,
-    ) -> Result<Items<'a>, Error> {
-        let size = component.size() * components;
+    fn items(&self, layout: Layout, pointer: &str) -> Result<Items<'a>, Error> {
+        let Layout { view, offset, strided, component, width, count } = layout;
+        let size = component.size() * width;
         let stride = self
             .reader
             .get(&self.reader.document.buffer_views, "bufferViews", view, pointer)?
             .byte_stride
             .filter(|_| strided)
-            .map_or(size, |stride| stride as usize);
+            .map_or(size, |stride| stride.0);
         if stride < size {
             return Err(self.reader.error(
                 format!("/bufferViews/{view}"),
@@ -197,7 +194,7 @@ impl<'a> Accessors<'a> {
         }
         let bytes = self.buffers.view(view)?;
         let available = bytes.as_slice().len();
-        // At most 32 bits each, the product has room.
+        // At most 64 bits and 32 bits, the product has room.
         let needed = count.checked_sub(1).map_or(0, |last| last as u128 * stride as u128 + size as u128);
         if u128::from(offset) + needed > available as u128 {
             return Err(self.reader.error(
@@ -214,32 +211,35 @@ impl<'a> Accessors<'a> {
     fn replace(
         &self,
         accessor: &Accessor,
-        component: Component,
-        components: usize,
+        component: ComponentType,
+        width: usize,
         pointer: &str,
         mut put: impl FnMut(usize, &[u8]),
     ) -> Result<(), Error> {
         let Some(sparse) = &accessor.sparse else { return Ok(()) };
         let pointer = format!("{pointer}/sparse");
-        if sparse.count > accessor.count {
-            let what = format!("replaces {} of {} items", sparse.count, accessor.count);
+        if sparse.count.0 > accessor.count {
+            let what = format!("replaces {} of {} items", sparse.count.0, accessor.count);
             return Err(self.reader.error(pointer, what));
         }
         let (indices, values) = (&sparse.indices, &sparse.values);
-        let kind = self.component(indices.component_type, &pointer)?;
-        let count = sparse.count as usize;
-        let places = self.items(indices.buffer_view, indices.byte_offset, kind, 1, false, count, &pointer)?;
-        let items = self.items(
-            values.buffer_view,
-            values.byte_offset,
+        let Checked::Valid(kind) = indices.component_type else {
+            return Err(self.reader.error(pointer, "its indices must be unsigned bytes, shorts or ints"));
+        };
+        let layout = |view: usize, offset, component, width| Layout {
+            view,
+            offset,
+            strided: false,
             component,
-            components,
-            false,
-            count,
-            &pointer,
-        )?;
-        for i in 0..count {
-            let at = places.component.index(places.at(i)).map(u64::from);
+            width,
+            count: sparse.count.0 as usize,
+        };
+        let places = layout(indices.buffer_view.value(), indices.byte_offset.0, kind.0, 1);
+        let places = self.items(places, &pointer)?;
+        let items = layout(values.buffer_view.value(), values.byte_offset.0, component, width);
+        let items = self.items(items, &pointer)?;
+        for i in 0..sparse.count.0 as usize {
+            let at = index(places.component, places.at(i)).map(u64::from);
             match at.filter(|&at| at < accessor.count) {
                 Some(at) => put(at as usize, items.at(i)),
                 None => {
@@ -251,4 +251,9 @@ impl<'a> Accessors<'a> {
         }
         Ok(())
     }
+}
+
+/// The items of an accessor in its buffer view.
+fn layout(accessor: &Accessor, view: u32, component: ComponentType, width: usize, count: usize) -> Layout {
+    Layout { view: view as usize, offset: accessor.byte_offset, strided: true, component, width, count }
 }

@@ -25,7 +25,7 @@ pub(super) struct Buffers<'a> {
 /// Where the bytes of a buffer come from; equal sources are fetched once.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Source {
-    Data(u32),
+    Data(usize),
     File(String),
 }
 
@@ -55,13 +55,14 @@ impl<'a> Buffers<'a> {
     }
 
     /// The bytes of a buffer view, which must exist.
-    pub(super) fn view(&self, index: u32) -> Result<Bytes<'a>, Error> {
+    pub(super) fn view(&self, index: usize) -> Result<Bytes<'a>, Error> {
         let document = self.reader.document;
         let pointer = format!("/bufferViews/{index}");
         let view = self.reader.get(&document.buffer_views, "bufferViews", index, &pointer)?;
-        let (start, length) = (view.byte_offset as usize, view.byte_length as usize);
-        let pointer = format!("/buffers/{}", view.buffer);
-        let buffer = self.reader.get(&document.buffers, "buffers", view.buffer, &pointer)?;
+        let (start, length) = (view.byte_offset.unwrap_or_default().0 as usize, view.byte_length.0 as usize);
+        let index = view.buffer.value();
+        let pointer = format!("/buffers/{index}");
+        let buffer = self.reader.get(&document.buffers, "buffers", index, &pointer)?;
         let short = |available: usize| {
             self.reader.error(
                 &*pointer,
@@ -72,7 +73,7 @@ impl<'a> Buffers<'a> {
             )
         };
         let Some(uri) = buffer.uri.as_deref() else {
-            let chunk = self.binary.filter(|_| view.buffer == 0).ok_or_else(|| {
+            let chunk = self.binary.filter(|_| index == 0).ok_or_else(|| {
                 self.reader.error(
                     &*pointer,
                     "has no data: neither a \"uri\" nor, as the first buffer of a GLB file, the binary chunk \
@@ -84,7 +85,7 @@ impl<'a> Buffers<'a> {
             let bytes = chunk.get(..buffer.byte_length as usize).ok_or_else(|| short(chunk.len()))?;
             return Ok(Bytes::Chunk(&bytes[start..start + length]));
         };
-        let bytes = self.fetch(view.buffer, uri, &pointer)?;
+        let bytes = self.fetch(index, uri, &pointer)?;
         if (bytes.len() as u64) < buffer.byte_length {
             return Err(short(bytes.len()));
         }
@@ -92,7 +93,7 @@ impl<'a> Buffers<'a> {
     }
 
     /// The bytes behind a URI.
-    fn fetch(&self, buffer: u32, uri: &str, pointer: &str) -> Result<Rc<Vec<u8>>, Error> {
+    fn fetch(&self, buffer: usize, uri: &str, pointer: &str) -> Result<Rc<Vec<u8>>, Error> {
         let data = uri.strip_prefix("data:");
         let source = match data {
             Some(_) => Source::Data(buffer),

@@ -1,13 +1,28 @@
 //! The parts of a glTF document that matter for its geometry. Everything else in the file is skipped.
 //!
-//! Structures of our own rather than those of the crate `gltf`, whose readers panic on hostile accessors (index out of
-//! range, stride below the item size), follow URIs out of the folder, refuse `KHR_mesh_quantization`, and read single
-//! precision only. Nodes and materials without content take no more than a pointer, so that a file of nothing but
-//! `{},{},{}` does not grow in memory.
+//! Where the types of the crate `gltf` ([`gltf::json`]) hold what is read, they are used: the asset, buffer views,
+//! sparse values, types of accessors, materials. What they cannot hold has structures here:
+//!
+//! - nodes: transforms are single precision there, and an empty node takes two hundred bytes, seventy times its text;
+//! - the document, scenes and buffers: `Root` holds every list of the file at once (cameras, animations, textures),
+//!   `Scene` refuses a scene without nodes, which the standard allows, `Buffer` copies its data URI, and takes eighty
+//!   bytes for `{}`;
+//! - accessors: `min` and `max` become trees of values, up to a hundred times their text, and a component type that
+//!   does not exist loses its number, which the error tells;
+//! - primitives: an extension that the crate does not know (Draco) is either lost or a tree of values;
+//! - materials stay as text until a primitive shows them: an empty one would take a hundred times its text.
+//!
+//! So a file of nothing but `{},{},{}` does not grow in memory; `tests/format_memory.rs` measures it.
 
 use std::borrow::Cow;
 
+use gltf::json::Asset;
+use gltf::json::accessor::Type;
+use gltf::json::accessor::sparse::Sparse;
+use gltf::json::buffer::View;
+use gltf::json::validation::Checked;
 use serde::{Deserialize, Deserializer};
+use serde_json::value::RawValue;
 
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -25,18 +40,11 @@ pub(super) struct Document<'a> {
     #[serde(default)]
     pub(super) accessors: Vec<Accessor>,
     #[serde(default)]
-    pub(super) buffer_views: Vec<BufferView>,
+    pub(super) buffer_views: Vec<View>,
     #[serde(default, borrow)]
     pub(super) buffers: Vec<Buffer<'a>>,
-    #[serde(default)]
-    pub(super) materials: Vec<MaterialObject>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct Asset {
-    pub(super) version: String,
-    pub(super) min_version: Option<String>,
+    #[serde(default, borrow)]
+    pub(super) materials: Vec<&'a RawValue>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -101,6 +109,7 @@ pub(super) struct Primitive {
     pub(super) attributes: Attributes,
     pub(super) indices: Option<u32>,
     pub(super) material: Option<u32>,
+    /// One of [`gltf::json::mesh::VALID_MODES`], if the file is right.
     pub(super) mode: Option<u32>,
     /// Whether there are morph targets.
     #[serde(default, rename = "targets", deserialize_with = "is_not_empty")]
@@ -126,59 +135,14 @@ pub(super) struct Accessor {
     pub(super) buffer_view: Option<u32>,
     #[serde(default)]
     pub(super) byte_offset: u64,
+    /// One of [`gltf::json::accessor::VALID_COMPONENT_TYPES`], if the file is right.
     pub(super) component_type: u32,
     #[serde(default)]
     pub(super) normalized: bool,
     pub(super) count: u64,
     #[serde(rename = "type")]
-    pub(super) shape: Shape,
+    pub(super) shape: Checked<Type>,
     pub(super) sparse: Option<Box<Sparse>>,
-}
-
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
-#[serde(rename_all = "UPPERCASE")]
-pub(super) enum Shape {
-    Scalar,
-    Vec2,
-    Vec3,
-    Vec4,
-    Mat2,
-    Mat3,
-    Mat4,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Sparse {
-    pub(super) count: u64,
-    pub(super) indices: SparseIndices,
-    pub(super) values: SparseValues,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct SparseIndices {
-    pub(super) buffer_view: u32,
-    #[serde(default)]
-    pub(super) byte_offset: u64,
-    pub(super) component_type: u32,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct SparseValues {
-    pub(super) buffer_view: u32,
-    #[serde(default)]
-    pub(super) byte_offset: u64,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct BufferView {
-    pub(super) buffer: u32,
-    #[serde(default)]
-    pub(super) byte_offset: u64,
-    pub(super) byte_length: u64,
-    pub(super) byte_stride: Option<u32>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -187,31 +151,6 @@ pub(super) struct Buffer<'a> {
     pub(super) byte_length: u64,
     #[serde(default, borrow)]
     pub(super) uri: Option<Cow<'a, str>>,
-}
-
-/// A material; `None` if it has neither name nor colour.
-#[derive(Debug)]
-pub(super) struct MaterialObject(pub(super) Option<Box<MaterialFields>>);
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct MaterialFields {
-    pub(super) name: Option<Box<str>>,
-    pub(super) pbr_metallic_roughness: Option<MetallicRoughness>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(super) struct MetallicRoughness {
-    pub(super) base_color_factor: Option<[f32; 4]>,
-}
-
-impl<'de> Deserialize<'de> for MaterialObject {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let fields = MaterialFields::deserialize(deserializer)?;
-        let empty = fields.name.is_none() && fields.pbr_metallic_roughness.is_none();
-        Ok(Self((!empty).then(|| Box::new(fields))))
-    }
 }
 
 fn is_not_empty<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D::Error> {

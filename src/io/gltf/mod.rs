@@ -64,8 +64,8 @@ impl<'a> Reader<'a> {
     }
 
     /// The item at an index found at `pointer`.
-    fn get<T>(&self, list: &'a [T], name: &str, index: u32, pointer: &str) -> Result<&'a T, Error> {
-        list.get(index as usize).ok_or_else(|| {
+    fn get<T>(&self, list: &'a [T], name: &str, index: usize, pointer: &str) -> Result<&'a T, Error> {
+        list.get(index).ok_or_else(|| {
             self.error(pointer, format!("names item {index} of {name:?}, which has {} items", list.len()))
         })
     }
@@ -92,14 +92,15 @@ impl<'a> Reader<'a> {
         let document = self.document;
         for (i, view) in document.buffer_views.iter().enumerate() {
             let pointer = format!("/bufferViews/{i}");
-            let buffer = self.get(&document.buffers, "buffers", view.buffer, &pointer)?;
-            let end = view.byte_offset.checked_add(view.byte_length);
+            let buffer = self.get(&document.buffers, "buffers", view.buffer.value(), &pointer)?;
+            let (start, length) = (view.byte_offset.unwrap_or_default().0, view.byte_length.0);
+            let end = start.checked_add(length);
             if end.is_none_or(|end| end > buffer.byte_length) {
                 return Err(self.error(
                     pointer,
                     format!(
-                        "begins at byte {} and has {} bytes, but its buffer has {}",
-                        view.byte_offset, view.byte_length, buffer.byte_length
+                        "begins at byte {start} and has {length} bytes, but its buffer has {}",
+                        buffer.byte_length
                     ),
                 ));
             }
@@ -107,7 +108,8 @@ impl<'a> Reader<'a> {
         for (i, accessor) in document.accessors.iter().enumerate() {
             let sparse = accessor.sparse.as_ref();
             let sparse_views = sparse.map(|sparse| [sparse.indices.buffer_view, sparse.values.buffer_view]);
-            for view in accessor.buffer_view.into_iter().chain(sparse_views.into_iter().flatten()) {
+            let sparse_views = sparse_views.into_iter().flatten().map(|view| view.value());
+            for view in accessor.buffer_view.map(|view| view as usize).into_iter().chain(sparse_views) {
                 self.get(&document.buffer_views, "bufferViews", view, &format!("/accessors/{i}"))?;
             }
         }

@@ -3,12 +3,15 @@
 use std::collections::HashMap;
 
 use glam::{DAffine3, DVec3};
+use gltf::json;
+use gltf::json::accessor::Type;
+use gltf::json::mesh::{LINE_STRIP, POINTS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 
 use super::super::notes::Notes;
 use super::super::{ReadOptions, unsupported};
 use super::accessor::Accessors;
 use super::buffers::Buffers;
-use super::document::{MaterialObject, Primitive, Shape};
+use super::document::{Accessor, Primitive};
 use super::extensions::DRACO_ADVICE;
 use super::{Reader, SMALLEST_LIMIT};
 use crate::control::Reservation;
@@ -31,6 +34,8 @@ pub(super) struct Builder<'a> {
     placed: HashMap<(u32, [u64; 12]), u32>,
     /// The group of a node and a material.
     known: HashMap<(Option<u32>, u32, Option<u32>), u32>,
+    /// The materials shown so far, each read once.
+    materials: HashMap<u32, Material>,
 }
 
 impl<'a> Builder<'a> {
@@ -55,6 +60,7 @@ impl<'a> Builder<'a> {
             groups: FaceGroups::default(),
             placed: HashMap::new(),
             known: HashMap::new(),
+            materials: HashMap::new(),
         }
     }
 
@@ -85,7 +91,7 @@ impl<'a> Builder<'a> {
     /// Adds a mesh under a transform, as the given node shows it.
     pub(super) fn add(&mut self, mesh: u32, node: Option<u32>, world: &DAffine3) -> Result<(), Error> {
         let pointer = node.map_or("/meshes".to_string(), |node| format!("/nodes/{node}/mesh"));
-        let object = self.reader.get(&self.reader.document.meshes, "meshes", mesh, &pointer)?;
+        let object = self.reader.get(&self.reader.document.meshes, "meshes", mesh as usize, &pointer)?;
         for (i, primitive) in object.primitives.iter().enumerate() {
             let pointer = format!("/meshes/{mesh}/primitives/{i}");
             let before = self.mesh.triangles.len();
@@ -100,13 +106,13 @@ impl<'a> Builder<'a> {
     }
 
     fn primitive(&mut self, primitive: &Primitive, world: &DAffine3, pointer: &str) -> Result<(), Error> {
-        let mode = primitive.mode.unwrap_or(4);
+        let mode = primitive.mode.unwrap_or(TRIANGLES);
         match mode {
-            0..=3 => {
+            POINTS..=LINE_STRIP => {
                 self.notes.add("primitive of points or lines ignored", 1);
                 return Ok(());
             }
-            4..=6 => {}
+            TRIANGLES | TRIANGLE_STRIP | TRIANGLE_FAN => {}
             _ => {
                 return Err(self
                     .reader
@@ -121,7 +127,22 @@ impl<'a> Builder<'a> {
             self.notes.add("mesh with morph targets read in its basic shape", 1);
         }
         let here = format!("{pointer}/attributes/POSITION");
-        let accessor = self.accessors.get(position, Shape::Vec3, &here)?;
+        let accessor = self.accessors.get(position, Type::Vec3, &here)?;
+        self.refuse_compressed(primitive, accessor, pointer)?;
+        let vertices = accessor.count;
+        let first = self.place(position, vertices, world, &here)?;
+        let indices = self.indices(primitive, mode, vertices, &format!("{pointer}/indices"))?;
+        self.triangles(mode, &indices, first, is_mirrored(world), pointer);
+        Ok(())
+    }
+
+    /// Refuses positions that are there in compressed form only.
+    fn refuse_compressed(
+        &self,
+        primitive: &Primitive,
+        accessor: &Accessor,
+        pointer: &str,
+    ) -> Result<(), Error> {
         let compressed = primitive.extensions.as_ref().is_some_and(|extensions| extensions.draco.is_some());
         if compressed && accessor.buffer_view.is_none() && accessor.sparse.is_none() {
             return Err(unsupported(
@@ -129,26 +150,33 @@ impl<'a> Builder<'a> {
                 format!("{pointer} is compressed with KHR_draco_mesh_compression{DRACO_ADVICE}"),
             ));
         }
-        let vertices = accessor.count;
-        let first = self.place(position, vertices, world, &here)?;
+        Ok(())
+    }
 
-        let mirrored = is_mirrored(world);
-        let here = format!("{pointer}/indices");
+    /// The indices of a primitive of `vertices` vertices, all of them of vertices there are; without any in the file,
+    /// each vertex in turn. There is room for their triangles.
+    fn indices(
+        &mut self,
+        primitive: &Primitive,
+        mode: u32,
+        vertices: u64,
+        pointer: &str,
+    ) -> Result<Vec<u32>, Error> {
         let count = match primitive.indices {
-            Some(indices) => self.accessors.get(indices, Shape::Scalar, &here)?.count,
+            Some(indices) => self.accessors.get(indices, Type::Scalar, pointer)?.count,
             None => vertices,
         };
         // Indices, triangles and their groups, for at most as many triangles as indices.
-        let triangles = if mode == 4 { count / 3 } else { count };
+        let triangles = if mode == TRIANGLES { count / 3 } else { count };
         self.charge(triangles.saturating_mul(16).saturating_add(count.saturating_mul(4)))?;
         let indices = match primitive.indices {
-            Some(indices) => self.accessors.indices(indices, &here)?,
+            Some(indices) => self.accessors.indices(indices, pointer)?,
             // The vertices were placed, so there are no more than 32 bits can count.
             None => (0..vertices as u32).collect(),
         };
         if let Some(&index) = indices.iter().max().filter(|&&index| u64::from(index) >= vertices) {
             return Err(self.reader.error(
-                here,
+                pointer,
                 format!(
                     "a triangle names vertex {index}, but the primitive has {vertices}; the file is corrupt"
                 ),
@@ -158,6 +186,11 @@ impl<'a> Builder<'a> {
         if reached > u64::from(u32::MAX) {
             return Err(Error::TooLarge { what: format!("the scene has {reached} triangles or more") });
         }
+        Ok(indices)
+    }
+
+    /// Adds the triangles that indices make in a mode, the first vertex being `first` of the mesh.
+    fn triangles(&mut self, mode: u32, indices: &[u32], first: u32, mirrored: bool, pointer: &str) {
         let mut dropped = 0;
         let mut push = |corners: [u32; 3]| {
             let [a, b, c] = corners.map(|corner| corner + first);
@@ -168,7 +201,7 @@ impl<'a> Builder<'a> {
             }
         };
         match mode {
-            4 => {
+            TRIANGLES => {
                 let (whole, rest) = indices.as_chunks::<3>();
                 whole.iter().for_each(|&corners| push(corners));
                 if !rest.is_empty() {
@@ -176,7 +209,7 @@ impl<'a> Builder<'a> {
                         .say(format!("{pointer}: {} indices after the last triangle ignored", rest.len()));
                 }
             }
-            5 => {
+            TRIANGLE_STRIP => {
                 for (i, window) in indices.windows(3).enumerate() {
                     let [a, b, c] = [window[0], window[1], window[2]];
                     push(if i % 2 == 0 { [a, b, c] } else { [a, c, b] });
@@ -191,7 +224,6 @@ impl<'a> Builder<'a> {
             }
         }
         self.notes.add("triangle with a repeated corner dropped", dropped);
-        Ok(())
     }
 
     /// The first of an accessor's vertices under a transform, which are added if they are new.
@@ -241,10 +273,7 @@ impl<'a> Builder<'a> {
         let name = name.unwrap_or_default().to_string();
         let material = match material {
             None => None,
-            Some(index) => {
-                let pointer = format!("{pointer}/material");
-                Some(material_of(self.reader.get(&document.materials, "materials", index, &pointer)?))
-            }
+            Some(index) => Some(self.material(index, &format!("{pointer}/material"))?),
         };
         let name_bytes = name.len() + material.as_ref().map_or(0, |material| material.name.len());
         self.charge(200 + name_bytes as u64)?;
@@ -252,6 +281,25 @@ impl<'a> Builder<'a> {
         self.groups.list.push(FaceGroup { name, material });
         self.known.insert(key, group);
         Ok(group)
+    }
+
+    /// The material at an index found at `pointer`.
+    fn material(&mut self, index: u32, pointer: &str) -> Result<Material, Error> {
+        if let Some(known) = self.materials.get(&index) {
+            return Ok(known.clone());
+        }
+        let text = self.reader.get(&self.reader.document.materials, "materials", index as usize, pointer)?;
+        let material = serde_json::from_str::<json::Material>(text.get()).unwrap_or_else(|error| {
+            self.notes.say(format!("/materials/{index} is read as white: {error}"));
+            json::Material::default()
+        });
+        let material = Material {
+            name: material.name.unwrap_or_default(),
+            base_color: material.pbr_metallic_roughness.base_color_factor.0,
+        };
+        self.charge(200 + material.name.len() as u64)?;
+        self.materials.insert(index, material.clone());
+        Ok(material)
     }
 
     /// The mesh.
@@ -268,15 +316,4 @@ fn is_mirrored(world: &DAffine3) -> bool {
     let matrix = world.matrix3;
     let largest = matrix.to_cols_array().into_iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     largest > 0.0 && (matrix * largest.recip()).determinant() < 0.0
-}
-
-fn material_of(material: &MaterialObject) -> Material {
-    let Some(fields) = material.0.as_deref() else {
-        return Material { name: String::new(), base_color: [1.0; 4] };
-    };
-    let color = fields.pbr_metallic_roughness.as_ref().and_then(|pbr| pbr.base_color_factor);
-    Material {
-        name: fields.name.as_deref().unwrap_or_default().to_string(),
-        base_color: color.unwrap_or([1.0; 4]),
-    }
 }

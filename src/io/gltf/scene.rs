@@ -1,9 +1,10 @@
 //! From the tree of nodes to a list of meshes with their transforms.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4};
+use gltf::json::accessor::Type;
 
 use super::Reader;
-use super::document::{Instancing, NodeFields, Shape};
+use super::document::{Instancing, NodeFields};
 use super::primitive::Builder;
 use crate::Error;
 
@@ -28,7 +29,7 @@ pub(super) fn flatten(reader: &Reader<'_>, builder: &mut Builder<'_>) -> Result<
         *done += 1;
         let parent = *parent;
         let pointer = format!("/nodes/{index}");
-        let node = reader.get(&document.nodes, "nodes", index, &pointer)?;
+        let node = reader.get(&document.nodes, "nodes", index as usize, &pointer)?;
         if std::mem::replace(&mut visited[index as usize], true) {
             return Err(reader.error(
                 pointer,
@@ -79,7 +80,8 @@ fn roots(reader: &Reader<'_>, builder: &mut Builder<'_>) -> Result<Vec<u32>, Err
     if document.scenes.len() > 1 {
         builder.notes.say(format!("the file has {} scenes; the default one was read", document.scenes.len()));
     }
-    let scene = reader.get(&document.scenes, "scenes", document.scene.unwrap_or(0), "/scene")?;
+    let scene = document.scene.unwrap_or(0) as usize;
+    let scene = reader.get(&document.scenes, "scenes", scene, "/scene")?;
     Ok(scene.nodes.to_vec())
 }
 
@@ -130,9 +132,9 @@ fn instances(
     let attributes = &instancing.attributes;
     let mut count = None;
     for (attribute, shape) in [
-        (attributes.translation, Shape::Vec3),
-        (attributes.rotation, Shape::Vec4),
-        (attributes.scale, Shape::Vec3),
+        (attributes.translation, Type::Vec3),
+        (attributes.rotation, Type::Vec4),
+        (attributes.scale, Type::Vec3),
     ] {
         if let Some(accessor) = attribute {
             let items = builder.accessors.get(accessor, shape, &pointer)?.count;

@@ -312,3 +312,32 @@ fn binary_containers() {
         assert!(error.contains(word), "{error}");
     }
 }
+
+#[test]
+fn chunks_without_padding_are_read_with_a_warning() {
+    let mut document = square();
+    let buffer = STANDARD.decode(&document["buffers"][0]["uri"].as_str().unwrap()[37..]).unwrap();
+    document["buffers"][0] = json!({"byteLength": buffer.len()});
+    let mut text = document.to_string();
+    while text.len() % 4 != 2 {
+        text.push(' ');
+    }
+    let glb = |padding: &str| {
+        let mut bytes = b"glTF\x02\0\0\0\0\0\0\0".to_vec();
+        bytes.extend((text.len() as u32).to_le_bytes());
+        bytes.extend(b"JSON");
+        bytes.extend(text.as_bytes());
+        bytes.extend(padding.as_bytes());
+        bytes.extend((buffer.len() as u32).to_le_bytes());
+        bytes.extend(b"BIN\0");
+        bytes.extend(&buffer);
+        let length = bytes.len() as u32;
+        bytes[8..12].copy_from_slice(&length.to_le_bytes());
+        read(&bytes, Format::Glb, &ReadOptions::new())
+    };
+    let (mesh, warnings) = glb("").unwrap();
+    assert_eq!(mesh, read_json(&square()).unwrap().0);
+    assert_eq!(warnings, ["chunk whose length is not a multiple of four (byte 20)"]);
+    // Padding that the length does not count was always read.
+    assert_eq!(glb("  ").unwrap(), (mesh, Vec::new()));
+}

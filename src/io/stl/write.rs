@@ -27,9 +27,6 @@ pub(in crate::io) fn write(
     if ascii {
         write_ascii(mesh, output, options)?;
     } else {
-        if mesh.groups.list.len() > 1 {
-            warnings.push("binary STL has no groups: names and materials are not kept".to_string());
-        }
         write_binary(mesh, output, options)?;
     }
     Ok(warnings)

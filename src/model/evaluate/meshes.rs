@@ -7,6 +7,7 @@ use glam::{DAffine3, DVec3};
 
 use super::ExtractionReport;
 use super::state::State;
+use crate::boolean::BooleanOptions;
 use crate::field::{Extracted, Extraction, extrude};
 use crate::io::ReadOptions;
 use crate::model::{Kind, Mode};
@@ -39,9 +40,9 @@ impl State<'_> {
                         .iter()
                         .map(|&operand| self.operand_solid(operand))
                         .collect::<Result<Vec<Arc<Solid>>, Error>>()?;
-                    let solids: Vec<&Solid> = solids.iter().map(AsRef::as_ref).collect();
-                    let options = crate::boolean::Options::new().control(control.clone());
-                    let outcome = options.run(*operation, &solids).map_err(|error| error.in_node(label))?;
+                    let options = BooleanOptions::new().control(control.clone());
+                    let outcome = options.run(*operation, solids.iter().map(Arc::as_ref));
+                    let outcome = outcome.map_err(|error| error.in_node(label))?;
                     outcome.into_solid().mesh().clone()
                 }
                 Kind::Complement(_) => {

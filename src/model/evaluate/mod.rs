@@ -141,7 +141,7 @@ impl Evaluation {
         state.contours_of(model.result, &field, height)
     }
 
-    /// A box round the model's result.
+    /// A box around the model's result.
     ///
     /// # Errors
     /// As [`run`](Self::run), and [`Error::Field`] if the result is unbounded.

@@ -62,6 +62,7 @@ impl Cells {
             Intersection => self.0.intersection(&other.0).copied().collect(),
             Difference => self.0.difference(&other.0).copied().collect(),
             SymmetricDifference => self.0.symmetric_difference(&other.0).copied().collect(),
+            other => unreachable!("nothing is expected of {other}"),
         })
     }
 

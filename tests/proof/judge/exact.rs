@@ -258,6 +258,7 @@ impl Facts {
             Operation::SymmetricDifference => {
                 (six_a + six_b - shared - shared, a.outside + b.outside + a.inside + b.inside)
             }
+            other => unreachable!("nothing is expected of {other}"),
         };
         let empty = six == RBig::ZERO;
         // Regularised: what has no volume has no surface either.

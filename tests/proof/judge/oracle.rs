@@ -52,6 +52,7 @@ pub(crate) fn expected(operation: Operation, windings: &[i32]) -> i32 {
         Operation::Intersection => all.product(),
         Operation::Difference => windings[0] * windings[1..].iter().map(|w| 1 - w).product::<i32>(),
         Operation::SymmetricDifference => all.fold(0, |sum, w| sum + w - 2 * sum * w),
+        other => unreachable!("nothing is expected of {other}"),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
-use trisect::{Mesh, Operation, Options, Solid, primitives};
+use trisect::{BooleanOptions, Mesh, Operation, Solid, primitives};
 
 use super::placement;
 use super::vector::Point;
@@ -175,7 +175,7 @@ fn combined(random: &mut ChaCha8Rng, one: impl Fn(&mut ChaCha8Rng) -> Mesh) -> M
         [Operation::Union, Operation::Difference, Operation::Intersection][random.random_range(0..3)];
     let (a, b) = (one(random), one(random));
     let solids = [&a, &b].map(|mesh| Solid::try_from(mesh.clone()).expect("shapes are closed"));
-    match Options::new().threads(1).run(operation, &[&solids[0], &solids[1]]) {
+    match BooleanOptions::new().threads(1).run(operation, [&solids[0], &solids[1]]) {
         Ok(outcome) if !outcome.solid().is_empty() => outcome.into_solid().into_mesh(),
         _ => a,
     }

@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use serde_json::json;
 use trisect::io::{ReadOptions, WriteOptions};
-use trisect::{Mesh, Operation, Options, Outcome, Solid, primitives};
+use trisect::{BooleanOptions, Mesh, Operation, Outcome, Solid, primitives};
 
 type Fallible<T> = Result<T, Box<dyn Error>>;
 
@@ -86,7 +86,7 @@ fn big_run(total: f64, with_waves: bool, folder: Option<&Path>) -> Fallible<()> 
         let [first, second] = meshes;
         Ok([Solid::try_from(first)?, Solid::try_from(second)?])
     })?;
-    let made = stage("union", || Ok(Options::new().run(Operation::Union, &[&first, &second])?))?;
+    let made = stage("union", || Ok(BooleanOptions::new().run(Operation::Union, [&first, &second])?))?;
     let triangles_out = made.solid().mesh().triangles.len();
     drop((first, second));
     stage("certificate", || {
@@ -162,12 +162,12 @@ fn measure(
     operands: [&Solid; 2],
     runs: usize,
 ) -> Fallible<()> {
-    let options = Options::new().threads(1);
-    let made = options.run(operation, &operands)?;
+    let options = BooleanOptions::new().threads(1);
+    let made = options.run(operation, operands)?;
     let mut times = Vec::new();
     for _ in 0..runs.max(1) {
         let start = Instant::now();
-        let made = options.run(operation, &operands)?;
+        let made = options.run(operation, operands)?;
         times.push(start.elapsed().as_secs_f64());
         drop(made);
     }

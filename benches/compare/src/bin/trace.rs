@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::time::Instant;
 
 use serde_json::json;
-use trisect::{Mesh, Operation, Options, Solid};
+use trisect::{BooleanOptions, Mesh, Operation, Solid};
 
 /// The system's allocator, counting while [`COUNTING`].
 struct Counting;
@@ -79,8 +79,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         solids = meshes.iter().map(|mesh| Solid::try_from(mesh.clone())).collect::<Result<_, _>>()?;
         Ok(json!({ "triangles": meshes.iter().map(|mesh| mesh.triangles.len()).sum::<usize>() }))
     })?;
-    let solids: Vec<&Solid> = solids.iter().collect();
-    let options = Options::new().threads(1);
+    let options = BooleanOptions::new().threads(1);
     let mut last = None;
     for _ in 0..runs {
         drop(last.take());

@@ -1,0 +1,227 @@
+//! Sums of the faces of a plane, where perturbation cannot keep faces that touch apart (`arrangement::sheets`).
+//!
+//! The kept pieces of all faces of a sheet are added up, with multiplicities, before they are triangulated: what cancels is
+//! gone. Where the perturbation moves faces apart instead of through each other (at saddles), their edges do not cross, but
+//! do so in the sum. Such crossings get a point, rounded once like the others.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::piece::Piece;
+use crate::Error;
+use crate::boolean::arrangement::points::SheetCrossing;
+use crate::boolean::arrangement::sheets::Sheet;
+use crate::boolean::classify::body::Body;
+use crate::boolean::complex::ids::{FaceId, PointId};
+use crate::boolean::complex::origin::Origin;
+use crate::exact::perturbed::PerturbedPoint;
+use crate::exact::{Projection, Sign, orient2d, position};
+use crate::parallel::Runner;
+use crate::polygon;
+use crate::spatial::{BoxTree, Frame};
+
+/// What is left of the faces of all sheets.
+#[derive(Debug, Default)]
+pub(crate) struct Sums {
+    pub(crate) pieces: Vec<Piece>,
+    /// The faces that have been added up.
+    pub(crate) done: FxHashSet<FaceId>,
+    /// Points where edges cross that the perturbation kept apart; they are numbered after all others.
+    pub(crate) crossings: Vec<SheetCrossing>,
+}
+
+/// Adds up the faces of each sheet. Where the shapes do not allow it, its faces are left to be cut one by one, which is
+/// closed as well.
+///
+/// # Errors
+/// Only limits.
+pub(crate) fn add_up(body: Body<'_>, runner: Runner<'_>) -> Result<Sums, Error> {
+    let mut sums = Sums::default();
+    for (i, sheet) in body.arrangement.sheets.iter().enumerate() {
+        if i % SHEETS_AT_ONCE == 0 {
+            runner.control.check()?;
+        }
+        let before = sums.crossings.len();
+        match Sum::new(body, sheet, &mut sums.crossings).triangles() {
+            Some(left) => {
+                sums.pieces.extend(left);
+                sums.done.extend(sheet);
+            }
+            None => sums.crossings.truncate(before),
+        }
+    }
+    Ok(sums)
+}
+
+/// Sheets that are added up before the limits are checked: they are small, a handful of faces each.
+const SHEETS_AT_ONCE: usize = 64;
+
+/// The sum of the faces of one sheet.
+struct Sum<'a> {
+    body: Body<'a>,
+    sheet: &'a Sheet,
+    /// How the plane is projected.
+    seen: Projection,
+    /// The sheet's points, and where they are in the projection.
+    points: Vec<PointId>,
+    flat: Vec<[f64; 2]>,
+    /// Whole edges, of which those of the sheet are parts.
+    lines: Vec<[[f64; 3]; 2]>,
+    crossings: &'a mut Vec<SheetCrossing>,
+}
+
+impl<'a> Sum<'a> {
+    fn new(body: Body<'a>, sheet: &'a Sheet, crossings: &'a mut Vec<SheetCrossing>) -> Self {
+        let seen = Projection::of(&body.complex().positions(sheet[0])).along_axis();
+        Self { body, sheet, seen, points: Vec::new(), flat: Vec::new(), lines: Vec::new(), crossings }
+    }
+
+    fn project(&self, position: &[f64; 3]) -> [f64; 2] {
+        self.seen.project(position)
+    }
+
+    /// Where a point of the arrangement is.
+    fn position(&self, point: PointId) -> &'a [f64; 3] {
+        self.body.arrangement.points.position(point)
+    }
+
+    /// The triangles left, or `None` where the shapes do not allow it.
+    fn triangles(mut self) -> Option<Vec<Piece>> {
+        let edges = self.edges()?;
+        let mut at: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+        for (i, &point) in (0..).zip(&self.points) {
+            at.insert(bits(self.position(point)), i);
+        }
+        let next = self.body.arrangement.points.next();
+        let mut flat = std::mem::take(&mut self.flat);
+        let found = polygon::by_winding(&mut flat, &edges, |x, y, flat| {
+            let crossing = self.crossing(x.line, y.line)?;
+            let position = crossing.position;
+            Some(*at.entry(bits(&position)).or_insert_with(|| {
+                self.points.push(PointId::new(next.number() + self.crossings.len() as u32));
+                self.crossings.push(crossing);
+                flat.push(self.project(&position));
+                flat.len() as u32 - 1
+            }))
+        })?;
+        self.flat = flat;
+        self.with_origins(&found)
+    }
+
+    /// The directed edges of all faces, with local numbers of the points.
+    fn edges(&mut self) -> Option<Vec<polygon::Edge>> {
+        let mut edges: Vec<polygon::Edge> = Vec::new();
+        let body = self.body;
+        for &id in self.sheet {
+            let (operand, _) = self.body.complex().triangle(id);
+            let face = self.body.arrangement.curve.faces[operand].find(id)?;
+            let corners = self.body.complex().positions(id);
+            let first = self.lines.len() as u32;
+            self.lines.extend((0..3).map(|k| [corners[k], corners[(k + 1) % 3]]));
+            for part in body.parts_of(operand) {
+                body.for_boundary(part, face, |ends, of_side, count| {
+                    let line = match of_side {
+                        Some(k) => first + k as u32,
+                        None => {
+                            self.lines.push(ends.map(|point| *body.arrangement.points.position(point)));
+                            self.lines.len() as u32 - 1
+                        }
+                    };
+                    let ends = ends.map(PointId::number);
+                    edges.push(polygon::Edge { ends, count: count as i32, line });
+                });
+            }
+        }
+        self.points = edges.iter().flat_map(|edge| edge.ends).map(PointId::new).collect();
+        self.points.sort_unstable();
+        self.points.dedup();
+        for edge in &mut edges {
+            edge.ends = edge.ends.map(|point| self.points.partition_point(|p| p.number() < point) as u32);
+        }
+        self.flat = self.points.iter().map(|&point| self.project(self.position(point))).collect();
+        Some(edges)
+    }
+
+    /// Where two lines cross, rounded as the nodes are; `None` if they only seem to because their parts were rounded.
+    fn crossing(&self, x: u32, y: u32) -> Option<SheetCrossing> {
+        let ([p, q], [a, b]) = (&self.lines[x as usize], &self.lines[y as usize]);
+        if !polygon::cross_properly([p, q, a, b].map(|point| self.project(point))) {
+            return None;
+        }
+        // The plane through the one that stands on the sheet in the direction of projection.
+        let axis = self.seen.axis();
+        let size = (0..3).fold(0.0f64, |size, k| size.max((b[k] - a[k]).abs()));
+        let mut above = *a;
+        above[axis] += size;
+        if above[axis] == a[axis] || !above[axis].is_finite() {
+            return None;
+        }
+        let still =
+            |position: &[f64; 3]| PerturbedPoint { position: *position, first: [0; 3], second: [0; 3] };
+        let (edge, triangle) = ([p, q].map(still), [a, b, &above].map(still));
+        let position = position::crossing_filter(p, q, [a, b, &above])
+            .unwrap_or_else(|| position::crossing(&edge[0], &edge[1], triangle.each_ref()));
+        Some(SheetCrossing { position, edge, triangle })
+    }
+
+    /// The triangles with the faces they come from: those around their middle that look their way.
+    fn with_origins(&self, found: &polygon::Found) -> Option<Vec<Piece>> {
+        let complex = self.body.complex();
+        let sources: Vec<(Origin, bool, [[f64; 2]; 3])> = self
+            .sheet
+            .iter()
+            .flat_map(|&face| {
+                let flat = complex.positions(face).map(|p| self.project(&p));
+                let looks_up = orient2d(flat[0], flat[1], flat[2]) == Sign::Positive;
+                self.body
+                    .parts_of(complex.owner_of_face(face))
+                    .map(move |part| (complex.origin(face, part.reversed), looks_up != part.reversed, flat))
+            })
+            .collect();
+        let upright = |p: [f64; 2]| [p[0], p[1], 0.0];
+        let all = || sources.iter().flat_map(|source| source.2);
+        let low = all().fold([f64::INFINITY; 2], |low, p| [low[0].min(p[0]), low[1].min(p[1])]);
+        let high = all().fold([f64::NEG_INFINITY; 2], |high, p| [high[0].max(p[0]), high[1].max(p[1])]);
+        let frame = Frame::of(upright(low), upright(high));
+        let numbers: Vec<u32> = (0..sources.len() as u32).collect();
+        let box_of = |corners: &[[f64; 2]; 3]| {
+            let corners = corners.map(upright);
+            frame.triangle(corners.each_ref())
+        };
+        let tree = BoxTree::new(&numbers, |i| box_of(&sources[i as usize].2));
+        let mut new = Vec::new();
+        let slivers = found.slivers.iter().map(|&counted| (counted, true));
+        for ((triangle, winding), is_flat) in
+            found.triangles.iter().map(|&counted| (counted, false)).chain(slivers)
+        {
+            let flat = triangle.map(|i| self.flat[i as usize]);
+            let [p, q, r] = flat;
+            let middle = [0, 1].map(|k| p[k] / 3.0 + q[k] / 3.0 + r[k] / 3.0);
+            let upward = winding > 0;
+            let mut best = None;
+            tree.meeting(&box_of(&flat), |i| {
+                let source = &sources[i as usize];
+                if source.1 == upward && best.is_none_or(|best| i < best) && contains(&source.2, middle) {
+                    best = Some(i);
+                }
+            });
+            let source = match best {
+                Some(i) => &sources[i as usize],
+                None => sources.iter().find(|source| source.1 == upward)?,
+            };
+            let [a, b, c] = triangle.map(|i| self.points[i as usize]);
+            let corners = if upward { [a, b, c] } else { [a, c, b] };
+            let piece = Piece { corners, origin: source.0, flat: is_flat };
+            new.extend(std::iter::repeat_n(piece, winding.unsigned_abs() as usize));
+        }
+        Some(new)
+    }
+}
+
+fn bits(position: &[f64; 3]) -> [u64; 3] {
+    position.map(|x| (x + 0.0).to_bits())
+}
+
+fn contains(triangle: &[[f64; 2]; 3], p: [f64; 2]) -> bool {
+    let sides = [0, 1, 2].map(|k| orient2d(triangle[k], triangle[(k + 1) % 3], p));
+    !(sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative))
+}
