@@ -5,25 +5,27 @@
 //! [`HEURISTIC_DEPTH`] + log2 n.
 //!
 //! The builder of `obvhs` (PLOC: it merges mutual nearest neighbours bottom-up) has no such bound: among equal or nested boxes
-//! few are mutual. Measured on 2026-11-27 on an AMD EPYC virtual machine, 2 cores, shared with others (one thread, least of
-//! three, 20,000 queries each; closest points within and near the mesh, rays from the same, winding numbers):
+//! few are mutual. Measured on 2026-11-27 on an AMD EPYC virtual machine, 2 cores, shared with others (processor time of one
+//! thread, least of three; builds include all of a `TriangleTree`; closest points far from and near the mesh, rays from the
+//! same points, winding numbers):
 //!
 //! | | build, ms | closest, us | rays, us | winding, us |
 //! |---|---:|---:|---:|---:|
-//! | sphere of 328,000: this | 1,900 | 98, 27 | 7.6, 18 | 30 |
-//! | search distance 1 | 1,200 | 127, 27 | 7.2, 16 | 53 |
-//! | search distance 6 | 1,260 | 122, 30 | 8.0, 16 | 58 |
-//! | search distance 14 | 1,860 | 124, 34 | 8.0, 20 | 61 |
-//! | search distance 14, then reinsertion | 1,760 | 95, 23 | 6.5, 14 | 43 |
-//! | this, then reinsertion | 1,600 | 78, 19 | 7.3, 15 | 27 |
-//! | double cone of 8,000: this | 17 | 131, 271 | 44, 66 | 949 |
-//! | search distance 1 | 45 | 185, 251 | 49, 47 | 723 |
-//! | search distance 6 | 79 | 84, 146 | 30, 40 | 580 |
+//! | Armadillo, 52,000 triangles: this | 27 | 7.2, 2.9 | 0.5, 2.8 | 4 |
+//! | search distance 1 | 26 | 6.9, 3.2 | 0.5, 3.0 | 6 |
+//! | search distance 14, then reinsertion | 73 | 9.7, 3.7 | 0.5, 3.0 | 6 |
+//! | this, then reinsertion | 37 | 8.5, 3.1 | 0.7, 2.9 | 4 |
+//! | Nefertiti, 70,000 triangles: this | 29 | 6.5, 1.9 | 0.5, 1.5 | 4 |
+//! | search distance 1 | 56 | 12, 3.5 | 1.0, 2.5 | 8 |
+//! | search distance 14, then reinsertion | 72 | 7.0, 2.0 | 0.5, 2.0 | 8 |
+//! | double cone of 8,000 triangles: this | 4 | 32, 56 | 12, 16 | 241 |
+//! | search distance 1 | 12 | 57, 121 | 21, 18 | 287 |
+//! | search distance 14 | 87 | 37, 65 | 14, 20 | 257 |
+//! | 20,000 equal triangles: this | 9 | | | |
+//! | search distance 1 | not finished | | | |
 //!
-//! (Builds include all of a `TriangleTree`.) All answers agree. Its trees win on the double cone only, where they take longer
-//! to build. Reinsertion (`obvhs::bvh2::reinsertion`) makes queries on this tree a fifth faster; it is not used,
-//! since fast winding numbers, which sum by clusters, would change in their last bits, and no bound on its search is known for
-//! equal boxes.
+//! (Not finished: with 2,000 queries it was stopped after about 50 s by the clock, where this took 5 s for three rounds.) All
+//! other answers agree. So the nodes, the boxes and the codes are those of `obvhs`, the builder is this.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;

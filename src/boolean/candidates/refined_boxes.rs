@@ -2,6 +2,9 @@
 //!
 //! The box of a long or large triangle that lies askew is mostly empty, and small triangles of the other operand meet it in
 //! vain. Such a triangle is halved until its parts are about as large as those triangles, and every part gets a box.
+//!
+//! For few large triangles that lie askew against many small ones. With one box for each triangle: 1.2 for a sphere of 330,000
+//! triangles less a turned cube.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
