@@ -430,7 +430,7 @@ mod tests {
         let control = Control::new();
         let pieces = |fails: bool| {
             Runner::new(&control, true).staged_pieces(100, 7, "test", |range| {
-                if fails && range.contains(&50) { Err(Error::Cancelled) } else { Ok(range) }
+                if fails && range.contains(&50) { Err(Limit::Cancelled) } else { Ok(range) }
             })
         };
         assert!(pieces(true).is_err());
