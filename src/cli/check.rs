@@ -7,8 +7,9 @@ use trisect::{Error, MeshError};
 
 use super::arguments::Check;
 use super::fault::{self, Exit, Fault};
+use super::json::json_of;
 use super::operands::{self, Input, Usable};
-use super::report::{self, Measures, into_map, json_of};
+use super::report::{self, Measures, into_map};
 use super::requests::{self, Request};
 use super::session::Session;
 use super::stream;

@@ -55,11 +55,8 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     }
     // Contours alone need no mesh.
     let found = if wanted || drawn.is_empty() { Some(evaluation.run(&model)?) } else { None };
-    let solid = found
-        .as_ref()
-        .map(|found| Solid::try_from(found.mesh.clone()))
-        .transpose()
-        .map_err(trisect::Error::from)?;
+    let solid = found.as_ref().map(|found| Solid::try_from(found.mesh.clone())).transpose();
+    let solid = solid.map_err(trisect::Error::from)?;
     let seconds = session.took("run", start);
     if let (Some(found), Some(solid)) = (&found, &solid) {
         parts.push(note_result(found, solid, session));

@@ -7,7 +7,7 @@ use trisect::io::FormatError;
 use trisect::mesh::Diagnosis;
 use trisect::{Error, Failure, FileAction, MeshError};
 
-use super::report::json_of;
+use super::json::json_of;
 
 /// The version of the JSON objects' layout. It rises when a key changes its meaning or goes; new keys may come
 /// without.

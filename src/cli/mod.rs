@@ -16,6 +16,7 @@ mod fault;
 mod field_arguments;
 mod grid;
 mod info;
+mod json;
 mod limits;
 mod operands;
 mod output;

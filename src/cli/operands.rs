@@ -12,9 +12,9 @@ use trisect::io::Format;
 use trisect::{Control, Error, Mesh, MeshError, Solid};
 
 use super::argument_groups::Using;
+use super::json::json_of;
 use super::limits::Limits;
 use super::progress::Console;
-use super::report::json_of;
 use super::requests::Request;
 use trisect::io;
 

@@ -1,9 +1,9 @@
 //! What a run says about meshes: one summary line for people, one JSON object for programs.
 
-use serde::Serialize;
 use serde_json::{Map, Value, json};
 use trisect::{Certificate, Mesh, OperandState, Solid};
 
+use super::json::json_of;
 use super::operands::Operand;
 use trisect::mesh::Bounds;
 
@@ -175,12 +175,6 @@ pub(crate) fn welded(vertices: usize) -> String {
         1 => ", 1 vertex welded".into(),
         several => format!(", {several} vertices welded"),
     }
-}
-
-/// What the library has to say of something, as JSON; numbers that are not finite are null.
-pub(crate) fn json_of(value: &impl Serialize) -> Value {
-    // Nothing of the library fails to serialize: it has no maps with strange keys.
-    serde_json::to_value(value).unwrap_or_default()
 }
 
 /// The certificate of a result as JSON.

@@ -1,8 +1,8 @@
-//! Whole files: loading, saving without harm to what was there, and files named in files.
+//! Whole files: loading, and saving without harm to what was there.
 
 use std::fs::{self, File};
-use std::io::{self, Read};
-use std::path::{Component, Path, PathBuf};
+use std::io;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::{Format, FormatError, Loaded, ReadOptions, WriteOptions, obj, read, write};
@@ -63,7 +63,7 @@ pub fn save(mesh: &Mesh, path: impl AsRef<Path>, options: &WriteOptions) -> Resu
     let mut library = None;
     if let (Format::Obj, Some(text)) = (format, obj::library(mesh)) {
         let name = options.material_library.get_or_insert_with(|| library_name(path));
-        let beside = beside(path.parent().unwrap_or(Path::new("")), name)
+        let beside = super::beside::beside(path.parent().unwrap_or(Path::new("")), name)
             .map_err(|reason| Error::InvalidArgument(format!("the material library {name:?}: {reason}")))?;
         let mut new = NewFile::create(&beside)?;
         io::Write::write_all(&mut new.file, &text).map_err(|source| new.error(FileAction::Write, source))?;
@@ -91,39 +91,6 @@ fn library_name(path: &Path) -> String {
     let clean: String =
         stem.chars().map(|c| if c.is_whitespace() || ":\\/".contains(c) { '_' } else { c }).collect();
     format!("{clean}.mtl")
-}
-
-/// The path of a file named in a file, which must lie in `folder` or below.
-fn beside(folder: &Path, name: &str) -> Result<PathBuf, String> {
-    // Windows programs write backslashes.
-    let relative = PathBuf::from(name.replace('\\', "/"));
-    let inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
-    if name.is_empty() || name.contains('\0') {
-        return Err("the name is empty or holds a zero byte".to_string());
-    }
-    if name.contains(':') || !relative.components().all(inside) {
-        return Err(
-            "only files in the file's own folder and below are opened; copy it there and give its relative path"
-                .to_string(),
-        );
-    }
-    Ok(folder.join(relative))
-}
-
-/// Reads a regular file named in a file, if it lies in `folder` or below and has at most `limit` bytes.
-pub(super) fn read_beside(folder: &Path, name: &str, limit: u64) -> Result<Vec<u8>, String> {
-    let path = beside(folder, name)?;
-    let metadata = fs::metadata(&path).map_err(|error| error.to_string())?;
-    if !metadata.is_file() {
-        return Err("it is not a regular file".to_string());
-    }
-    if metadata.len() > limit {
-        return Err(format!("it has {} bytes, more than the {limit} allowed", metadata.len()));
-    }
-    let mut bytes = Vec::with_capacity(metadata.len() as usize);
-    let file = File::open(&path).map_err(|error| error.to_string())?;
-    file.take(limit).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
-    Ok(bytes)
 }
 
 /// A file that takes its place only once it is complete; dropped before, it leaves nothing behind.
@@ -240,26 +207,6 @@ fn temporary_name(target: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn only_files_below_the_folder_are_opened() {
-        let folder = Path::new("models");
-        for name in [
-            "../a.bin",
-            "/etc/passwd",
-            "a/../../b",
-            "file:///a",
-            "C:\\a.bin",
-            "http://a/b",
-            "",
-            "a\0b",
-            "\\a",
-        ] {
-            assert!(beside(folder, name).is_err(), "{name}");
-        }
-        assert_eq!(beside(folder, "textures\\a b.mtl").unwrap(), Path::new("models/textures/a b.mtl"));
-        assert_eq!(beside(folder, "./a.bin").unwrap(), Path::new("models/./a.bin"));
-    }
 
     #[test]
     fn library_names_have_no_blanks() {

@@ -23,6 +23,7 @@
 //! are triangulated completely, concave ones included; every count in a file is checked against the bytes that are
 //! there before memory is taken for it.
 
+mod beside;
 mod detect;
 mod error;
 mod faces;

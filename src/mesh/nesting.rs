@@ -91,8 +91,13 @@ pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &
             crossings.touching |= extent.low[2] <= z && side_of_plane(&corners, start.place) == Sign::Zero;
         });
     }
+    decide(count, &rays, &met)
+}
+
+/// What the crossings of the rays of each patch with each other patch say.
+fn decide(count: usize, rays: &[usize], met: &FxHashMap<(u32, u32), [Crossings; RAYS]>) -> Vec<Nesting> {
     let mut nesting = vec![Nesting::default(); count];
-    for (&(inner, _), crossings) in &met {
+    for (&(inner, _), crossings) in met {
         let (middle, extremes) =
             crossings[..rays[inner as usize]].split_last().unwrap_or((&crossings[0], &[]));
         let mut telling: Vec<bool> = extremes.iter().filter(|ray| !ray.touching).map(|ray| ray.odd).collect();

@@ -68,24 +68,29 @@ fn vertices_in_range(points: &[[f64; 2]], indices: impl Iterator<Item = u32> + C
 /// Triangles over the region that closed contours enclose by parity, in no particular order, each counter-clockwise.
 /// Contours may touch in a vertex that lies on an edge, but not cross. O(n log n) for ordinary contours.
 ///
-/// Where points lie on one circle the choice of diagonals depends on the order of points and edges.
+/// Where points lie on one circle the choice of diagonals depends on the order of points and edges, and on nothing else.
 pub(crate) fn fill_region(
     points: &[[f64; 2]],
     edges: impl Iterator<Item = [u32; 2]>,
 ) -> Result<Vec<[u32; 3]>> {
-    let edges = edges.map(|edge| edge.map(|end| end as usize)).collect();
-    let mut crossing = None;
-    let loaded =
-        Delaunay::try_bulk_load_cdt(vertices_in_range(points, 0..points.len() as u32), edges, |edge| {
-            crossing = crossing.or(Some(edge[0] as u32));
-        });
-    let triangulation = loaded.map_err(|_| Conflict::Place(0))?;
+    // 1. The vertices first: loading vertices and edges at once would depend on the order of a hash set where points lie on
+    //    one circle.
+    let vertices = vertices_in_range(points, 0..points.len() as u32);
+    let mut triangulation = Delaunay::bulk_load(vertices).map_err(|_| Conflict::Place(0))?;
     if triangulation.num_vertices() != points.len() {
         return Err(Conflict::Place(missing_vertex(&triangulation, points.len())));
     }
-    if let Some(vertex) = crossing {
-        return Err(Conflict::Crossing(vertex));
+    let mut handles: Vec<Option<FixedVertexHandle>> = vec![None; points.len()];
+    triangulation.vertices().for_each(|vertex| handles[vertex.data().index as usize] = Some(vertex.fix()));
+    // 2. The edges, in order; one that runs through vertices is found in several parts, one that crosses another in none.
+    for [u, v] in edges.filter(|[u, v]| u != v) {
+        let ends = handles[u as usize].zip(handles[v as usize]);
+        let found = ends.map(|(from, to)| triangulation.try_add_constraint(from, to));
+        if found.is_none_or(|parts| parts.is_empty()) {
+            return Err(Conflict::Crossing(u));
+        }
     }
+    // 3. What they enclose.
     let is_inside = flood(&triangulation, false, |side, edge| side != edge.is_constraint_edge());
     // Not every vertex has an even number of edges: two contours have one in common.
     let is_inside = is_inside.ok_or(Conflict::Crossing(0))?;

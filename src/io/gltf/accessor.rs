@@ -185,7 +185,7 @@ impl<'a> Accessors<'a> {
             .get(&self.reader.document.buffer_views, "bufferViews", view, pointer)?
             .byte_stride
             .filter(|_| strided)
-            .map_or(size, |stride| stride.0);
+            .map_or(size, |stride| usize::try_from(stride).unwrap_or(usize::MAX));
         if stride < size {
             return Err(self.reader.error(
                 format!("/bufferViews/{view}"),
@@ -218,27 +218,29 @@ impl<'a> Accessors<'a> {
     ) -> Result<(), Error> {
         let Some(sparse) = &accessor.sparse else { return Ok(()) };
         let pointer = format!("{pointer}/sparse");
-        if sparse.count.0 > accessor.count {
-            let what = format!("replaces {} of {} items", sparse.count.0, accessor.count);
+        if sparse.count > accessor.count {
+            let what = format!("replaces {} of {} items", sparse.count, accessor.count);
             return Err(self.reader.error(pointer, what));
         }
         let (indices, values) = (&sparse.indices, &sparse.values);
-        let Checked::Valid(kind) = indices.component_type else {
+        let kind = component_type(indices.component_type)
+            .filter(|kind| matches!(kind, ComponentType::U8 | ComponentType::U16 | ComponentType::U32));
+        let Some(kind) = kind else {
             return Err(self.reader.error(pointer, "its indices must be unsigned bytes, shorts or ints"));
         };
-        let layout = |view: usize, offset, component, width| Layout {
-            view,
+        let layout = |view: u32, offset, component, width| Layout {
+            view: view as usize,
             offset,
             strided: false,
             component,
             width,
-            count: sparse.count.0 as usize,
+            count: sparse.count as usize,
         };
-        let places = layout(indices.buffer_view.value(), indices.byte_offset.0, kind.0, 1);
+        let places = layout(indices.buffer_view, indices.byte_offset, kind, 1);
         let places = self.items(places, &pointer)?;
-        let items = layout(values.buffer_view.value(), values.byte_offset.0, component, width);
+        let items = layout(values.buffer_view, values.byte_offset, component, width);
         let items = self.items(items, &pointer)?;
-        for i in 0..sparse.count.0 as usize {
+        for i in 0..sparse.count as usize {
             let at = index(places.component, places.at(i)).map(u64::from);
             match at.filter(|&at| at < accessor.count) {
                 Some(at) => put(at as usize, items.at(i)),

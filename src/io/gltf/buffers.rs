@@ -9,7 +9,8 @@ use base64::Engine;
 use base64::alphabet::{STANDARD, URL_SAFE};
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
-use super::super::{ReadOptions, file};
+use super::super::ReadOptions;
+use super::super::beside::read_beside;
 use super::Reader;
 use crate::Error;
 
@@ -59,8 +60,8 @@ impl<'a> Buffers<'a> {
         let document = self.reader.document;
         let pointer = format!("/bufferViews/{index}");
         let view = self.reader.get(&document.buffer_views, "bufferViews", index, &pointer)?;
-        let (start, length) = (view.byte_offset.unwrap_or_default().0 as usize, view.byte_length.0 as usize);
-        let index = view.buffer.value();
+        let (start, length) = (view.byte_offset as usize, view.byte_length as usize);
+        let index = view.buffer as usize;
         let pointer = format!("/buffers/{index}");
         let buffer = self.reader.get(&document.buffers, "buffers", index, &pointer)?;
         let short = |available: usize| {
@@ -115,7 +116,7 @@ impl<'a> Buffers<'a> {
                         ),
                     )
                 })?;
-                let bytes = file::read_beside(folder, name, u64::from(u32::MAX) * 8).map_err(|reason| {
+                let bytes = read_beside(folder, name, u64::from(u32::MAX) * 8).map_err(|reason| {
                     self.reader.error(pointer, format!("cannot read the file {:?}: {reason}", shorten(name)))
                 })?;
                 self.external.set(self.external.get() + bytes.len() as u64);

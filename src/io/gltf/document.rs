@@ -1,7 +1,7 @@
 //! The parts of a glTF document that matter for its geometry. Everything else in the file is skipped.
 //!
-//! Where the types of the crate `gltf` ([`gltf::json`]) hold what is read, they are used: the asset, buffer views,
-//! sparse values, types of accessors, materials. What they cannot hold has structures here:
+//! Where the types of the crate `gltf` ([`gltf::json`]) hold what is read, they are used: the asset, types of accessors and
+//! of their components, modes of primitives, materials. What they cannot hold has structures here:
 //!
 //! - nodes: transforms are single precision there, and an empty node takes two hundred bytes, seventy times its text;
 //! - the document, scenes and buffers: `Root` holds every list of the file at once (cameras, animations, textures),
@@ -9,6 +9,7 @@
 //!   bytes for `{}`;
 //! - accessors: `min` and `max` become trees of values, up to a hundred times their text, and a component type that
 //!   does not exist loses its number, which the error tells;
+//! - buffer views and sparse values: an index there is cut to its lowest 32 bits, so that 2^32 would read as 0;
 //! - primitives: an extension that the crate does not know (Draco) is either lost or a tree of values;
 //! - materials stay as text until a primitive shows them: an empty one would take a hundred times its text.
 //!
@@ -18,8 +19,6 @@ use std::borrow::Cow;
 
 use gltf::json::Asset;
 use gltf::json::accessor::Type;
-use gltf::json::accessor::sparse::Sparse;
-use gltf::json::buffer::View;
 use gltf::json::validation::Checked;
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
@@ -143,6 +142,41 @@ pub(super) struct Accessor {
     #[serde(rename = "type")]
     pub(super) shape: Checked<Type>,
     pub(super) sparse: Option<Box<Sparse>>,
+}
+
+/// What replaces some items of an accessor.
+#[derive(Debug, Deserialize)]
+pub(super) struct Sparse {
+    pub(super) count: u64,
+    pub(super) indices: SparseIndices,
+    pub(super) values: SparseValues,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseIndices {
+    pub(super) buffer_view: u32,
+    #[serde(default)]
+    pub(super) byte_offset: u64,
+    pub(super) component_type: u32,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseValues {
+    pub(super) buffer_view: u32,
+    #[serde(default)]
+    pub(super) byte_offset: u64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct View {
+    pub(super) buffer: u32,
+    #[serde(default)]
+    pub(super) byte_offset: u64,
+    pub(super) byte_length: u64,
+    pub(super) byte_stride: Option<u64>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -92,8 +92,8 @@ impl<'a> Reader<'a> {
         let document = self.document;
         for (i, view) in document.buffer_views.iter().enumerate() {
             let pointer = format!("/bufferViews/{i}");
-            let buffer = self.get(&document.buffers, "buffers", view.buffer.value(), &pointer)?;
-            let (start, length) = (view.byte_offset.unwrap_or_default().0, view.byte_length.0);
+            let buffer = self.get(&document.buffers, "buffers", view.buffer as usize, &pointer)?;
+            let (start, length) = (view.byte_offset, view.byte_length);
             let end = start.checked_add(length);
             if end.is_none_or(|end| end > buffer.byte_length) {
                 return Err(self.error(
@@ -108,9 +108,8 @@ impl<'a> Reader<'a> {
         for (i, accessor) in document.accessors.iter().enumerate() {
             let sparse = accessor.sparse.as_ref();
             let sparse_views = sparse.map(|sparse| [sparse.indices.buffer_view, sparse.values.buffer_view]);
-            let sparse_views = sparse_views.into_iter().flatten().map(|view| view.value());
-            for view in accessor.buffer_view.map(|view| view as usize).into_iter().chain(sparse_views) {
-                self.get(&document.buffer_views, "bufferViews", view, &format!("/accessors/{i}"))?;
+            for view in accessor.buffer_view.into_iter().chain(sparse_views.into_iter().flatten()) {
+                self.get(&document.buffer_views, "bufferViews", view as usize, &format!("/accessors/{i}"))?;
             }
         }
         Ok(())

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::super::file;
+use super::super::beside::read_beside;
 use super::super::notes::Notes;
 use super::super::scan::{decode, quote};
 
@@ -31,7 +31,7 @@ pub(super) fn read(names: &[u8], folder: Option<&Path>, materials: &mut Material
         notes.say(format!("material library {} not read: the file's folder is not known", quote(names)));
         return;
     };
-    let whole = file::read_beside(folder, &decode(names), LARGEST_LIBRARY);
+    let whole = read_beside(folder, &decode(names), LARGEST_LIBRARY);
     if let Ok(bytes) = &whole {
         parse(bytes, materials, notes);
         return;
@@ -46,7 +46,7 @@ pub(super) fn read(names: &[u8], folder: Option<&Path>, materials: &mut Material
     for name in &words {
         let library = match &whole {
             Err(reason) if words.len() == 1 => Err(reason.clone()),
-            _ => file::read_beside(folder, &decode(name), LARGEST_LIBRARY),
+            _ => read_beside(folder, &decode(name), LARGEST_LIBRARY),
         };
         match library {
             Ok(bytes) => parse(&bytes, materials, notes),

@@ -144,12 +144,7 @@ impl Header {
                 Some(b"end_header") => break,
                 Some(b"format") => {
                     let name = words.next().unwrap_or_default();
-                    coding = Some(Coding::of_name(name).ok_or_else(|| {
-                        lines.error(&format!(
-                            "the format is {}, which is none of ascii, binary_little_endian, binary_big_endian",
-                            quote(name)
-                        ))
-                    })?);
+                    coding = Some(Coding::of_name(name).ok_or_else(|| lines.unknown_format(name))?);
                 }
                 Some(b"element") => {
                     let (Some(name), Some(count)) = (words.next(), words.next().and_then(number)) else {
@@ -189,6 +184,13 @@ impl Header {
             }
         }
         Ok(Self { coding, elements, end: lines.at })
+    }
+}
+
+impl Lines<'_> {
+    fn unknown_format(&self, name: &[u8]) -> Error {
+        let known = "ascii, binary_little_endian, binary_big_endian";
+        self.error(&format!("the format is {}, which is none of {known}", quote(name)))
     }
 }
 
