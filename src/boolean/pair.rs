@@ -102,7 +102,9 @@ fn build(
     let rounding = ROUNDING_ULPS * f64::EPSILON * arrangement.curve.complex.largest_coordinate();
     // 7. Cutting: sheets first, then all other faces.
     let sums = plane_sums::add_up(Body { arrangement, windings, parts }, runner)?;
-    arrangement.points.add(sums.crossings.into_iter().map(AddedPoint::Crossing));
+    arrangement
+        .points
+        .add(sums.crossings.into_iter().map(|crossing| AddedPoint::Crossing(Box::new(crossing))));
     let body = Body { arrangement, windings, parts };
     let cut = cut(body, &sums.done, rounding, runner)?;
     let mut pieces = sums.pieces;

@@ -69,7 +69,7 @@ fn read(arguments: &Convert, request: &Request, session: &mut Session<'_>) -> Re
     for warning in &warnings {
         session.warn(format!("{}: {warning}", request.name()));
     }
-    let mut object = described(&mesh, &request);
+    let mut object = described(&mesh, request);
     object.extend(report::into_map(json!({
         "format": format.extension(),
         "turned": turned,

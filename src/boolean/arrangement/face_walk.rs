@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::curve::Curve;
 use super::points::Points;
-use crate::boolean::complex::ids::CutFaceId;
+use crate::boolean::complex::ids::{CutEdgeId, CutFaceId};
 use crate::spatial::read_ahead;
 
 /// Faces whose data are read at once.
@@ -47,7 +47,7 @@ fn read(
         of_corner(u) ^ of_corner(v) ^ of_corner(w)
     }));
     // 2. The first node of each cut edge.
-    let cut_edges = faces.iter().flat_map(|face| face.edges).filter_map(|edge| edge.get());
+    let cut_edges = faces.iter().flat_map(|face| face.edges).filter_map(CutEdgeId::get);
     read_ahead(cut_edges.map(|edge| {
         let node = edges.lowest_node(edge);
         crossings[node].low.number() ^ low_bits(points.position_of_node(node))

@@ -29,10 +29,10 @@ pub(crate) enum Point<'a> {
 }
 
 /// A point that is neither a vertex nor a node.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) enum AddedPoint {
-    /// Where edges cross in the sum of a plane's faces.
-    Crossing(SheetCrossing),
+    /// Where edges cross in the sum of a plane's faces. (There are few of these, and many copies.)
+    Crossing(Box<SheetCrossing>),
     /// A copy of another point, or a point made where the result was cleaned up.
     Copy([f64; 3]),
 }

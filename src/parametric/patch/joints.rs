@@ -121,14 +121,17 @@ fn collect_boundaries(faces: &[Patch], tolerance: f64) -> Vec<Boundary> {
     boundaries
 }
 
+/// A shared edge, and how a boundary runs along it.
+type OnEdge = (usize, Course);
+
 /// The shared edges, and for every boundary its edge and how it runs along it.
 fn match_boundaries(
     boundaries: &[Boundary],
     owner: &[usize],
     tolerance: f64,
-) -> Result<(Vec<SharedEdge>, Vec<(usize, Course)>)> {
+) -> Result<(Vec<SharedEdge>, Vec<OnEdge>)> {
     let mut edges: Vec<SharedEdge> = Vec::new();
-    let mut edge_of: Vec<Option<(usize, Course)>> = vec![None; boundaries.len()];
+    let mut edge_of: Vec<Option<OnEdge>> = vec![None; boundaries.len()];
     // Boundaries that run along each other have near ends, whatever their direction: candidates are those whose lesser
     // end in x is within the tolerance.
     let least = |b: &Boundary| b.ends[0][0].min(b.ends[1][0]);
