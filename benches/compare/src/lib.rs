@@ -45,7 +45,7 @@ pub unsafe extern "C" fn trisect_solid(
             if triangle_count == 0 { &[] } else { std::slice::from_raw_parts(triangles, triangle_count) },
         )
     };
-    or_null(Solid::try_from(Mesh::new(positions.to_vec(), triangles.to_vec())))
+    or_null(Solid::try_from(Mesh::new(positions.to_vec(), triangles.to_vec())).map_err(Error::from))
 }
 
 /// Combines solids; operation 0 union, 1 intersection, 2 difference, 3 symmetric difference; `threads` 0: all.

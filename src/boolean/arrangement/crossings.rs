@@ -163,11 +163,9 @@ impl Search<'_> {
                 read_ahead(pairs.iter().map(|pair| triangles[pair[operand] as usize][0]));
             }
             corners.clear();
-            corners.extend(
-                pairs.iter().map(|pair| {
-                    [0, 1].map(|operand| self.complex.corners_of_triangle(operand, pair[operand]))
-                }),
-            );
+            corners.extend(pairs.iter().map(|&[s, t]| {
+                [self.complex.corners_of_triangle(0, s), self.complex.corners_of_triangle(1, t)]
+            }));
             found.extend(
                 pairs.iter().zip(&corners).filter_map(|(&pair, corners)| self.intersect(pair, corners)),
             );

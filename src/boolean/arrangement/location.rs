@@ -16,7 +16,7 @@ pub(crate) struct Location {
 impl Location {
     #[inline]
     pub(crate) fn read(complex: &Complex<'_>, crossing: &Crossing) -> Self {
-        let edge = [crossing.low, crossing.high].map(|vertex| *complex.position(vertex));
+        let edge = [*complex.position(crossing.low), *complex.position(crossing.high)];
         Self { edge, face: complex.positions(crossing.face) }
     }
 
