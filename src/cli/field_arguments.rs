@@ -62,7 +62,7 @@ pub(crate) struct Source {
     pub(crate) bounds: Option<[[f64; 3]; 2]>,
 }
 
-/// How inside and outside of a mesh are told apart.
+/// How inside and outside of a mesh are distinguished.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Rule {
     /// By pseudonormals on clean surfaces, else by winding

@@ -36,7 +36,7 @@ impl FaceList {
         Self { triangles: Vec::with_capacity(triangles), ..Self::default() }
     }
 
-    /// These triangles, but for those with a repeated corner; and how many those were.
+    /// These triangles, except those with a repeated corner; and how many those were.
     pub(super) fn from_triangles(mut triangles: Vec<[u32; 3]>) -> (Self, usize) {
         let count = triangles.len();
         let mut left_out = None;

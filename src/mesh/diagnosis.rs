@@ -64,7 +64,7 @@ pub struct Diagnosis {
     /// welding the vertices on open edges would close it (not looked for where more than 500 000 vertices are on
     /// open edges). [`Mesh::welded`](super::Mesh::welded) does it.
     pub closing_distance: Option<f64>,
-    /// The box round the triangles.
+    /// The box around the triangles.
     pub bounds: Option<Bounds>,
     /// The area of the triangles.
     pub area: f64,

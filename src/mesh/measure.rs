@@ -49,7 +49,7 @@ impl Mesh {
         centroid(&self.positions, &self.triangles, &self.bounds()?)
     }
 
-    /// The smallest box round the triangles; `None` if there are none. O(n).
+    /// The smallest box around the triangles; `None` if there are none. O(n).
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         let corners = self.triangles.iter().flatten();

@@ -22,7 +22,7 @@ pub struct SelfCrossing {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct SelfCrossings {
-    /// Pairs of triangles that cross each other in earnest: the surface encloses something twice, or inside out.
+    /// Pairs of triangles that cross each other really: the surface encloses something twice, or inside out.
     pub count: usize,
     /// Pairs that cross no deeper than rounding; every computed mesh may have some. They are tolerated.
     pub tolerated: usize,

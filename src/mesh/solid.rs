@@ -107,7 +107,7 @@ impl Solid {
         self.mesh.is_empty()
     }
 
-    /// The smallest box round the solid; `None` if it is empty.
+    /// The smallest box around the solid; `None` if it is empty.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.bounds
@@ -167,7 +167,7 @@ impl Solid {
         *self.edge_manifold.get_or_init(|| examine().is_ok_and(|chain| chain.edge_manifold))
     }
 
-    /// Whether the surface is a 2-manifold: every edge has two triangles, and the triangles round every vertex form
+    /// Whether the surface is a 2-manifold: every edge has two triangles, and the triangles around every vertex form
     /// one fan. O(n).
     #[must_use]
     pub fn is_manifold(&self) -> bool {

@@ -68,7 +68,7 @@ impl Polygon {
     /// all rings counted through. v points and h holes make v + 2h - 2 triangles.
     ///
     /// # Errors
-    /// If coordinates differ so much in magnitude (2^78) that some cannot be told apart.
+    /// If coordinates differ so much in magnitude (2^78) that some cannot be distinguished.
     pub(super) fn triangles(&self) -> Result<Vec<[u32; 3]>, String> {
         let points = self.rings.concat();
         let expected = points.len() + 2 * (self.rings.len() - 1) - 2;

@@ -1,4 +1,4 @@
-//! Flat discs round parts of a mesh: on a surface that bends little they bound far more tightly than boxes, whose
+//! Flat discs around parts of a mesh: on a surface that bends little they bound far more tightly than boxes, whose
 //! thickness is that of a tilted triangle. A query at the distance d opens the boxes within about the square root of
 //! d times that thickness of the nearest point, but only the discs within the square root of d times the surface's
 //! rise.

@@ -65,7 +65,7 @@ impl Frame {
         Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
     }
 
-    /// A box round a point that is strictly larger than it, so that the rounding of recentring is covered too: distances
+    /// A box around a point that is strictly larger than it, so that the rounding of recentring is covered too: distances
     /// to it are never more than those to the point.
     #[inline]
     pub(crate) fn around(&self, position: DVec3) -> Aabb {

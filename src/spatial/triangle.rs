@@ -18,7 +18,7 @@ pub enum Feature {
 const NEEDLE: f64 = 1e-3;
 
 /// Nearest point to `query` on the triangle `corners`, and the feature it lies on (Ericson 2005, 5.1.5: the regions
-/// of the features are told apart by the signs of dot products, without a square root).
+/// of the features are distinguished by the signs of dot products, without a square root).
 ///
 /// Choporov 2017 (9) decides by the number of negative edge tests instead, which picks a vertex where an obtuse
 /// triangle's nearest point is on an edge.

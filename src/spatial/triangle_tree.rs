@@ -93,7 +93,7 @@ impl TriangleTree {
         self.leaves.len()
     }
 
-    /// The corners of the box round all triangles; nothing for an empty tree.
+    /// The corners of the box around all triangles; nothing for an empty tree.
     #[must_use]
     pub fn bounds(&self) -> Option<[[f64; 3]; 2]> {
         (!self.is_empty()).then(|| [self.low.to_array(), self.high.to_array()])

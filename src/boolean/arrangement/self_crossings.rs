@@ -1,4 +1,4 @@
-//! Whether a surface crosses itself: exact, with crossings no deeper than rounding told apart.
+//! Whether a surface crosses itself: exact, with crossings no deeper than rounding distinguished.
 //!
 //! Every pair of triangles is tested by the predicates of the boolean, with the surface shrunk by an infinitesimal along
 //! its own normals: parts that merely touch separate, and what still crosses, crosses. Crossings deeper than a few units
@@ -20,7 +20,7 @@ use crate::{Control, Error, Solid};
 const TOLERATED_ULPS: f64 = 8.0;
 /// Distance of the sample points from a shallow crossing, in tolerances.
 const SAMPLE_DISTANCES: [f64; 2] = [64.0, 4096.0];
-/// So many places are kept.
+/// The deepest crossings that are kept with their places: enough to look at, and to print.
 const PLACES: usize = 5;
 
 impl Solid {
@@ -190,7 +190,7 @@ impl Surface<'_> {
         })
     }
 
-    /// The winding number round a point, by a ray in +x.
+    /// The winding number around a point, by a ray in +x.
     fn winding(&self, point: &[f64; 3]) -> i32 {
         let first_free = self.complex.vertex_count();
         let corner = |i: u32, position| Corner { id: VertexId::new(first_free + i), position };

@@ -6,7 +6,7 @@ use glam::Vec3A;
 const SLENDER: f32 = 8.0;
 /// Widening of a capsule, in units of its largest coordinate: more than single precision loses in all steps together.
 const MARGIN: f32 = 1e-4;
-/// Widening of a capsule round two, in the same units.
+/// Widening of a capsule around two, in the same units.
 const ROUNDING: f32 = 16.0 * f32::EPSILON;
 /// Lines at an angle whose sine squared is less are taken for parallel.
 const PARALLEL: f32 = 1e-4;
@@ -24,7 +24,7 @@ pub(crate) struct Capsule {
 }
 
 impl Capsule {
-    /// The capsule round the longest side of a triangle.
+    /// The capsule around the longest side of a triangle.
     pub(crate) fn of(corners: &[Vec3A; 3]) -> Self {
         let (length, p, q, r) = longest_side(corners);
         let largest = corners.iter().fold(0.0f32, |most, corner| most.max(corner.abs().max_element()));
@@ -60,7 +60,7 @@ impl Capsule {
         self.half_length + self.radius
     }
 
-    /// A capsule round both.
+    /// A capsule around both.
     pub(crate) fn united(&self, other: &Self) -> Self {
         let longer = if self.half_length >= other.half_length { self } else { other };
         let between = (other.middle - self.middle).normalize_or(longer.direction);
@@ -70,7 +70,7 @@ impl Capsule {
         if room(&second) < room(&first) { second } else { first }
     }
 
-    /// The capsule round both along a direction.
+    /// The capsule around both along a direction.
     fn around(&self, other: &Self, direction: Vec3A) -> Self {
         let ends = [self, other].map(|capsule| {
             let half = capsule.half_length * capsule.direction;
@@ -111,7 +111,7 @@ impl Capsule {
         if scale > PARALLEL && distance * distance > radii * radii * scale {
             return true;
         }
-        // As far as a line and a ball round the other.
+        // As far as a line and a ball around the other.
         let off_line = |direction: Vec3A, half_length: f32| {
             let reach = radii + half_length;
             between.cross(direction).length_squared() > reach * reach
@@ -163,7 +163,7 @@ mod tests {
             }
             let is_apart = Capsule::of(&a).is_apart(&Capsule::of(&b));
             assert!(round % 2 == 1 || !is_apart, "round {round}");
-            // Nor has a capsule round others.
+            // Nor has a capsule around others.
             let (united, third) = (Capsule::of(&a).united(&Capsule::of(&triangle())), Capsule::of(&b));
             assert!(is_apart || !united.is_apart(&third), "round {round}");
             assert!(is_apart || !united.united(&Capsule::of(&triangle())).is_apart(&third), "round {round}");

@@ -1,11 +1,11 @@
 //! A balanced tree of capsules, for operands with many needles.
 //!
 //! Needles lie side by side in bundles (the sides of a long cylinder). The box of a needle that lies askew is mostly empty, so
-//! all boxes of two bundles that cross meet, while hardly any needles do; capsules round parts of a bundle tell them apart.
+//! all boxes of two bundles that cross meet, while hardly any needles do; capsules around parts of a bundle distinguish them.
 //! (Needles in a plane across an axis have flat boxes. So items keep their box, too.)
 //!
 //! For needles that lie askew. With trees of boxes instead: 23 for two crossed rods with 2,000 sides, 13 for two double cones
-//! with 4,000 triangles round each tip, 2.0 for a knot less 50 short cylinders.
+//! with 4,000 triangles around each tip, 2.0 for a knot less 50 short cylinders.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
@@ -17,7 +17,7 @@ use crate::control::Control;
 use crate::parallel::Runner;
 use crate::spatial::morton_code;
 
-/// Items in a leaf: one capsule round four neighbours of a bundle is hardly wider than theirs.
+/// Items in a leaf: one capsule around four neighbours of a bundle is hardly wider than theirs.
 const LEAF: usize = 4;
 /// Pairs handed on at once: what is looked up for them stays in the first-level cache.
 const BATCH: usize = 256;
@@ -90,7 +90,7 @@ impl CapsuleTree {
     }
 }
 
-/// A capsule round some.
+/// A capsule around some.
 fn round(capsules: &[Capsule]) -> Capsule {
     capsules[1..].iter().fold(capsules[0], |sum, capsule| sum.united(capsule))
 }
@@ -265,7 +265,7 @@ mod tests {
                         place += usize::from(is_found);
                         let boxes_meet = box_of(&a[i]).intersect_aabb(&box_of(&b[j]));
                         let (x, y) = (&of_a[i], &of_b[j]);
-                        // Found where they are not told apart, and left out only where they are apart.
+                        // Found where they are not distinguished, and left out only where they are apart.
                         assert!(!is_found || (boxes_meet && !x.is_apart(y)));
                         assert!(is_found || !boxes_meet || distance(x, y) > x.radius() + y.radius());
                     }

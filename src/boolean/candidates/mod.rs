@@ -65,7 +65,7 @@ impl Candidates {
             .flatten();
         let items = [0, 1].map(|side| culled.as_ref().map_or(near[side], |culled| &culled[side]));
         let corners = |side: usize, t: u32| corners(complex, &frame, side, t);
-        // 2. Where many are needles, capsules round what is left.
+        // 2. Where many are needles, capsules around what is left.
         let many = items[0].len().saturating_mul(items[1].len()) >= CAPSULES_FROM_PAIRS;
         if many && (0..2).any(|side| has_needles(items[side], |t| corners(side, t))) {
             let bytes = (items[0].len() + items[1].len()) * CapsuleTree::BYTES_PER_ITEM;

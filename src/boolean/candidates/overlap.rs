@@ -1,7 +1,7 @@
 //! What of each operand can meet the other: a few passes over the arrays, before anything is built.
 //!
 //! The common part of the operands' boxes is divided into a coarse grid. Cells that the other operand's surface does not pass
-//! form regions (`spatial::Regions`), in each of which it winds round everything equally often. Triangles that touch no
+//! form regions (`spatial::Regions`), in each of which it winds around everything equally often. Triangles that touch no
 //! passed cell need not be looked at again.
 //!
 //! For operands of many triangles that cross along a curve. Without the grid: 1.2 for two spheres of 330,000 triangles, and
@@ -87,9 +87,11 @@ impl Overlap {
                 regions: [nowhere(), nowhere()],
             });
         };
+        // 1. A coarse grid over the common part of the boxes.
         let frame = Frame::of(common.low, common.high);
         let region = Aabb { min: frame.point(&common.low), max: frame.point(&common.high) };
         let grid = Occupancy::over(&region, resolution(sides, &frame, &region));
+        // 2. Where each vertex is, and which cells each surface passes.
         let seen = |side: usize| -> Result<Seen, Error> {
             let view = View { operand: &sides[side], common: &common, frame: &frame, grid: &grid };
             let places = view.places(runner)?;
@@ -98,12 +100,14 @@ impl Overlap {
         };
         let (a, b) = runner.both(|| seen(0), || seen(1));
         let seen = [a?, b?];
+        // 3. Triangles that touch a cell the other surface passes.
         let meeting = |side: usize| -> Result<Vec<u32>, Error> {
             let view = View { operand: &sides[side], common: &common, frame: &frame, grid: &grid };
             view.meeting(&seen[side], &seen[1 - side].passed, runner)
         };
         let (near_a, near_b) = runner.both(|| meeting(0), || meeting(1));
         let near = [near_a?, near_b?];
+        // 4. The cells it does not pass, in connected regions.
         let regions = [1, 0].map(|other| Regions::of(&seen[other].passed));
         let cell_length = grid.cell_length();
         Ok(Self { common: Some(common), cell_length, places: seen.map(|seen| seen.places), near, regions })

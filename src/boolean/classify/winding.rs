@@ -114,7 +114,7 @@ fn winding_numbers(
 }
 
 /// Sets of vertices of one operand whose winding numbers are known relative to each other, with the regions of the coarse
-/// grid. Vertices in a region, or outside the other operand's box, are not told apart.
+/// grid. Vertices in a region, or outside the other operand's box, are not distinguished.
 struct WindingClasses<'a> {
     places: &'a [Place],
     regions: &'a Regions,

@@ -86,11 +86,14 @@ impl<'a> Sum<'a> {
 
     /// The triangles left, or `None` where the shapes do not allow it.
     fn triangles(mut self) -> Option<Vec<Piece>> {
+        // 1. The boundaries of what is kept of all faces, as they add up.
         let edges = self.edges()?;
         let mut at: FxHashMap<[u64; 3], u32> = FxHashMap::default();
         for (i, &point) in (0..).zip(&self.points) {
             at.insert(bits(self.position(point)), i);
         }
+        // 2. The plane between them by winding number: opposite edges cancel, and where edges cross there is a new point,
+        //    unless there is one already.
         let next = self.body.arrangement.points.next();
         let mut flat = std::mem::take(&mut self.flat);
         let found = polygon::by_winding(&mut flat, &edges, |x, y, flat| {
@@ -103,14 +106,16 @@ impl<'a> Sum<'a> {
                 flat.len() as u32 - 1
             }))
         })?;
+        // 3. Each triangle comes from a face around it.
         self.flat = flat;
-        self.with_origins(&found)
+        self.attach_origins(&found)
     }
 
     /// The directed edges of all faces, with local numbers of the points.
     fn edges(&mut self) -> Option<Vec<polygon::Edge>> {
         let mut edges: Vec<polygon::Edge> = Vec::new();
         let body = self.body;
+        // 1. Every face's boundary, each edge with the line it is a part of: a side of the face, or a segment.
         for &id in self.sheet {
             let (operand, _) = self.body.complex().triangle(id);
             let face = self.body.arrangement.curve.faces[operand].find(id)?;
@@ -131,6 +136,7 @@ impl<'a> Sum<'a> {
                 });
             }
         }
+        // 2. Numbers without gaps for the points.
         self.points = edges.iter().flat_map(|edge| edge.ends).map(PointId::new).collect();
         self.points.sort_unstable();
         self.points.dedup();
@@ -164,8 +170,9 @@ impl<'a> Sum<'a> {
     }
 
     /// The triangles with the faces they come from: those around their middle that look their way.
-    fn with_origins(&self, found: &polygon::Found) -> Option<Vec<Piece>> {
+    fn attach_origins(&self, found: &polygon::Found) -> Option<Vec<Piece>> {
         let complex = self.body.complex();
+        // 1. The faces each part of the body takes from the sheet, and which way they look.
         let sources: Vec<(Origin, bool, [[f64; 2]; 3])> = self
             .sheet
             .iter()
@@ -177,6 +184,7 @@ impl<'a> Sum<'a> {
                     .map(move |part| (complex.origin(face, part.reversed), looks_up != part.reversed, flat))
             })
             .collect();
+        // 2. A tree over them: a sheet may have thousands.
         let upright = |p: [f64; 2]| [p[0], p[1], 0.0];
         let all = || sources.iter().flat_map(|source| source.2);
         let low = all().fold([f64::INFINITY; 2], |low, p| [low[0].min(p[0]), low[1].min(p[1])]);
@@ -188,6 +196,8 @@ impl<'a> Sum<'a> {
             frame.triangle(corners.each_ref())
         };
         let tree = BoxTree::new(&numbers, |i| box_of(&sources[i as usize].2));
+        // 3. Of the faces that hold a triangle's middle and look its way it comes from the first; a sliver whose middle rounding
+        //    has put outside all of them comes from any that looks its way.
         let mut new = Vec::new();
         let slivers = found.slivers.iter().map(|&counted| (counted, true));
         for ((triangle, winding), is_flat) in

@@ -65,6 +65,7 @@ pub(crate) fn run(
     operands: &[&Solid],
     runner: Runner<'_>,
 ) -> Result<Outcome, Error> {
+    // 1. Every operand as a 2-manifold, with the origins and groups of its triangles.
     let groups = merged_groups(operands);
     let mut partials: Vec<Partial<'_>> = operands
         .iter()
@@ -82,6 +83,7 @@ pub(crate) fn run(
             Partial::new(Cow::Owned(solid), source.iter().map(origin).collect(), groups)
         })
         .collect();
+    // 2. Pair by pair.
     let engine = Engine { policy, runner };
     let result = match operation {
         Operation::Union => engine.union(partials)?,
@@ -100,6 +102,7 @@ pub(crate) fn run(
         }
         Operation::SymmetricDifference => engine.fold(Operation::SymmetricDifference, partials)?,
     };
+    // 3. What is known of the result.
     let notes = Notes {
         contacts: result.contacts,
         inverted: if result.may_be_inverted { count_inverted(&result, operands) } else { 0 },

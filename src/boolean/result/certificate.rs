@@ -51,7 +51,7 @@ pub struct Certificate {
 pub enum OperandState {
     /// Nobody has asked; see [`Solid::self_crossings`].
     NotChecked,
-    /// It does not cross itself, but for so many pairs of triangles no deeper than rounding.
+    /// It does not cross itself, except in some pairs of triangles, no deeper than rounding.
     Clean {
         /// Pairs of triangles that cross by rounding.
         tolerated: usize,

@@ -10,7 +10,7 @@ use crate::parallel::{Runner, parts};
 
 /// Which points a result uses, and their numbers in it.
 ///
-/// Vertices are in use where the winding number says so, but for doubtful ones, which must be found in some triangle. Points
+/// Vertices are in use where the winding number says so, except doubtful ones, which must be found in some triangle. Points
 /// are added in their order: the vertices of A, those of B, all others.
 #[derive(Debug)]
 pub(crate) struct Numbers {
