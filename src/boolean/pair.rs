@@ -141,9 +141,12 @@ fn bodies(parts: &[Part], together: bool) -> std::slice::Chunks<'_, Part> {
 fn motion(operation: Operation, fuse: bool) -> Motion {
     match operation {
         Operation::Union if fuse => Motion::Swell,
+        // Bodies that touch come apart.
+        Operation::Union | Operation::Intersection => Motion::Shrink,
+        // What is taken off must grow against what it is taken from, or flush faces would leave a film.
+        Operation::Difference => Motion::Shrink,
         // Faces that touch, whichever way they look, then cut one another, and can be added up.
         Operation::SymmetricDifference => Motion::Swell,
-        _ => Motion::Shrink,
     }
 }
 

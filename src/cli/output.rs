@@ -122,6 +122,7 @@ fn refuse_terminal(format: Format, ascii: bool) -> Result<(), Fault> {
     let binary = match format {
         Format::Glb => true,
         Format::Stl | Format::Ply => !ascii,
+        // Obj, Gltf and Off are text; a new format must be added here if it is not (the enum is open to this program).
         _ => false,
     };
     if binary && stdout().is_terminal() {

@@ -7,7 +7,7 @@ use super::Format;
 #[non_exhaustive]
 pub enum FormatError {
     /// The name or the first bytes of a file do not tell its format.
-    #[error("cannot tell the format of {name}; known formats: obj, gltf, glb, stl, ply, off")]
+    #[error("cannot tell the format of {name}; known formats: {}", known_formats())]
     Unknown {
         /// The file's name, or "standard input".
         name: String,
@@ -30,4 +30,9 @@ pub enum FormatError {
         /// What is not supported, and how to convert the file.
         what: String,
     },
+}
+
+/// The extensions of all formats.
+fn known_formats() -> String {
+    Format::ALL.map(Format::extension).join(", ")
 }

@@ -40,6 +40,7 @@ mod precision;
 mod scan;
 mod stl;
 mod text;
+mod weld;
 
 use std::io::Write;
 

@@ -15,6 +15,7 @@ use super::{Defaults, Kind, Mode, Model, Node, contour, fault, primitive, refere
 use crate::Error;
 use crate::boolean::Operation;
 use crate::field::{Formula, System, named_system};
+use crate::io::Format;
 
 /// How the names of kinds begin that a [`LeafKind`](super::LeafKind) evaluates.
 const CUSTOM: &str = "x-";
@@ -397,6 +398,9 @@ fn region_of(_: Value) -> Result<Kind, Error> {
 
 /// The ending of a name that looks like a mesh file or a description of a solid.
 fn extension(text: &str) -> Option<&'static str> {
-    let ending = Path::new(text).extension()?.to_str()?.to_ascii_lowercase();
-    ["json", "obj", "gltf", "glb", "stl", "ply", "off"].into_iter().find(|known| *known == ending)
+    let path = Path::new(text);
+    if path.extension()?.eq_ignore_ascii_case("json") {
+        return Some("json");
+    }
+    Format::from_path(path).map(Format::extension)
 }

@@ -86,12 +86,9 @@ pub(crate) fn parts(operation: Operation) -> &'static [Part] {
 mod tests {
     use super::*;
 
-    const ALL: [Operation; 4] =
-        [Operation::Union, Operation::Intersection, Operation::Difference, Operation::SymmetricDifference];
-
     #[test]
     fn segments_cancel_between_the_operands() {
-        for operation in ALL {
+        for operation in Operation::ALL {
             for body in parts(operation).chunks(2) {
                 assert_eq!(body.iter().map(|part| part.segment_direction()).sum::<i32>(), 0, "{operation:?}");
             }
@@ -100,7 +97,7 @@ mod tests {
 
     #[test]
     fn a_step_in_multiplicity_is_the_flow_along_the_segment() {
-        for operation in ALL {
+        for operation in Operation::ALL {
             for part in parts(operation) {
                 // Left of tail -> head on A lies B's outside: one less winding than to the right; mirrored on B.
                 let (left, right) = if part.operand == 0 { (0, 1) } else { (1, 0) };

@@ -70,9 +70,16 @@ impl FromStr for Operation {
 
     fn from_str(text: &str) -> Result<Self, UnknownName> {
         let found = Self::ALL.into_iter().find(|operation| operation.name() == text);
-        found.ok_or_else(|| {
-            UnknownName::new(text, "operation", &["union", "intersection", "difference", "xor"])
-        })
+        const NAMES: [&str; Operation::ALL.len()] = {
+            let mut names = [""; Operation::ALL.len()];
+            let mut i = 0;
+            while i < names.len() {
+                names[i] = Operation::ALL[i].name();
+                i += 1;
+            }
+            names
+        };
+        found.ok_or_else(|| UnknownName::new(text, "operation", &NAMES))
     }
 }
 

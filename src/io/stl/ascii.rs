@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use super::super::faces::too_large;
 use super::super::notes::Notes;
 use super::super::scan::{Scanner, decode, line_place};
+use super::super::weld::Weld;
 use super::super::{Format, malformed};
-use super::weld::Weld;
 use crate::{Control, Error, FaceGroup, FaceGroups, Mesh};
 
 /// Facets between two looks at the limits.
@@ -32,7 +32,7 @@ pub(super) fn read(bytes: &[u8], notes: &mut Notes, control: &Control) -> Result
         bytes,
         scanner: Scanner::new(bytes, if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 }),
         // The shortest facet takes about 80 bytes; usual ones twice that.
-        weld: Weld::new(bytes.len() / 160),
+        weld: Weld::new(Format::Stl, bytes.len() / 160),
         triangles: Vec::new(),
         names: HashMap::new(),
         groups: FaceGroups::default(),

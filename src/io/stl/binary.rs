@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::super::notes::Notes;
+use super::super::weld::Weld;
 use super::super::{Format, malformed};
-use super::weld::Weld;
 use crate::parallel;
 use crate::{Control, Error, Mesh};
 
@@ -83,7 +83,7 @@ struct Chunk {
 
 impl Chunk {
     fn new(facets: usize) -> Self {
-        Self { weld: Weld::new(facets), triangles: Vec::with_capacity(facets), degenerate: 0 }
+        Self { weld: Weld::new(Format::Stl, facets), triangles: Vec::with_capacity(facets), degenerate: 0 }
     }
 
     fn read(facets: &[[u8; FACET]], range: Range<usize>) -> Result<Self, Error> {

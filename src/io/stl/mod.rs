@@ -5,7 +5,6 @@
 
 mod ascii;
 mod binary;
-mod weld;
 mod write;
 
 pub(super) use ascii::looks_like_text;

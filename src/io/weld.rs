@@ -2,8 +2,8 @@
 
 use std::hash::{BuildHasher, RandomState};
 
-use super::super::Format;
-use super::super::faces::too_large;
+use super::Format;
+use super::faces::too_large;
 use crate::Error;
 
 /// A place of the table without a vertex.
@@ -52,6 +52,7 @@ impl Corner for [f64; 3] {
 /// A table of the vertices so far, in the order in which they came: the numbering does not depend on the hash.
 #[derive(Debug)]
 pub(super) struct Weld<C> {
+    format: Format,
     corners: Vec<C>,
     /// Places by hash, a power of two of them: the upper half of the hash, and an index into `corners`.
     slots: Vec<u64>,
@@ -59,13 +60,13 @@ pub(super) struct Weld<C> {
 }
 
 impl<C: Corner> Weld<C> {
-    /// With room for the vertices of about this many triangles.
-    pub(super) fn new(triangles: usize) -> Self {
+    /// With room for the vertices of about this many triangles of a file of that format.
+    pub(super) fn new(format: Format, triangles: usize) -> Self {
         // A closed surface has half as many vertices as triangles.
         let slots = triangles.max(8).next_power_of_two();
         // The seed differs from run to run, so that no file can be made whose corners all collide.
         let seed = RandomState::new().hash_one(0_u8);
-        Self { corners: Vec::with_capacity(triangles / 2 + 4), slots: vec![EMPTY; slots], seed }
+        Self { format, corners: Vec::with_capacity(triangles / 2 + 4), slots: vec![EMPTY; slots], seed }
     }
 
     /// Puts the vertices with these coordinates into `vertices`, a list of the same length. Zeros must be positive,
@@ -112,7 +113,7 @@ impl<C: Corner> Weld<C> {
         }
         let index = self.corners.len();
         if index >= u32::MAX as usize {
-            return Err(too_large(Format::Stl, "vertices"));
+            return Err(too_large(self.format, "vertices"));
         }
         self.slots[slot] = hash & TAG | index as u64;
         self.corners.push(corner);
@@ -163,7 +164,7 @@ mod tests {
 
     #[test]
     fn vertices_are_numbered_as_they_come() {
-        let mut weld = Weld::new(0);
+        let mut weld = Weld::new(Format::Stl, 0);
         let corner = |i: u32| [i as f32, (i % 7) as f32, 1.0];
         for round in 0..2 {
             for i in 0..10_000 {
