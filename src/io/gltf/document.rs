@@ -187,6 +187,20 @@ pub(super) struct Buffer<'a> {
     pub(super) uri: Option<Cow<'a, str>>,
 }
 
+/// What is kept of a material that the crate's type refuses, for a value of another kind or one that is null.
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct PlainMaterial {
+    pub(super) name: Option<String>,
+    #[serde(rename = "pbrMetallicRoughness")]
+    pub(super) surface: Option<PlainSurface>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct PlainSurface {
+    #[serde(rename = "baseColorFactor")]
+    pub(super) base_color: Option<[f32; 4]>,
+}
+
 fn is_not_empty<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D::Error> {
     Ok(!Vec::<serde::de::IgnoredAny>::deserialize(deserializer)?.is_empty())
 }

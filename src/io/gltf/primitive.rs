@@ -11,7 +11,7 @@ use super::super::notes::Notes;
 use super::super::{ReadOptions, unsupported};
 use super::accessor::Accessors;
 use super::buffers::Buffers;
-use super::document::{Accessor, Primitive};
+use super::document::{Accessor, PlainMaterial, Primitive};
 use super::extensions::DRACO_ADVICE;
 use super::{Reader, SMALLEST_LIMIT};
 use crate::control::Reservation;
@@ -289,13 +289,19 @@ impl<'a> Builder<'a> {
             return Ok(known.clone());
         }
         let text = self.reader.get(&self.reader.document.materials, "materials", index as usize, pointer)?;
-        let material = serde_json::from_str::<json::Material>(text.get()).unwrap_or_else(|error| {
-            self.notes.say(format!("/materials/{index} is read as white: {error}"));
-            json::Material::default()
-        });
-        let material = Material {
-            name: material.name.unwrap_or_default(),
-            base_color: material.pbr_metallic_roughness.base_color_factor.0,
+        let material = match serde_json::from_str::<json::Material>(text.get()) {
+            Ok(material) => Material {
+                name: material.name.unwrap_or_default(),
+                base_color: material.pbr_metallic_roughness.base_color_factor.0,
+            },
+            Err(error) => {
+                self.notes.say(format!("of /materials/{index} only the name and the colour are read: {error}"));
+                let plain: PlainMaterial = serde_json::from_str(text.get()).unwrap_or_default();
+                Material {
+                    name: plain.name.unwrap_or_default(),
+                    base_color: plain.surface.and_then(|surface| surface.base_color).unwrap_or([1.0; 4]),
+                }
+            }
         };
         self.charge(200 + material.name.len() as u64)?;
         self.materials.insert(index, material.clone());

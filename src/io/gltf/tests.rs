@@ -344,3 +344,29 @@ fn chunks_without_padding_are_read_with_a_warning() {
     // Padding that the length does not count was always read.
     assert_eq!(glb("  ").unwrap(), (mesh, Vec::new()));
 }
+
+#[test]
+fn of_a_material_that_is_not_as_it_should_be_name_and_colour_are_read() {
+    let materials = json!([
+        {"name": "odd", "alphaMode": 3, "pbrMetallicRoughness": {"baseColorFactor": [0.25, 0.5, 0.75, 1.0]}},
+        {"name": "bare", "pbrMetallicRoughness": null}
+    ]);
+    let colors = [[0.25, 0.5, 0.75, 1.0], [1.0; 4]];
+    for (index, (name, color)) in ["odd", "bare"].into_iter().zip(colors).enumerate() {
+        let document = changed(&[
+            ("/materials", materials.clone()),
+            ("/meshes/0/primitives/0/material", json!(index)),
+        ]);
+        let (mesh, warnings) = read_json(&document).unwrap();
+        let material = mesh.groups.list[0].material.as_ref().unwrap();
+        assert_eq!((material.name.as_str(), material.base_color), (name, color));
+        assert!(warnings.iter().any(|warning| warning.contains(&format!("/materials/{index}"))), "{warnings:?}");
+    }
+}
+
+#[test]
+fn indices_are_not_cut_to_32_bits() {
+    for pointer in ["/bufferViews/0/buffer", "/accessors/0/bufferView", "/meshes/0/primitives/0/indices"] {
+        assert!(read_json(&changed(&[(pointer, json!(1_u64 << 32))])).is_err(), "{pointer}");
+    }
+}
