@@ -295,7 +295,8 @@ impl<'a> Builder<'a> {
                 base_color: material.pbr_metallic_roughness.base_color_factor.0,
             },
             Err(error) => {
-                self.notes.say(format!("of /materials/{index} only the name and the colour are read: {error}"));
+                self.notes
+                    .say(format!("of /materials/{index} only the name and the colour are read: {error}"));
                 let plain: PlainMaterial = serde_json::from_str(text.get()).unwrap_or_default();
                 Material {
                     name: plain.name.unwrap_or_default(),

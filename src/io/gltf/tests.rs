@@ -172,9 +172,16 @@ fn integer_positions_sparse_values_and_strides() {
     assert_eq!(mesh.positions, [[0.0; 3], [0.0; 3], [1.0, 0.0, 0.0], [0.0; 3]]);
 }
 
+/// A changed document is refused as damaged, with a place and a word.
+fn assert_fault(changes: &[(&str, Value)], place: &str, word: &str) {
+    let error = read_json(&changed(changes)).unwrap_err();
+    let text = error.to_string();
+    assert!(matches!(error, Error::Format(crate::io::FormatError::Malformed { .. })), "{changes:?}: {text}");
+    assert!(text.contains(place) && text.contains(word), "{changes:?}: {text}");
+}
+
 #[test]
-fn faults_are_told_with_their_place() {
-    let cycle = json!([{"children": [1]}, {"children": [0], "mesh": 0}]);
+fn faults_of_buffers_and_accessors_have_their_place() {
     for (changes, place, word) in [
         (vec![("/bufferViews/0/buffer", json!(1))], "/bufferViews/0", "\"buffers\""),
         (vec![("/bufferViews/0/byteLength", json!(57))], "/bufferViews/0", "has 56"),
@@ -194,6 +201,15 @@ fn faults_are_told_with_their_place() {
         (vec![("/accessors/1/componentType", json!(5126))], "/accessors/1", "unsigned"),
         (vec![("/bufferViews/0/byteStride", json!(8))], "/bufferViews/0", "byteStride of 8"),
         (vec![("/bufferViews/0/byteStride", json!(252))], "/accessors/0", "needs 768 bytes"),
+    ] {
+        assert_fault(&changes, place, word);
+    }
+}
+
+#[test]
+fn faults_of_meshes_and_nodes_have_their_place() {
+    let cycle = json!([{"children": [1]}, {"children": [0], "mesh": 0}]);
+    for (changes, place, word) in [
         (
             vec![("/meshes/0/primitives/0/attributes/POSITION", json!(7))],
             "/meshes/0/primitives/0",
@@ -228,13 +244,7 @@ fn faults_are_told_with_their_place() {
             "",
         ),
     ] {
-        let error = read_json(&changed(&changes)).unwrap_err();
-        let text = error.to_string();
-        assert!(
-            matches!(error, Error::Format(crate::io::FormatError::Malformed { .. })),
-            "{changes:?}: {text}"
-        );
-        assert!(text.contains(place) && text.contains(word), "{changes:?}: {text}");
+        assert_fault(&changes, place, word);
     }
 }
 
@@ -353,14 +363,15 @@ fn of_a_material_that_is_not_as_it_should_be_name_and_colour_are_read() {
     ]);
     let colors = [[0.25, 0.5, 0.75, 1.0], [1.0; 4]];
     for (index, (name, color)) in ["odd", "bare"].into_iter().zip(colors).enumerate() {
-        let document = changed(&[
-            ("/materials", materials.clone()),
-            ("/meshes/0/primitives/0/material", json!(index)),
-        ]);
+        let document =
+            changed(&[("/materials", materials.clone()), ("/meshes/0/primitives/0/material", json!(index))]);
         let (mesh, warnings) = read_json(&document).unwrap();
         let material = mesh.groups.list[0].material.as_ref().unwrap();
         assert_eq!((material.name.as_str(), material.base_color), (name, color));
-        assert!(warnings.iter().any(|warning| warning.contains(&format!("/materials/{index}"))), "{warnings:?}");
+        assert!(
+            warnings.iter().any(|warning| warning.contains(&format!("/materials/{index}"))),
+            "{warnings:?}"
+        );
     }
 }
 
