@@ -75,11 +75,11 @@ pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Res
     Ok(Input { mesh, format, warnings, reserved })
 }
 
-/// The error with the program's name for what the library's text calls by its own.
+/// The error of a glTF scene that takes too much, with the option that allows more.
 fn name_option(error: Error) -> Error {
     match error {
-        Error::TooLarge { what } => {
-            Error::TooLarge { what: what.replace("ReadOptions::expansion", "--expansion TIMES") }
+        Error::TooLarge { what } if what.starts_with("the flattened scene") => {
+            Error::TooLarge { what: format!("{what} (--expansion TIMES allows more)") }
         }
         other => other,
     }
