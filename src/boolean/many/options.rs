@@ -84,9 +84,9 @@ impl BooleanOptions {
     /// in which regions count as often as they are enclosed; the certificate tells what is known of each operand.
     ///
     /// # Errors
-    /// Only limits: [`Limit::Cancelled`](crate::Limit::Cancelled), [`Limit::DeadlineExceeded`](crate::Limit::DeadlineExceeded), [`Limit::Memory`](crate::Limit::Memory); [`Error::TooLarge`] if the
-    /// vertices of two operands and of their intersection cannot be numbered with 32 bits; and [`Error::InvalidArgument`]
-    /// for an empty list of operands, or where a pool of `threads` threads cannot be made.
+    /// Limits ([`Error::Limit`]); [`Error::TooLarge`] if the vertices of two operands and of their intersection, or their
+    /// triangles, cannot be numbered with 32 bits; and [`Error::InvalidArgument`] for an empty list of operands, or where a
+    /// pool of `threads` threads cannot be made.
     pub fn run<'a>(
         &self,
         operation: Operation,
