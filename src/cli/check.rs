@@ -11,6 +11,7 @@ use super::json::json_of;
 use super::operands::{self, Input, Usable};
 use super::report::{self, Measures, into_map};
 use super::requests::{self, Request};
+use super::selection;
 use super::session::Session;
 use super::stream;
 use trisect::mesh::diagnose;
@@ -26,6 +27,7 @@ struct Verdict {
 /// Checks every input; the worst answer decides the exit code, an unreadable file before an unusable one.
 pub(crate) fn run(arguments: &Check, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
     let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = selection::each(requests, &session.limits, &session.control())?;
     let (mut unreadable, mut unusable) = (false, false);
     let mut objects = Vec::new();
     for request in &requests {

@@ -11,6 +11,7 @@ use super::fault::Fault;
 use super::field_arguments::{self, Rule, Source};
 use super::operands;
 use super::requests;
+use super::selection;
 use super::session::Session;
 
 /// A function of space and where to look at it.
@@ -55,6 +56,8 @@ pub(crate) fn field(
     } else {
         let mut requests = requests::requests(matches, source.reading.format)?;
         let request = requests.pop().ok_or_else(|| Fault::usage("a file or --formula is needed"))?;
+        let of_input = |error: trisect::Error| error.of_operand(0, request.name());
+        let request = selection::together(request.clone(), &session.limits, control).map_err(of_input)?;
         let input = operands::read(&request, &session.limits, control)
             .map_err(|error| error.of_operand(0, request.name()))?;
         for warning in &input.warnings {
