@@ -4,6 +4,7 @@
 //! early; a difference takes the union of all tools off the first operand in one step; an intersection starts with the
 //! smallest operands; a symmetric difference goes from left to right.
 
+mod expressions;
 mod merge_order;
 pub(super) mod options;
 
