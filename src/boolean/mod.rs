@@ -35,7 +35,7 @@ mod tidy;
 
 pub use complex::operation::{Contact, Operation, UnknownName};
 pub use complex::origin::Origin;
-pub use expression::{Expression, Rule};
+pub use expression::{Expression, ExpressionError, Rule};
 pub use many::options::BooleanOptions;
 pub use result::certificate::{Certificate, OperandState};
 pub use result::outcome::Outcome;

@@ -77,6 +77,14 @@ impl<'a> Shape<'a> {
         found
     }
 
+    /// The ends of edges with more than two faces.
+    pub(crate) fn points_on_pinched_edges(&self) -> Vec<PointId> {
+        let General { edges, identification, .. } = self.general;
+        let pinched = edges.iter().filter(|&(edge, _)| edges.sides(edge).len() > 2);
+        let ends = pinched.flat_map(|(_, ends)| ends.map(|v| PointId::new(v.number())));
+        ends.map(|point| identification.representative(point)).collect()
+    }
+
     /// How often a face that is not cut counts.
     #[inline]
     pub(crate) fn count_of_face(&self, face: FaceId) -> i32 {

@@ -77,7 +77,7 @@ pub(crate) fn tidy(
     }
     // Where an operand touches itself, triangles may come apart at points that are not wholly in the patch. Then all starts
     // again with those; each is taken in but once.
-    let mut extra: Vec<PointId> = Vec::new();
+    let mut extra: Vec<PointId> = source.points_on_pinched_edges();
     loop {
         let patch = gather::gather(source, pieces, &extra);
         // Candidates outside the patch have nothing that changed around them.

@@ -97,6 +97,15 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// Vertices at which whole faces may have to come apart: those on edges of more than two faces.
+    pub(super) fn points_on_pinched_edges(&self) -> Vec<PointId> {
+        match self.ground {
+            // Such operands are taken apart before.
+            Ground::Body(_) => Vec::new(),
+            Ground::Shape(shape) => shape.points_on_pinched_edges(),
+        }
+    }
+
     /// Whether cutting can have left anything to clean up: points that became one, nodes on coplanar edges, or surface that
     /// counts other than once. O(vertices + nodes).
     pub(super) fn needs_clean_up(&self) -> bool {
