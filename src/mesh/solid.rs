@@ -50,6 +50,8 @@ pub struct Solid {
     cleaning: Cleaning,
     volume: OnceLock<f64>,
     self_crossings: OnceLock<SelfCrossings>,
+    /// Whether an operation made it so that it crosses itself no deeper than rounding.
+    made_clean: bool,
 }
 
 /// What was left out or joined to make a [`Solid`] of a mesh.
@@ -138,6 +140,17 @@ impl Solid {
 
     pub(crate) fn remember_self_crossings(&self, found: SelfCrossings) -> &SelfCrossings {
         self.self_crossings.get_or_init(|| found)
+    }
+
+    /// Whether it is known, from a check or from the operation that made it, to cross itself no deeper than rounding, and not
+    /// to touch itself.
+    pub(crate) fn is_known_clean(&self) -> bool {
+        self.made_clean || self.self_crossings.get().is_some_and(SelfCrossings::is_clean)
+    }
+
+    /// Notes that an operation made this so that it crosses itself no deeper than rounding.
+    pub(crate) fn set_made_clean(&mut self) {
+        self.made_clean = true;
     }
 
     pub(crate) fn set_groups(&mut self, groups: FaceGroups) {
@@ -326,6 +339,7 @@ fn cleaned(mesh: Mesh) -> Result<Solid, MeshError> {
         cleaning,
         volume: volume.map_or_else(OnceLock::new, |volume| OnceLock::from(volume.value)),
         self_crossings: OnceLock::new(),
+        made_clean: false,
     })
 }
 
