@@ -105,6 +105,14 @@ impl Diagnosis {
         ]
     }
 
+    /// The faults without advice: a text for each kind there is, with up to `places` places (of at most five that are kept).
+    #[must_use]
+    pub fn listed(&self, places: usize) -> Vec<String> {
+        let crossings = self.self_crossings.as_ref().map(|fault| ("crossing pair", "crossing pairs", fault));
+        let kinds = self.faults().into_iter().chain(crossings).filter(|(.., fault)| !fault.is_none());
+        kinds.map(|(one, several, fault)| fault.text(one, several, places)).collect()
+    }
+
     /// How to mend a surface that no welding closes.
     fn advice(&self) -> Option<&'static str> {
         let (open, turned) = (!self.open_edges.is_none(), !self.misoriented_edges.is_none());
@@ -121,35 +129,15 @@ impl Diagnosis {
 impl fmt::Display for Diagnosis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (separator, shown) = if f.alternate() { ("\n", PLACES) } else { ("; ", 2) };
-        let mut first = true;
-        let mut separate = |f: &mut fmt::Formatter<'_>| {
-            if std::mem::take(&mut first) { Ok(()) } else { f.write_str(separator) }
-        };
-        let crossings = self.self_crossings.as_ref().map(|fault| ("crossing pair", "crossing pairs", fault));
-        for (one, several, fault) in self.faults().into_iter().chain(crossings) {
-            if fault.is_none() {
-                continue;
-            }
-            separate(f)?;
-            write!(f, "{} {}", fault.count, if fault.count == 1 { one } else { several })?;
-            for (index, place) in fault.places.iter().take(shown).enumerate() {
-                write!(f, "{}{place}", if index == 0 { ": " } else { ", " })?;
-            }
-            if fault.count > fault.places.len().min(shown) {
-                f.write_str(", ...")?;
-            }
-        }
+        let mut parts = self.listed(shown);
         if let Some(mending) = &self.mending {
-            separate(f)?;
-            write!(f, "mending would close it: {mending}")?;
+            parts.push(format!("mending would close it: {mending}"));
         } else if let Some(distance) = self.closing_distance {
-            separate(f)?;
-            write!(f, "welding vertices within {distance:e} would close it")?;
+            parts.push(format!("welding vertices within {distance:e} would close it"));
         } else if let Some(advice) = self.advice() {
-            separate(f)?;
-            f.write_str(advice)?;
+            parts.push(advice.into());
         }
-        if first { f.write_str("no faults") } else { Ok(()) }
+        if parts.is_empty() { f.write_str("no faults") } else { f.write_str(&parts.join(separator)) }
     }
 }
 

@@ -43,6 +43,21 @@ impl Fault {
         self.count += 1;
     }
 
+    /// The count, a name for one or for several, and up to `shown` places.
+    #[must_use]
+    pub fn text(&self, one: &str, several: &str, shown: usize) -> String {
+        let mut text = format!("{} {}", self.count, if self.count == 1 { one } else { several });
+        let places: Vec<String> = self.places.iter().take(shown).map(ToString::to_string).collect();
+        if !places.is_empty() {
+            text.push_str(": ");
+            text.push_str(&places.join(", "));
+        }
+        if self.count > places.len() {
+            text.push_str(", ...");
+        }
+        text
+    }
+
     /// Whether there are none.
     #[must_use]
     pub fn is_none(&self) -> bool {

@@ -75,7 +75,8 @@ impl Solid {
         let half_edges = HalfEdges::of(&whole);
         make_manifold(&mut whole, &half_edges);
         let mut separated = Self::from_closed_unchecked(whole.mesh);
-        separated.source = Some(whole.source.iter().map(|&triangle| self.source_triangle(triangle)).collect());
+        separated.source =
+            Some(whole.source.iter().map(|&triangle| self.source_triangle(triangle)).collect());
         separated.cleaning = self.cleaning;
         separated.mending.clone_from(&self.mending);
         if let Some(known) = self.known_self_crossings() {
