@@ -3,10 +3,12 @@
 use clap::ArgMatches;
 use serde_json::{Value, json};
 use trisect::io::Format;
+use trisect::mesh::Mending;
 use trisect::{Error, Mesh};
 
 use super::arguments::Info;
 use super::fault::{Exit, Fault};
+use super::json::json_of;
 use super::operands::{self, Input};
 use super::report::{Measures, counted};
 use super::requests::{self, Request};
@@ -54,11 +56,17 @@ fn formats(session: &mut Session<'_>) -> Result<Exit, Fault> {
 }
 
 fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String]) -> (String, Value) {
-    let (measures, state) = match trisect::Solid::try_from(mesh.clone()) {
-        Ok(solid) => (Measures::of_solid(&solid), None),
-        Err(error) => (Measures::of_mesh(mesh), Some(super::fault::one_line(&error.to_string()))),
+    let (measures, state, mending) = match trisect::Solid::try_from(mesh.clone()) {
+        Ok(solid) => (Measures::of_solid(&solid), None, solid.mending().clone()),
+        Err(error) => {
+            let state = super::fault::one_line(&error.to_string());
+            (Measures::of_mesh(mesh), Some(state), Mending::default())
+        }
     };
     let mut rows = measures.table();
+    if !mending.is_none() {
+        rows.push(("mended", mending.to_string()));
+    }
     if let Some(state) = &state {
         rows.push(("closed", state.clone()));
     }
@@ -76,6 +84,7 @@ fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String])
     object.insert("file".into(), request.name().into());
     object.insert("format".into(), format.extension().into());
     object.insert("state".into(), json!(state));
+    object.insert("mending".into(), json_of(&mending));
     object.insert("groups".into(), groups.iter().map(Group::to_json).collect::<Vec<_>>().into());
     object.insert("warnings".into(), json!(warnings));
     (text, object.into())

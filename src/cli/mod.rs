@@ -21,6 +21,7 @@ mod limits;
 mod operands;
 mod output;
 mod progress;
+mod repairs;
 mod report;
 mod requests;
 mod session;
