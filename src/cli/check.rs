@@ -12,6 +12,7 @@ use super::operands::{self, Input, Unusable, Usable};
 use super::repairs::Remedy;
 use super::report::{self, Measures, into_map};
 use super::requests::{self, Request};
+use super::selection;
 use super::session::Session;
 use super::stream;
 use trisect::mesh::diagnose;
@@ -27,6 +28,7 @@ struct Verdict {
 /// Checks every input; the worst answer decides the exit code, an unreadable file before an unusable one.
 pub(crate) fn run(arguments: &Check, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
     let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = selection::each(requests, &session.limits, &session.control())?;
     let (mut unreadable, mut unusable) = (false, false);
     let mut objects = Vec::new();
     for request in &requests {

@@ -12,8 +12,10 @@ use super::arguments::Combine;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Operand};
 use super::output::{self, Product, Target};
+use super::recenter;
 use super::report::{self, Measures};
-use super::requests;
+use super::requests::{self, Request};
+use super::selection;
 use super::session::Session;
 
 /// Runs a boolean of the inputs.
@@ -25,7 +27,11 @@ pub(crate) fn run(
 ) -> Result<Exit, Fault> {
     let requests = requests::requests(matches, arguments.inputs.reading.format)?;
     let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
-    refuse_pointless(operation, arguments, requests.len(), &targets, session)?;
+    refuse_pointless(arguments, &targets, session)?;
+    let requests = parts(operation, requests, session)?;
+    if requests.len() < 2 && operation != Operation::Union {
+        return Err(Fault::usage("at least two inputs are needed: FILE1 FILE2 ... -o OUTPUT"));
+    }
     if !arguments.dry_run {
         output::probe(&targets, &session.limits)?;
     }
@@ -67,17 +73,37 @@ pub(crate) fn run(
     Ok(Exit::Fine)
 }
 
-/// Command lines that are well formed but cannot be meant.
-fn refuse_pointless(
+/// The inputs, one for each part of a file that is asked for.
+fn parts(
     operation: Operation,
-    arguments: &Combine,
-    inputs: usize,
-    targets: &[Target],
+    mut requests: Vec<Request>,
     session: &Session<'_>,
-) -> Result<(), Fault> {
-    if inputs < 2 && operation != Operation::Union {
-        return Err(Fault::usage("at least two inputs are needed: FILE1 FILE2 ... -o OUTPUT"));
+) -> Result<Vec<Request>, Fault> {
+    if requests.iter().all(|request| request.part.is_none()) {
+        return Ok(requests);
     }
+    let control = session.control();
+    if operation == Operation::Difference && !requests.is_empty() {
+        let others = requests.split_off(1);
+        let name = requests.first().map(Request::name).unwrap_or_default();
+        requests = selection::each(requests, &session.limits, &control)?;
+        if requests.len() > 1 {
+            let names: Vec<String> = requests.iter().take(4).map(Request::name).collect();
+            return Err(Fault::unusable(format!(
+                "operand 1 ({name}): that are {} parts ({}{}), and a difference takes all others from one; unite them first, \
+                 or name the one",
+                requests.len(),
+                names.join(", "),
+                if requests.len() > names.len() { ", ..." } else { "" },
+            )));
+        }
+        requests.extend(others);
+    }
+    Ok(selection::each(requests, &session.limits, &control)?)
+}
+
+/// Command lines that are well formed but cannot be meant.
+fn refuse_pointless(arguments: &Combine, targets: &[Target], session: &Session<'_>) -> Result<(), Fault> {
     let common = session.common;
     if targets.is_empty() && !common.json && common.report.is_none() && !arguments.dry_run {
         return Err(Fault::usage(
@@ -120,7 +146,8 @@ fn write(
 ) -> Result<(), Fault> {
     let start = Instant::now();
     session.console.stage("writing", 1.0);
-    let mesh = outcome.solid().mesh();
+    let mesh = recenter::placed(outcome.solid().mesh(), &arguments.results.writing, session);
+    let mesh = mesh.as_ref();
     let drawing = &arguments.results.drawing;
     let picture = || {
         let operands = outcome.origins().iter().map(|origin| origin.operand as usize);

@@ -1,9 +1,15 @@
 //! `info`: what is in files, and which formats there are.
 
+use std::collections::HashSet;
+
 use clap::ArgMatches;
 use serde_json::{Value, json};
+<<<<<<< HEAD
 use trisect::io::Format;
 use trisect::mesh::Mending;
+=======
+use trisect::io::{Format, PartName};
+>>>>>>> out
 use trisect::{Error, Mesh};
 
 use super::arguments::Info;
@@ -12,8 +18,12 @@ use super::json::json_of;
 use super::operands::{self, Input};
 use super::report::{Measures, counted};
 use super::requests::{self, Request};
+use super::selection;
 use super::session::Session;
 use super::stream;
+
+/// Names deeper than this are not indented further.
+const DEEPEST: usize = 20;
 
 /// Describes every input, or the formats.
 pub(crate) fn run(arguments: &Info, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
@@ -22,17 +32,21 @@ pub(crate) fn run(arguments: &Info, matches: &ArgMatches, session: &mut Session<
     }
     let control = session.control();
     let mut objects = Vec::new();
-    for (index, request) in requests::requests(matches, arguments.reading.format)?.iter().enumerate() {
-        let of_this = |error: Error| error.of_operand(index, request.name());
-        session.console.stage(&format!("reading {}", request.name()), 0.0);
+    let requests = requests::requests(matches, arguments.reading.format)?;
+    let requests = selection::each(requests, &session.limits, &control)?;
+    for (index, request) in requests.into_iter().enumerate() {
+        let name = request.name();
+        let of_this = |error: Error| error.of_operand(index, name.clone());
+        session.console.stage(&format!("reading {name}"), 0.0);
+        let (request, parts) = selection::whole(request, &session.limits, &control).map_err(of_this)?;
         let Input { mesh, format, warnings, reserved: _reserved } =
-            operands::read(request, &session.limits, &control).map_err(of_this)?;
-        let (text, object) = describe(request, &mesh, format, &warnings);
+            operands::read(&request, &session.limits, &control).map_err(of_this)?;
+        let (text, object) = describe(&request, &mesh, format, &warnings, &parts);
         if !session.common.json {
             session.console.pause(|| stream::print(&text))?;
         }
         for warning in warnings {
-            session.warn(format!("{}: {warning}", request.name()));
+            session.warn(format!("{name}: {warning}"));
         }
         objects.push(object);
     }
@@ -55,6 +69,7 @@ fn formats(session: &mut Session<'_>) -> Result<Exit, Fault> {
     Ok(Exit::Fine)
 }
 
+<<<<<<< HEAD
 fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String]) -> (String, Value) {
     let (measures, state, mending) = match trisect::Solid::try_from(mesh.clone()) {
         Ok(solid) => (Measures::of_solid(&solid), None, solid.mending().clone()),
@@ -62,6 +77,18 @@ fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String])
             let state = super::fault::one_line(&error.to_string());
             (Measures::of_mesh(mesh), Some(state), Mending::default())
         }
+=======
+fn describe(
+    request: &Request,
+    mesh: &Mesh,
+    format: Format,
+    warnings: &[String],
+    parts: &[PartName],
+) -> (String, Value) {
+    let (measures, state) = match trisect::Solid::try_from(mesh.clone()) {
+        Ok(solid) => (Measures::of_solid(&solid), None),
+        Err(error) => (Measures::of_mesh(mesh), Some(super::fault::one_line(&error.to_string()))),
+>>>>>>> out
     };
     let mut rows = measures.table();
     if !mending.is_none() {
@@ -80,7 +107,10 @@ fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String])
         text.push_str(&format!("    {}\n", group.line()));
     }
 
+    text.push_str(&listed(parts, &groups));
+
     let mut object = measures.to_json();
+    object.insert("parts".into(), json_of(&parts));
     object.insert("file".into(), request.name().into());
     object.insert("format".into(), format.extension().into());
     object.insert("state".into(), json!(state));
@@ -88,6 +118,20 @@ fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String])
     object.insert("groups".into(), groups.iter().map(Group::to_json).collect::<Vec<_>>().into());
     object.insert("warnings".into(), json!(warnings));
     (text, object.into())
+}
+
+/// The names that can stand after `#`, where they are more than the groups.
+fn listed(parts: &[PartName], groups: &[Group<'_>]) -> String {
+    let told: HashSet<&str> = groups.iter().map(|group| group.name).collect();
+    if parts.iter().all(|part| told.contains(part.name.as_str())) {
+        return String::new();
+    }
+    let mut text = format!("  {:10} {}\n", "parts", parts.len());
+    for part in parts {
+        let indent = "  ".repeat(2 + part.depth.min(DEEPEST));
+        text.push_str(&format!("{indent}{}: {}\n", part.name, counted(part.triangles, "triangle")));
+    }
+    text
 }
 
 /// A group of faces with its size.

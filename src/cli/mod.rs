@@ -21,9 +21,14 @@ mod limits;
 mod operands;
 mod output;
 mod progress;
+<<<<<<< HEAD
 mod repairs;
+=======
+mod recenter;
+>>>>>>> out
 mod report;
 mod requests;
+mod selection;
 mod session;
 mod slice;
 mod source;

@@ -2,13 +2,18 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::ArgMatches;
 use trisect::io::Format;
 use trisect::{Mesh, MeshError};
 
 use super::fault::Fault;
+<<<<<<< HEAD
 use super::repairs::Repairs;
+=======
+use super::selection::{self, Chosen};
+>>>>>>> out
 
 /// The name that stands for standard input and output.
 pub(crate) const STANDARD: &str = "-";
@@ -55,6 +60,10 @@ impl fmt::Display for Transform {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Request {
     pub(crate) path: PathBuf,
+    /// The name or pattern of parts of the file.
+    pub(crate) part: Option<String>,
+    /// What was read of the file already.
+    pub(crate) chosen: Option<Arc<Chosen>>,
     pub(crate) format: Option<Format>,
     /// How many times the bytes of its file a scene may take; `None` for what the library allows.
     pub(crate) expansion: Option<u64>,
@@ -65,7 +74,12 @@ pub(crate) struct Request {
 impl Request {
     /// The name in messages.
     pub(crate) fn name(&self) -> String {
-        if self.is_standard() { "standard input".into() } else { self.path.display().to_string() }
+        let file = if self.is_standard() { "standard input".into() } else { self.path.display().to_string() };
+        let chosen = self.chosen.as_ref().and_then(|chosen| chosen.name.as_ref());
+        match chosen.or(self.part.as_ref()) {
+            Some(part) => format!("{file}#{part}"),
+            None => file,
+        }
     }
 
     /// Whether this is standard input.
@@ -112,8 +126,14 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     for (_, item) in items {
         match (item, requests.last_mut()) {
             (Item::File(path), _) => {
+<<<<<<< HEAD
                 let (transforms, repairs) = (Vec::new(), Repairs::default());
                 requests.push(Request { path, format: None, expansion, transforms, repairs });
+=======
+                let (path, part) = selection::split(path);
+                let (format, chosen, transforms) = (None, None, Vec::new());
+                requests.push(Request { path, part, chosen, format, expansion, transforms });
+>>>>>>> out
             }
             (Item::Transform(_, transform), Some(request)) => request.transforms.push(transform),
             (Item::Repair(repairs), Some(request)) => request.repairs = repairs.with(request.repairs),
