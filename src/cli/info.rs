@@ -4,12 +4,9 @@ use std::collections::HashSet;
 
 use clap::ArgMatches;
 use serde_json::{Value, json};
-<<<<<<< HEAD
 use trisect::io::Format;
 use trisect::mesh::Mending;
-=======
 use trisect::io::{Format, PartName};
->>>>>>> out
 use trisect::{Error, Mesh};
 
 use super::arguments::Info;
@@ -69,7 +66,6 @@ fn formats(session: &mut Session<'_>) -> Result<Exit, Fault> {
     Ok(Exit::Fine)
 }
 
-<<<<<<< HEAD
 fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String]) -> (String, Value) {
     let (measures, state, mending) = match trisect::Solid::try_from(mesh.clone()) {
         Ok(solid) => (Measures::of_solid(&solid), None, solid.mending().clone()),
@@ -77,7 +73,6 @@ fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String])
             let state = super::fault::one_line(&error.to_string());
             (Measures::of_mesh(mesh), Some(state), Mending::default())
         }
-=======
 fn describe(
     request: &Request,
     mesh: &Mesh,
@@ -88,7 +83,6 @@ fn describe(
     let (measures, state) = match trisect::Solid::try_from(mesh.clone()) {
         Ok(solid) => (Measures::of_solid(&solid), None),
         Err(error) => (Measures::of_mesh(mesh), Some(super::fault::one_line(&error.to_string()))),
->>>>>>> out
     };
     let mut rows = measures.table();
     if !mending.is_none() {

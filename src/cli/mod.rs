@@ -21,11 +21,8 @@ mod limits;
 mod operands;
 mod output;
 mod progress;
-<<<<<<< HEAD
 mod repairs;
-=======
 mod recenter;
->>>>>>> out
 mod report;
 mod requests;
 mod selection;

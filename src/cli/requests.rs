@@ -9,11 +9,8 @@ use trisect::io::Format;
 use trisect::{Mesh, MeshError};
 
 use super::fault::Fault;
-<<<<<<< HEAD
 use super::repairs::Repairs;
-=======
 use super::selection::{self, Chosen};
->>>>>>> out
 
 /// The name that stands for standard input and output.
 pub(crate) const STANDARD: &str = "-";
@@ -126,14 +123,11 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     for (_, item) in items {
         match (item, requests.last_mut()) {
             (Item::File(path), _) => {
-<<<<<<< HEAD
                 let (transforms, repairs) = (Vec::new(), Repairs::default());
                 requests.push(Request { path, format: None, expansion, transforms, repairs });
-=======
                 let (path, part) = selection::split(path);
                 let (format, chosen, transforms) = (None, None, Vec::new());
                 requests.push(Request { path, part, chosen, format, expansion, transforms });
->>>>>>> out
             }
             (Item::Transform(_, transform), Some(request)) => request.transforms.push(transform),
             (Item::Repair(repairs), Some(request)) => request.repairs = repairs.with(request.repairs),
