@@ -4,9 +4,8 @@ use std::collections::HashSet;
 
 use clap::ArgMatches;
 use serde_json::{Value, json};
-use trisect::io::Format;
-use trisect::mesh::Mending;
 use trisect::io::{Format, PartName};
+use trisect::mesh::Mending;
 use trisect::{Error, Mesh};
 
 use super::arguments::Info;
@@ -66,13 +65,6 @@ fn formats(session: &mut Session<'_>) -> Result<Exit, Fault> {
     Ok(Exit::Fine)
 }
 
-fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String]) -> (String, Value) {
-    let (measures, state, mending) = match trisect::Solid::try_from(mesh.clone()) {
-        Ok(solid) => (Measures::of_solid(&solid), None, solid.mending().clone()),
-        Err(error) => {
-            let state = super::fault::one_line(&error.to_string());
-            (Measures::of_mesh(mesh), Some(state), Mending::default())
-        }
 fn describe(
     request: &Request,
     mesh: &Mesh,
@@ -80,9 +72,12 @@ fn describe(
     warnings: &[String],
     parts: &[PartName],
 ) -> (String, Value) {
-    let (measures, state) = match trisect::Solid::try_from(mesh.clone()) {
-        Ok(solid) => (Measures::of_solid(&solid), None),
-        Err(error) => (Measures::of_mesh(mesh), Some(super::fault::one_line(&error.to_string()))),
+    let (measures, state, mending) = match trisect::Solid::try_from(mesh.clone()) {
+        Ok(solid) => (Measures::of_solid(&solid), None, solid.mending().clone()),
+        Err(error) => {
+            let state = super::fault::one_line(&error.to_string());
+            (Measures::of_mesh(mesh), Some(state), Mending::default())
+        }
     };
     let mut rows = measures.table();
     if !mending.is_none() {

@@ -123,11 +123,10 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     for (_, item) in items {
         match (item, requests.last_mut()) {
             (Item::File(path), _) => {
-                let (transforms, repairs) = (Vec::new(), Repairs::default());
-                requests.push(Request { path, format: None, expansion, transforms, repairs });
                 let (path, part) = selection::split(path);
                 let (format, chosen, transforms) = (None, None, Vec::new());
-                requests.push(Request { path, part, chosen, format, expansion, transforms });
+                let repairs = Repairs::default();
+                requests.push(Request { path, part, chosen, format, expansion, transforms, repairs });
             }
             (Item::Transform(_, transform), Some(request)) => request.transforms.push(transform),
             (Item::Repair(repairs), Some(request)) => request.repairs = repairs.with(request.repairs),
