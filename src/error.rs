@@ -9,7 +9,7 @@ use crate::control::Limit;
 use crate::field::{FieldError, FormulaError};
 #[cfg(feature = "formats")]
 use crate::io::FormatError;
-use crate::mesh::MeshError;
+use crate::mesh::{MeshError, Refusal};
 
 /// What was tried with a file. The text is the verb.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -119,6 +119,12 @@ pub enum Failure {
     Unusable,
     /// A limit was hit, or the operation was cancelled.
     Limit,
+}
+
+impl From<Box<Refusal>> for Error {
+    fn from(refusal: Box<Refusal>) -> Self {
+        refusal.error.into()
+    }
 }
 
 impl Error {

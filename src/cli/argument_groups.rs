@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, ColorChoice, ValueEnum};
 use trisect::io::Format;
+use trisect::mesh::Welding;
 
 use super::values;
 
@@ -108,25 +109,39 @@ pub(crate) struct Placing {
     matrix: Vec<[[f64; 4]; 4]>,
 }
 
-/// What is mended in inputs, where it is asked for.
-#[derive(Clone, Copy, Debug, Args)]
+/// What is mended in inputs where it is asked for. Each applies to the input just before it, or to all inputs if it stands
+/// before the first. The values are taken from the matches together with their positions, not from these fields.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Mending, of the input just before them, or of all inputs before the first")]
 pub(crate) struct Repair {
-    /// Turn inputs whose faces point inwards
-    #[arg(long, help_heading = "Inputs")]
-    pub(crate) orient: bool,
-    /// Join vertices on open edges that are no further apart than this
-    #[arg(
-        long, value_name = "DISTANCE", value_parser = values::distance, help_heading = "Inputs",
-        allow_hyphen_values = true
-    )]
-    pub(crate) weld: Option<f64>,
+    /// Turn an input whose faces point inwards, or disagree
+    #[arg(long, num_args = 0, default_missing_value = "true", action = clap::ArgAction::Append)]
+    orient: Vec<bool>,
+    /// Join vertices on open edges that are no further apart than this; auto: than the least distance that closes the
+    /// surface
+    #[arg(long, value_name = "DISTANCE|auto", value_parser = values::welding, allow_hyphen_values = true)]
+    weld: Vec<Welding>,
+}
+
+/// What is mended in operands.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Mending, of the input just before them, or of all inputs before the first")]
+pub(crate) struct Admitting {
+    /// Leave out the parts of an input that are not closed
+    #[arg(long, num_args = 0, default_missing_value = "true", action = clap::ArgAction::Append)]
+    closed_parts: Vec<bool>,
+    /// Mend nothing: refuse an input that is not closed as it is
+    #[arg(long, num_args = 0, default_missing_value = "true", action = clap::ArgAction::Append)]
+    as_is: Vec<bool>,
 }
 
 /// What makes an input an operand.
-#[derive(Clone, Copy, Debug, Args)]
+#[derive(Debug, Args)]
 pub(crate) struct Using {
     #[command(flatten)]
-    pub(crate) repair: Repair,
+    repair: Repair,
+    #[command(flatten)]
+    admitting: Admitting,
     /// Do not look for places where an input crosses itself
     #[arg(long, help_heading = "Inputs")]
     pub(crate) assume_clean: bool,

@@ -153,7 +153,7 @@ pub(crate) struct Convert {
     #[command(flatten)]
     pub(crate) placing: Placing,
     #[command(flatten)]
-    pub(crate) repair: Repair,
+    repair: Repair,
     #[command(flatten)]
     pub(crate) results: Results,
     /// Read the input, say what would be done, write nothing

@@ -38,8 +38,13 @@ pub(crate) fn run(
 
     let control = session.control();
     let start = Instant::now();
-    let operands =
-        operands::operands(requests, arguments.inputs.using, &session.limits, &control, &session.console)?;
+    let operands = operands::operands(
+        requests,
+        arguments.inputs.using.assume_clean,
+        &session.limits,
+        &control,
+        &session.console,
+    )?;
     session.took("read", start);
     describe(&operands, session);
     if arguments.dry_run {
@@ -117,6 +122,9 @@ fn describe(operands: &[Operand], session: &mut Session<'_>) {
         session.console.say(&report::operand_line(operand, &measures));
         if let (Some(cleaning), _) = report::cleaning(&operand.solid) {
             session.console.detail(&format!("  {cleaning}"));
+        }
+        for line in report::mended(operand.solid.mending()) {
+            session.console.detail(&format!("  {line}"));
         }
         for transform in &operand.request.transforms {
             session.console.detail(&format!("  {transform}"));

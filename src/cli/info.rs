@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use clap::ArgMatches;
 use serde_json::{Value, json};
 use trisect::io::{Format, PartName};
+use trisect::mesh::Mending;
 use trisect::{Error, Mesh};
 
 use super::arguments::Info;
@@ -71,11 +72,17 @@ fn describe(
     warnings: &[String],
     parts: &[PartName],
 ) -> (String, Value) {
-    let (measures, state) = match trisect::Solid::try_from(mesh.clone()) {
-        Ok(solid) => (Measures::of_solid(&solid), None),
-        Err(error) => (Measures::of_mesh(mesh), Some(super::fault::one_line(&error.to_string()))),
+    let (measures, state, mending) = match trisect::Solid::try_from(mesh.clone()) {
+        Ok(solid) => (Measures::of_solid(&solid), None, solid.mending().clone()),
+        Err(error) => {
+            let state = super::fault::one_line(&error.to_string());
+            (Measures::of_mesh(mesh), Some(state), Mending::default())
+        }
     };
     let mut rows = measures.table();
+    if !mending.is_none() {
+        rows.push(("mended", mending.to_string()));
+    }
     if let Some(state) = &state {
         rows.push(("closed", state.clone()));
     }
@@ -96,6 +103,7 @@ fn describe(
     object.insert("file".into(), request.name().into());
     object.insert("format".into(), format.extension().into());
     object.insert("state".into(), json!(state));
+    object.insert("mending".into(), json_of(&mending));
     object.insert("groups".into(), groups.iter().map(Group::to_json).collect::<Vec<_>>().into());
     object.insert("warnings".into(), json!(warnings));
     (text, object.into())

@@ -23,6 +23,7 @@ mod operands;
 mod output;
 mod progress;
 mod recenter;
+mod repairs;
 mod report;
 mod requests;
 mod selection;

@@ -11,6 +11,7 @@ use crate::boolean::arrangement::identify::Identification;
 use crate::boolean::arrangement::sheets::Sheet;
 use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::planes::look_same_way;
+use crate::control::Reservation;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::{Error, Solid};
@@ -30,25 +31,31 @@ pub(crate) struct General {
     pub(crate) identification: Identification,
     /// How many decisions plain coordinates left open.
     pub(crate) contacts: u64,
+    _memory: Reservation,
 }
 
-/// How operands are arranged.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Setup<'a> {
-    /// By operand, the result's group of each triangle; empty if there are no groups.
-    pub(crate) groups: &'a [Vec<u32>],
-    /// By operand, whether it is known to neither cross nor touch itself.
-    pub(crate) simple: &'a [bool],
-    /// Whether faces that touch, looking opposite ways, vanish.
-    pub(crate) fuse: bool,
+/// Surfaces with their crossings: the first steps, which tell whether there is anything to resolve.
+#[derive(Debug)]
+pub(crate) struct Crossed {
+    surfaces: Surfaces,
+    edges: Edges,
+    crossings: Crossings,
+    contacts: u64,
+    bounds: Bounds,
+    _memory: Reservation,
 }
 
-impl General {
-    /// Arranges the surfaces of operands.
+impl Crossed {
+    /// Finds where the surfaces of operands cross and touch.
     ///
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where faces or points cannot be numbered.
-    pub(crate) fn new(operands: &[&Solid], setup: Setup<'_>, runner: Runner<'_>) -> Result<Self, Error> {
+    pub(crate) fn new(
+        operands: &[&Solid],
+        groups: &[Vec<u32>],
+        simple: &[bool],
+        runner: Runner<'_>,
+    ) -> Result<Self, Error> {
         let triangles: usize = operands.iter().map(|solid| solid.mesh().triangles.len()).sum();
         let vertices: usize = operands.iter().map(|solid| solid.mesh().positions.len()).sum();
         if triangles >= MOST_FACES || vertices >= MOST_FACES {
@@ -56,33 +63,58 @@ impl General {
                 what: format!("{triangles} triangles with {vertices} vertices in one arrangement"),
             });
         }
-        let control = runner.control;
-        let _memory =
-            control.reserve((vertices * BYTES_PER_VERTEX + triangles * BYTES_PER_TRIANGLE) as u64)?;
+        let bytes = vertices * BYTES_PER_VERTEX + triangles * BYTES_PER_TRIANGLE;
+        let memory = runner.control.reserve(bytes as u64)?;
         // 1. All operands as one complex, in general position.
-        let (mut surfaces, mut edges) = Surfaces::new(operands, setup.groups);
-        let pairs = crossings::find_pairs(&surfaces, operands, setup.simple, runner)?;
+        let (mut surfaces, mut edges) = Surfaces::new(operands, groups);
+        let pairs = crossings::find_pairs(&surfaces, operands, simple, runner)?;
         surfaces.set_near(&pairs);
-        let mut contacts = seeds::sort_radially(&surfaces, &mut edges);
+        let contacts = seeds::sort_radially(&surfaces, &mut edges);
         // 2. Which faces cross.
         let crossings = Crossings::find(&surfaces, &edges, &pairs, runner)?;
-        drop(pairs);
+        let contacts = contacts + crossings.contacts;
+        let bounds = operands.iter().filter_map(|solid| solid.bounds());
+        let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
+        Ok(Self { surfaces, edges, crossings, contacts, bounds, _memory: memory })
+    }
+
+    /// Whether no faces cross, and none lie on each other.
+    pub(crate) fn is_embedded(&self) -> bool {
+        self.crossings.segments.is_empty() && self.crossings.touching.is_empty()
+    }
+
+    /// The faces that cross others or lie on others, ascending, as triangles of their operands.
+    pub(crate) fn troubled(&self) -> Vec<u32> {
+        let pairs = self.crossings.segments.iter().map(|segment| &segment.faces);
+        let faces = pairs.chain(&self.crossings.touching).flatten();
+        let mut triangles: Vec<u32> = faces.map(|&face| self.surfaces.triangle(face)).collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        triangles
+    }
+}
+
+impl General {
+    /// Arranges surfaces that cross. `fuse`: whether faces that touch, looking opposite ways, vanish.
+    ///
+    /// # Errors
+    /// Limits, and [`Error::TooLarge`] where points cannot be numbered.
+    pub(crate) fn new(crossed: Crossed, fuse: bool, runner: Runner<'_>) -> Result<Self, Error> {
+        let Crossed { surfaces, edges, crossings, mut contacts, bounds, _memory } = crossed;
         let cut: Vec<FaceId> = surfaces.faces().filter(|&face| !crossings.of_face(face).is_empty()).collect();
         // 3. Three-face points.
         let (triples, contacts_of_triples) = triples::find(&surfaces, &edges, &crossings, &cut, runner)?;
         // 4. Where all points are, and their order.
         let lines = Lines::new(&surfaces, &edges, &crossings, triples, runner)?;
         // 5. Labels.
-        let bounds = operands.iter().filter_map(|solid| solid.bounds());
-        let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
         let (seeds, contacts_of_seeds) = seeds::find(&surfaces, &edges, &bounds, runner)?;
+        let control = runner.control;
         let mut faces = FaceLabels::new(&surfaces, &edges, &crossings, &lines, &seeds, control)?;
         let segment_labels = SegmentLabels::new(&surfaces, &edges, &crossings, &lines, &mut faces, control)?;
-        contacts += crossings.contacts + contacts_of_triples + lines.contacts + contacts_of_seeds;
+        contacts += contacts_of_triples + lines.contacts + contacts_of_seeds;
         // 6. What touches.
-        let fused = |&[f, g]: &[FaceId; 2]| {
-            setup.fuse || look_same_way(&surfaces.positions(f), &surfaces.positions(g))
-        };
+        let fused =
+            |&[f, g]: &[FaceId; 2]| fuse || look_same_way(&surfaces.positions(f), &surfaces.positions(g));
         let touching: Vec<[FaceId; 2]> = crossings.touching.iter().copied().filter(fused).collect();
         let sheets = sheets::find_sheets(&touching);
         let identification = sheets::identify(&surfaces, &edges, &crossings, &lines, &cut, &sheets, runner)?;
@@ -97,6 +129,7 @@ impl General {
             sheets,
             identification,
             contacts,
+            _memory,
         })
     }
 }

@@ -80,12 +80,9 @@ mod tests {
         let a = labels.step(Labels::OUTSIDE, 7, 2);
         let b = labels.step(a, 3, -1);
         assert_eq!(labels.intern(vec![(7, 2), (5, 0), (3, -1)]), b);
-        assert_eq!(labels.step(labels_step_back(&mut labels, b), 7, -2), Labels::OUTSIDE);
+        assert_eq!(labels.step(b, 3, 1), a);
+        assert_eq!(labels.step(a, 7, -2), Labels::OUTSIDE);
         assert_eq!(winding(&labels.all()[b.index()], 7), 2);
         assert_eq!(winding(&labels.all()[b.index()], 6), 0);
-    }
-
-    fn labels_step_back(labels: &mut Labels, from: LabelId) -> LabelId {
-        labels.step(from, 3, 1)
     }
 }

@@ -22,6 +22,7 @@
 pub(crate) mod arrangement;
 pub(crate) mod crossings;
 pub(crate) mod edges;
+pub(crate) mod embed;
 pub(crate) mod evaluate;
 pub(crate) mod labels;
 pub(crate) mod lines;

@@ -3,7 +3,7 @@
 use super::{MergedGroups, Policy, merged_groups, no_operands};
 use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::expression::{Expression, Rule};
-use crate::boolean::general::arrangement::{General, Setup};
+use crate::boolean::general::arrangement::{Crossed, General};
 use crate::boolean::general::evaluate::evaluate;
 use crate::boolean::general::labels::winding;
 use crate::boolean::result::certificate::{Notes, OperandState};
@@ -68,8 +68,8 @@ pub(super) fn run(
         operands.iter().enumerate().map(|(i, solid)| groups.of_operand(i, solid)).collect();
     let simple = vec![false; operands.len()];
     let fuse = wanted.policy.contact == Contact::Fuse;
-    let setup = Setup { groups: &of_triangles, simple: &simple, fuse };
-    let general = General::new(operands, setup, runner)?;
+    let crossed = Crossed::new(operands, &of_triangles, &simple, runner)?;
+    let general = General::new(crossed, fuse, runner)?;
     // 2. Each expression.
     let arranged =
         Arranged { general: &general, wanted, operands, groups: &groups, of_triangles: &of_triangles };
