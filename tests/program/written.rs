@@ -70,23 +70,23 @@ fn names_of_ascii_stl_are_no_warning() {
     folder.run("convert a.stl -o b.stl -o b.ply -o b.off --strict").exits(0);
 }
 
-/// A block at map coordinates with a slanted bottom, and a pit whose tip ends a nanometre above it.
+/// A block of a hundred metres at map coordinates with a slanted bottom, and a pit whose tip ends a hair above it.
 fn pit(heights: [f64; 3]) -> trisect::Mesh {
     let base = [500_000.0, 4_649_776.0, 120.0];
-    let plane = heights[0] + (heights[1] - heights[0]) * 0.4 + (heights[2] - heights[0]) * 0.4;
+    let plane = heights[0] + (heights[1] - heights[0]) * 0.33 + (heights[2] - heights[0]) * 0.33;
     let mut positions = vec![
         [0.0, 0.0, heights[0]],
         [1.0, 0.0, heights[1]],
         [0.0, 1.0, heights[2]],
-        [0.4, 0.4, plane + 1e-9],
-        [0.0, 0.0, 1.0],
-        [1.0, 0.0, 1.0],
-        [0.0, 1.0, 1.0],
-        [0.3, 0.3, 1.0],
-        [0.5, 0.3, 1.0],
-        [0.3, 0.5, 1.0],
+        [0.33, 0.33, plane + 1e-9],
+        [0.0, 0.0, 0.4],
+        [1.0, 0.0, 0.4],
+        [0.0, 1.0, 0.4],
+        [0.1, 0.1, 0.4],
+        [0.8, 0.1, 0.4],
+        [0.1, 0.8, 0.4],
     ];
-    positions.iter_mut().for_each(|p| (0..3).for_each(|k| p[k] += base[k]));
+    positions.iter_mut().for_each(|p| (0..3).for_each(|k| p[k] = base[k] + 100.0 * p[k]));
     let triangles = vec![
         [0, 2, 1],
         [0, 1, 5],
