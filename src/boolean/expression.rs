@@ -103,16 +103,16 @@ impl Expression {
         }
     }
 
-    /// One more than the largest place of an operand that occurs.
+    /// The operands that occur, by their places.
     #[must_use]
-    pub fn operand_count(&self) -> usize {
+    pub fn operands(&self) -> std::collections::BTreeSet<usize> {
         match self {
-            Self::Operand(operand) => operand + 1,
+            Self::Operand(operand) => std::iter::once(*operand).collect(),
             Self::Union(sets)
             | Self::Intersection(sets)
             | Self::Difference(sets)
             | Self::SymmetricDifference(sets)
-            | Self::AtLeast(_, sets) => sets.iter().map(Self::operand_count).max().unwrap_or(0),
+            | Self::AtLeast(_, sets) => sets.iter().flat_map(Self::operands).collect(),
         }
     }
 }

@@ -142,6 +142,10 @@ pub(crate) struct Using {
     repair: Repair,
     #[command(flatten)]
     admitting: Admitting,
+    /// What is inside an input that crosses itself: where its surface winds around more often outwards than inwards
+    /// (positive), at all (nonzero), or an odd number of times (even-odd) [default: positive]
+    #[arg(long, value_name = "RULE", value_parser = values::rule, help_heading = "Inputs")]
+    rule: Vec<trisect::Rule>,
     /// Do not look for places where an input crosses itself
     #[arg(long, help_heading = "Inputs")]
     pub(crate) assume_clean: bool,

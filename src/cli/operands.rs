@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 use trisect::control::Reservation;
 use trisect::io::Format;
-use trisect::mesh::{Gate, Mending, Welding};
+use trisect::mesh::{Gate, Mending, SelfCrossings, Welding};
 use trisect::{Control, Error, Mesh, MeshError, Solid};
 
 use super::fault::Fault;
@@ -144,12 +144,16 @@ pub(crate) struct Usable {
     pub(crate) crossings: Option<Crossings>,
 }
 
-/// Self-crossings of an operand that was not refused for them.
+/// Self-crossings of an operand.
 pub(crate) struct Crossings {
+    /// How many pairs of triangles cross each other.
+    pub(crate) count: usize,
     /// How many are no deeper than rounding.
     pub(crate) tolerated: usize,
     /// All that is known about them.
     pub(crate) object: Value,
+    /// The same, with the triangles' numbers in the file.
+    pub(crate) found: SelfCrossings,
 }
 
 /// Why a mesh cannot be an operand.
@@ -195,22 +199,23 @@ pub(crate) fn tried(
     for place in &mut found.places {
         place.triangles = place.triangles.map(|triangle| solid.source_triangle(triangle));
     }
-    if !found.is_clean() {
-        return Err(Box::new((MeshError::SelfCrossing(Box::new(found)).into(), None)));
-    }
-    let mut misplaced = solid.inside_out_shells();
-    for place in &mut misplaced.places {
-        for triangle in &mut place.triangles {
-            *triangle = solid.source_triangle(*triangle);
+    // What a surface that crosses itself is inside and outside of, winding numbers tell.
+    if found.is_clean() {
+        let mut misplaced = solid.inside_out_shells();
+        for place in &mut misplaced.places {
+            for triangle in &mut place.triangles {
+                *triangle = solid.source_triangle(*triangle);
+            }
+            // Vertices may have been joined since the file was read: their numbers are no longer its own.
+            place.vertices.clear();
         }
-        // Vertices may have been joined since the file was read: their numbers are no longer its own.
-        place.vertices.clear();
+        if !misplaced.is_none() {
+            let error = MeshError::InsideOutShells(Box::new(misplaced)).into();
+            return Err(Box::new((error, Some(solid.into_mesh()))));
+        }
     }
-    if !misplaced.is_none() {
-        let error = MeshError::InsideOutShells(Box::new(misplaced)).into();
-        return Err(Box::new((error, Some(solid.into_mesh()))));
-    }
-    let crossings = Crossings { tolerated: found.tolerated, object: json_of(&found) };
+    let crossings =
+        Crossings { count: found.count, tolerated: found.tolerated, object: json_of(&found), found };
     Ok(Usable { solid, crossings: Some(crossings) })
 }
 

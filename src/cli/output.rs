@@ -46,6 +46,23 @@ impl Target {
         }
     }
 
+    /// The same with the file's name ending otherwise, before its extension.
+    pub(crate) fn with_suffix(&self, suffix: &str) -> Result<Self, Fault> {
+        if suffix.is_empty() {
+            return Ok(self.clone());
+        }
+        if self.path == Path::new(STANDARD) {
+            return Err(Fault::usage("several results cannot go to standard output; name a file with -o"));
+        }
+        let mut name = self.path.file_stem().unwrap_or_default().to_os_string();
+        name.push(suffix);
+        if let Some(extension) = self.path.extension() {
+            name.push(".");
+            name.push(extension);
+        }
+        Ok(Self { path: self.path.with_file_name(name), kind: self.kind })
+    }
+
     /// The format in lower case, as in JSON.
     pub(crate) fn format(&self) -> String {
         match self.kind {

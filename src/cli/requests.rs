@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use clap::ArgMatches;
 use trisect::io::Format;
-use trisect::{Mesh, MeshError};
+use trisect::{Mesh, MeshError, Rule};
 
 use super::fault::Fault;
 use super::repairs::Repairs;
@@ -66,6 +66,8 @@ pub(crate) struct Request {
     pub(crate) expansion: Option<u64>,
     pub(crate) transforms: Vec<Transform>,
     pub(crate) repairs: Repairs,
+    /// What is inside, where the surface crosses itself.
+    pub(crate) rule: Rule,
 }
 
 impl Request {
@@ -101,6 +103,7 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
         File(PathBuf),
         Transform(&'static str, Transform),
         Repair(Repairs),
+        Rule(Rule),
     }
     let mut items: Vec<(usize, Item)> =
         placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(path))).collect();
@@ -115,19 +118,24 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     transforms("--scale", placed(matches, "scale").map(|(at, v)| (at, Transform::Scale(v))).collect());
     transforms("--matrix", placed(matches, "matrix").map(|(at, v)| (at, Transform::Matrix(v))).collect());
     items.extend(placed_repairs(matches).into_iter().map(|(at, repairs)| (at, Item::Repair(repairs))));
+    if matches.try_contains_id("rule").is_ok() {
+        items.extend(placed(matches, "rule").map(|(at, rule)| (at, Item::Rule(rule))));
+    }
     items.sort_by_key(|&(at, _)| at);
 
     let expansion = matches.get_one::<u64>("expansion").copied();
     let mut requests: Vec<Request> = Vec::new();
-    let mut for_all = Repairs::default();
+    let (mut for_all, mut rule_for_all) = (Repairs::default(), Rule::default());
     for (_, item) in items {
         match (item, requests.last_mut()) {
             (Item::File(path), _) => {
                 let (path, part) = selection::split(path);
                 let (format, chosen, transforms) = (None, None, Vec::new());
-                let repairs = Repairs::default();
-                requests.push(Request { path, part, chosen, format, expansion, transforms, repairs });
+                let (repairs, rule) = (Repairs::default(), rule_for_all);
+                requests.push(Request { path, part, chosen, format, expansion, transforms, repairs, rule });
             }
+            (Item::Rule(rule), Some(request)) => request.rule = rule,
+            (Item::Rule(rule), None) => rule_for_all = rule,
             (Item::Transform(_, transform), Some(request)) => request.transforms.push(transform),
             (Item::Repair(repairs), Some(request)) => request.repairs = repairs.with(request.repairs),
             (Item::Repair(repairs), None) => for_all = repairs.with(for_all),

@@ -55,7 +55,8 @@ pub(super) fn run(
     if operands.is_empty() {
         return Err(no_operands());
     }
-    let needed = wanted.expressions.iter().map(Expression::operand_count).max().unwrap_or(0);
+    let last = wanted.expressions.iter().filter_map(|expression| expression.operands().last().copied());
+    let needed = last.max().map_or(0, |last| last + 1);
     if needed > operands.len() {
         return Err(Error::InvalidArgument(format!(
             "the expression needs {needed} operands, and there are {}",
