@@ -10,11 +10,13 @@ use super::report::counted;
 
 /// What is said of a file whose surface crosses itself, though what was written does not.
 ///
-/// Crossings that rounding makes are no deeper than its step. Where all coordinates that a reader gets are numbers of single
-/// precision, the check of operands tolerates that much; where the file has an offset they are not, and it does not. So such
-/// a file is read back and checked, as its operands were: about a microsecond a triangle.
+/// Rounding moves no part of a surface by more than its step, and the check of operands tolerates crossings of a few steps
+/// where all coordinates are numbers of single precision. Two kinds of files may be refused all the same: those with an offset,
+/// whose coordinates are none, and those where needles turned over, which may pass through others for more than a step. These
+/// are read back and checked as operands are, in about a microsecond a triangle.
 pub(crate) fn in_file(path: &Path, rounding: &Rounding, limits: &Limits) -> Result<Option<String>, Error> {
-    if !rounding.closed || !rounding.has_offset {
+    let turned = rounding.turned_triangles + rounding.flat_triangles;
+    if !rounding.closed || !(rounding.has_offset || turned > 0) {
         return Ok(None);
     }
     let control = limits.control();
@@ -25,9 +27,13 @@ pub(crate) fn in_file(path: &Path, rounding: &Rounding, limits: &Limits) -> Resu
     let [x, y, z] = deepest.place;
     Ok(Some(format!(
         "rounding to single precision makes {} of triangles cross, {:.1e} deep at ({x}, {y}, {z}): as an operand the file \
-         would be refused; OBJ and PLY keep all digits, and crossings of a model moved to the origin are tolerated \
-         (--recenter moves it)",
+         would be refused; OBJ and PLY keep all digits{}",
         counted(found.count, "pair"),
         deepest.depth,
+        if rounding.has_offset {
+            ", and at the origin (--recenter moves the model there) single precision is what is expected"
+        } else {
+            ""
+        },
     )))
 }

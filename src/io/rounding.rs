@@ -31,9 +31,9 @@ pub struct Written {
 /// What rounding to single precision did to a mesh.
 ///
 /// A closed mesh stays closed: vertices that become equal leave no boundary. No part of the surface is moved by more than
-/// half a step along each axis, so around every point farther from it than that the winding number is what it was, and
-/// crossings that come are no deeper than a step. [`Solid::self_crossings`](crate::Solid::self_crossings) tolerates those of
-/// coordinates that are numbers of single precision; of a file with an offset it may not.
+/// half a step along each axis, so around every point farther from it than that the winding number is what it was. Crossings
+/// that come are of that size, and [`Solid::self_crossings`](crate::Solid::self_crossings) tolerates them but where needles
+/// turned over, or where the file has an offset, since its coordinates are then no numbers of single precision.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]

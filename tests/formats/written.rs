@@ -90,10 +90,9 @@ fn check(mesh: &Mesh, volume: f64, format: Format, case: &str) -> Option<Roundin
     assert_eq!(back.triangles, triangles, "{case}");
     let solid = Solid::try_from(back).unwrap_or_else(|error| panic!("{case}: {error}"));
     let crossings = solid.self_crossings(&Control::new()).unwrap();
-    // The program reads a file with an offset back and says so.
-    assert!(crossings.is_clean() || rounding.has_offset, "{case}: {crossings} {rounding:?}");
-    let deepest = crossings.places.first().map_or(0.0, |crossing| crossing.depth);
-    assert!(deepest <= 2.0 * rounding.step, "{case}: {crossings} {rounding:?}");
+    // The program reads such a file back and says so.
+    let suspect = rounding.has_offset || rounding.turned_triangles + rounding.flat_triangles > 0;
+    assert!(crossings.is_clean() || suspect, "{case}: {crossings} {rounding:?}");
     Some(rounding)
 }
 
