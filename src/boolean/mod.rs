@@ -29,6 +29,7 @@ mod cut;
 mod many;
 mod pair;
 mod result;
+mod rounding;
 mod tidy;
 
 pub use complex::operation::{Contact, Operation, UnknownName};

@@ -18,4 +18,5 @@ mod properties;
 mod recorded;
 mod regressions;
 mod same_bits;
+mod scales;
 mod trial;

@@ -20,6 +20,7 @@ use crate::boolean::arrangement::face_walk::visit_cut_faces;
 use crate::boolean::classify::body::Body;
 use crate::boolean::classify::multiplicity::Part;
 use crate::boolean::complex::ids::{CutFaceId, FaceId, PointId};
+use crate::boolean::rounding::Rounding;
 use crate::exact::Projection;
 use crate::parallel::Runner;
 use crate::polygon::{Shape, Triangulator};
@@ -46,15 +47,15 @@ impl Cut {
     }
 }
 
-/// The pieces of a body, part by part and face by face, without the faces `done` otherwise. Edges up to `rounding` long, in
-/// units of the coordinates, are reported as slivers.
+/// The pieces of a body, part by part and face by face, without the faces `done` otherwise. Edges no longer than
+/// rounding are reported as slivers.
 ///
 /// # Errors
 /// Only limits.
 pub(crate) fn cut(
     body: Body<'_>,
     done: &FxHashSet<FaceId>,
-    rounding: f64,
+    rounding: Rounding,
     runner: Runner<'_>,
 ) -> Result<Cut, Error> {
     let cutter = Cutter { body, done, rounding };
@@ -94,7 +95,7 @@ struct Scratch {
 struct Cutter<'a> {
     body: Body<'a>,
     done: &'a FxHashSet<FaceId>,
-    rounding: f64,
+    rounding: Rounding,
 }
 
 impl Cutter<'_> {
@@ -161,7 +162,7 @@ impl Cutter<'_> {
     fn has_short_edge(&self, positions: &[[f64; 3]], boundary: &[[u32; 2]]) -> bool {
         boundary.iter().any(|edge| {
             let [p, q] = edge.map(|i| positions[i as usize]);
-            (0..3).all(|k| (p[k] - q[k]).abs() <= self.rounding)
+            self.rounding.is_short(&p, &q)
         })
     }
 }

@@ -7,6 +7,7 @@ use crate::boolean::arrangement::points::Points;
 use crate::boolean::classify::body::Body;
 use crate::boolean::complex::ids::PointId;
 use crate::boolean::complex::origin::Origin;
+use crate::boolean::rounding::Rounding;
 use crate::exact::Projection;
 
 /// An uncut triangle that the result keeps.
@@ -25,8 +26,8 @@ pub(super) struct KeptTriangle {
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
     pub(super) body: Body<'a>,
-    /// What a rounded point can be off, in units of the coordinates.
-    pub(super) rounding: f64,
+    /// Edges and heights that rounding can make.
+    pub(super) rounding: Rounding,
     /// Whether the operands touch: plain coordinates left some decision open.
     pub(super) has_contacts: bool,
 }
