@@ -6,6 +6,7 @@ mod check;
 mod color;
 mod combine;
 mod convert;
+mod crossings;
 #[cfg(feature = "parametric")]
 mod curve;
 #[cfg(feature = "parametric")]
