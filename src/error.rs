@@ -134,6 +134,8 @@ impl Error {
         match self {
             Self::File { .. } => Failure::Unreadable,
             #[cfg(feature = "formats")]
+            Self::Format(FormatError::NoSuchPart { .. }) => Failure::Unusable,
+            #[cfg(feature = "formats")]
             Self::Format(_) => Failure::Unreadable,
             Self::InvalidArgument(_)
             | Self::Mesh(MeshError::Groups(_) | MeshError::WeldingDistance(_) | MeshError::Transform(_)) => {

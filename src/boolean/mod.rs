@@ -26,6 +26,8 @@ mod candidates;
 mod classify;
 mod complex;
 mod cut;
+mod expression;
+mod general;
 mod many;
 mod pair;
 mod result;
@@ -33,6 +35,7 @@ mod tidy;
 
 pub use complex::operation::{Contact, Operation, UnknownName};
 pub use complex::origin::Origin;
+pub use expression::{Expression, ExpressionError, Rule};
 pub use many::options::BooleanOptions;
 pub use result::certificate::{Certificate, OperandState};
 pub use result::outcome::Outcome;

@@ -11,10 +11,11 @@ use crate::boolean::classify::body::Body;
 use crate::boolean::classify::multiplicity::{self, Part};
 use crate::boolean::classify::winding::Windings;
 use crate::boolean::complex::operation::Operation;
+use crate::boolean::complex::predicates::Perturbed;
 use crate::boolean::complex::{Complex, Motion, Operand};
 use crate::boolean::cut::{cut, plane_sums};
 use crate::boolean::result::assemble::{Assembled, assemble};
-use crate::boolean::tidy::{self, tidy};
+use crate::boolean::tidy::{self, Ground, tidy};
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::{Error, Solid};
@@ -117,7 +118,7 @@ fn build(
         contacts,
         always: cut.has_slivers || !sums.done.is_empty(),
     };
-    let tidied = tidy(body, &pieces, &tidy_settings, runner)?;
+    let tidied = tidy(Ground::Body(body), &pieces, &tidy_settings, runner)?;
     runner.control.check()?;
     // 9. The result: untouched triangles in their order, then the pieces.
     let (assembled, clean_up_stopped) = match tidied {

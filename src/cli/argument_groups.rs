@@ -142,6 +142,10 @@ pub(crate) struct Using {
     repair: Repair,
     #[command(flatten)]
     admitting: Admitting,
+    /// What is inside an input that crosses itself: where its surface winds around more often outwards than inwards
+    /// (positive), at all (nonzero), or an odd number of times (even-odd) [default: positive]
+    #[arg(long, value_name = "RULE", value_parser = values::rule, help_heading = "Inputs")]
+    rule: Vec<trisect::Rule>,
     /// Do not look for places where an input crosses itself
     #[arg(long, help_heading = "Inputs")]
     pub(crate) assume_clean: bool,
@@ -163,6 +167,9 @@ pub(crate) struct Writing {
     /// Round coordinates to single precision
     #[arg(long)]
     pub(crate) single: bool,
+    /// Move the outputs so that the middle of their bounds is near the origin
+    #[arg(long)]
+    pub(crate) recenter: bool,
 }
 
 /// Pictures.
@@ -178,7 +185,7 @@ pub(crate) struct Drawing {
     /// Where to look from: x,y,z or front, back, left, right, top, bottom [default: 1,-1.2,0.8]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub(crate) view: Option<[f64; 3]>,
-    /// Which axis points upwards in the picture [default: y if the first input is glTF, else z]
+    /// Which axis points upwards in the picture [default: y if the first input is glTF or OBJ, else z]
     #[arg(long, value_enum)]
     pub(crate) png_up: Option<Up>,
     /// What the colours show [default: operand for a boolean, material otherwise]
@@ -192,7 +199,7 @@ pub(crate) struct Drawing {
 /// The upward axis of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Up {
-    /// The y axis, as in glTF
+    /// The y axis, as in glTF and most OBJ files
     Y,
     /// The z axis, as in most CAD and printing files
     Z,

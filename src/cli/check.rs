@@ -8,10 +8,11 @@ use trisect::{Error, MeshError};
 use super::arguments::Check;
 use super::fault::{self, Exit, Fault};
 use super::json::json_of;
-use super::operands::{self, Input, Unusable, Usable};
+use super::operands::{self, Crossings, Input, Unusable, Usable};
 use super::repairs::Remedy;
 use super::report::{self, Measures, into_map};
 use super::requests::{self, Request};
+use super::selection;
 use super::session::Session;
 use super::stream;
 use trisect::mesh::diagnose;
@@ -27,6 +28,7 @@ struct Verdict {
 /// Checks every input; the worst answer decides the exit code, an unreadable file before an unusable one.
 pub(crate) fn run(arguments: &Check, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
     let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = selection::each(requests, &session.limits, &session.control())?;
     let (mut unreadable, mut unusable) = (false, false);
     let mut objects = Vec::new();
     for request in &requests {
@@ -70,10 +72,6 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
         Ok(usable) => usable,
         Err(unusable) => {
             let Unusable { error, remedy } = *unusable;
-            if let Error::Mesh(MeshError::SelfCrossing(found)) = &error {
-                diagnosis.self_crossings = Some((&**found).into());
-                object.insert("diagnosis".into(), json_of(&diagnosis));
-            }
             let mut verdict = refused(&name, error, remedy, Some(&diagnosis))?;
             object.extend(into_map(verdict.object));
             verdict.object = object.into();
@@ -98,14 +96,34 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     })));
     let mut text = format!("{name}: usable: {}{}\n", measures.line(), report::mending_in_line(mending));
     text.push_str(&indented(&report::mended(mending).join("\n")));
-    if let Some(count) = crossings.map(|crossings| crossings.tolerated).filter(|&count| count > 0) {
-        text.push_str(&format!("  {count} self-crossings no deeper than rounding, which are tolerated\n"));
+    if let Some(crossings) = &crossings {
+        text.push_str(&indented(&crossing_lines(crossings)));
+        if crossings.count > 0 {
+            diagnosis.self_crossings = Some((&crossings.found).into());
+            object.insert("diagnosis".into(), json_of(&diagnosis));
+        }
     }
     text.push_str(&cleaning.map(|cleaning| format!("  {cleaning}\n")).unwrap_or_default());
     if mending.is_none() {
         text.push_str(&indented(&diagnosis.listed(PLACES).join("\n")));
     }
     Ok(Verdict { exit: Exit::Fine, text, object: object.into(), warnings })
+}
+
+/// What is said of an operand's crossings with itself.
+fn crossing_lines(crossings: &Crossings) -> String {
+    let mut text = String::new();
+    if crossings.count > 0 {
+        text.push_str(
+            "it crosses itself: as an operand it is what its surface winds around (--rule), and `trisect resolve` makes a \
+             clean file of it\n",
+        );
+    }
+    if crossings.tolerated > 0 {
+        let count = crossings.tolerated;
+        text.push_str(&format!("{count} self-crossings no deeper than rounding, which are tolerated\n"));
+    }
+    text
 }
 
 /// Places listed of each kind of fault: all that are kept.
@@ -127,9 +145,6 @@ fn refused(
     let (reason, diagnosis) = match &error {
         Error::Mesh(MeshError::NotClosed(found)) => {
             ("the mesh is not a closed surface".into(), Some(&**found))
-        }
-        Error::Mesh(MeshError::SelfCrossing(_)) => {
-            ("the surface crosses itself; unite its parts one by one, or repair it".into(), diagnosis)
         }
         Error::Mesh(MeshError::InsideOutShells(found)) => {
             let shells = match found.count {

@@ -14,8 +14,10 @@ use super::arguments::Convert;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Input};
 use super::output::{self, Product, Target};
+use super::recenter;
 use super::report::{self, Measures};
 use super::requests::{self, Request};
+use super::selection;
 use super::session::Session;
 
 /// Converts one input.
@@ -61,6 +63,7 @@ fn read(request: &Request, session: &mut Session<'_>) -> Result<Read, Fault> {
     let of_input = |error: Error| error.of_operand(0, request.name());
     let start = Instant::now();
     session.console.stage(&format!("reading {}", request.name()), 0.0);
+    let request = &selection::together(request.clone(), &session.limits, &control).map_err(of_input)?;
     let Input { mesh, format, warnings, reserved } =
         operands::read(request, &session.limits, &control).map_err(of_input)?;
     let (mesh, welded) = operands::welded(mesh, request.repairs.weld).map_err(of_input)?;
@@ -99,6 +102,8 @@ fn write(
 ) -> Result<(), Fault> {
     let start = Instant::now();
     session.console.stage("writing", 1.0);
+    let mesh = recenter::placed(mesh, writing, session);
+    let mesh = mesh.as_ref();
     let drawing = &arguments.results.drawing;
     let picture = || {
         let operands = mesh.triangles.iter().map(|_| 0);

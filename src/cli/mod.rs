@@ -21,14 +21,17 @@ mod limits;
 mod operands;
 mod output;
 mod progress;
+mod recenter;
 mod repairs;
 mod report;
 mod requests;
+mod selection;
 mod session;
 mod slice;
 mod source;
 mod stage;
 mod stream;
+mod task;
 mod values;
 mod verbs;
 
@@ -112,6 +115,8 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Xor(combine) => {
                 combine::run(Operation::SymmetricDifference, combine, matches, &mut session)
             }
+            Verb::Combine(combination) => combine::run_combination(combination, matches, &mut session),
+            Verb::Resolve(resolve) => combine::run_resolve(resolve, matches, &mut session),
             Verb::Check(check) => check::run(check, matches, &mut session),
             Verb::Info(info) => info::run(info, matches, &mut session),
             Verb::Convert(convert) => convert::run(convert, matches, &mut session),

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 use trisect::control::Reservation;
 use trisect::io::Format;
-use trisect::mesh::{Gate, Mending, Welding};
+use trisect::mesh::{Gate, Mending, SelfCrossings, Welding};
 use trisect::{Control, Error, Mesh, MeshError, Solid};
 
 use super::fault::Fault;
@@ -43,24 +43,21 @@ pub(crate) struct Operand {
 
 /// Reads one input and moves it to its place.
 pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Result<Input, Error> {
-    let mut options = io::ReadOptions::new().control(control.clone());
-    if let Some(times) = request.expansion {
-        options = options.expansion(times);
-    }
-    let io::Loaded { mut mesh, format, warnings, .. } = match request.format {
-        Some(format) => {
-            let (bytes, options) = if request.is_standard() {
-                (limits.while_waiting(standard_input)?, options)
-            } else {
-                let folder = request.path.parent().unwrap_or(Path::new(""));
-                let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-                (file(&request.path, limits)?, options.folder(folder))
+    let (mut mesh, format, warnings) = match &request.chosen {
+        Some(chosen) => (chosen.mesh.clone(), chosen.format, chosen.warnings.clone()),
+        None => {
+            let options = options(request, control);
+            let loaded = match request.format {
+                Some(format) => {
+                    let (bytes, options) = bytes(request, options, limits)?;
+                    io::read(&bytes, format, &options)
+                }
+                None => io::load(&request.path, &options),
             };
-            io::read(&bytes, format, &options)
+            let io::Loaded { mesh, format, warnings, .. } = loaded.map_err(name_option)?;
+            (mesh, format, warnings)
         }
-        None => io::load(&request.path, &options),
-    }
-    .map_err(name_option)?;
+    };
     control.check()?;
     for transform in &request.transforms {
         mesh = transform.apply(mesh)?;
@@ -76,8 +73,31 @@ pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Res
     Ok(Input { mesh, format, warnings, reserved })
 }
 
+/// How an input is read.
+pub(crate) fn options(request: &Request, control: &Control) -> io::ReadOptions {
+    let options = io::ReadOptions::new().control(control.clone());
+    match request.expansion {
+        Some(times) => options.expansion(times),
+        None => options,
+    }
+}
+
+/// The bytes of an input of a given format, and where files named in it are looked for.
+pub(crate) fn bytes(
+    request: &Request,
+    options: io::ReadOptions,
+    limits: &Limits,
+) -> Result<(Vec<u8>, io::ReadOptions), Error> {
+    if request.is_standard() {
+        return Ok((limits.while_waiting(standard_input)?, options));
+    }
+    let folder = request.path.parent().unwrap_or(Path::new(""));
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    Ok((file(&request.path, limits)?, options.folder(folder)))
+}
+
 /// The error of a glTF scene that takes too much, with the option that allows more.
-fn name_option(error: Error) -> Error {
+pub(crate) fn name_option(error: Error) -> Error {
     match error {
         Error::TooLarge { what } if what.starts_with("the flattened scene") => {
             Error::TooLarge { what: format!("{what} (--expansion TIMES allows more)") }
@@ -124,12 +144,16 @@ pub(crate) struct Usable {
     pub(crate) crossings: Option<Crossings>,
 }
 
-/// Self-crossings of an operand that was not refused for them.
+/// Self-crossings of an operand.
 pub(crate) struct Crossings {
+    /// How many pairs of triangles cross each other.
+    pub(crate) count: usize,
     /// How many are no deeper than rounding.
     pub(crate) tolerated: usize,
     /// All that is known about them.
     pub(crate) object: Value,
+    /// The same, with the triangles' numbers in the file.
+    pub(crate) found: SelfCrossings,
 }
 
 /// Why a mesh cannot be an operand.
@@ -175,22 +199,23 @@ pub(crate) fn tried(
     for place in &mut found.places {
         place.triangles = place.triangles.map(|triangle| solid.source_triangle(triangle));
     }
-    if !found.is_clean() {
-        return Err(Box::new((MeshError::SelfCrossing(Box::new(found)).into(), None)));
-    }
-    let mut misplaced = solid.inside_out_shells();
-    for place in &mut misplaced.places {
-        for triangle in &mut place.triangles {
-            *triangle = solid.source_triangle(*triangle);
+    // What a surface that crosses itself is inside and outside of, winding numbers tell.
+    if found.is_clean() {
+        let mut misplaced = solid.inside_out_shells();
+        for place in &mut misplaced.places {
+            for triangle in &mut place.triangles {
+                *triangle = solid.source_triangle(*triangle);
+            }
+            // Vertices may have been joined since the file was read: their numbers are no longer its own.
+            place.vertices.clear();
         }
-        // Vertices may have been joined since the file was read: their numbers are no longer its own.
-        place.vertices.clear();
+        if !misplaced.is_none() {
+            let error = MeshError::InsideOutShells(Box::new(misplaced)).into();
+            return Err(Box::new((error, Some(solid.into_mesh()))));
+        }
     }
-    if !misplaced.is_none() {
-        let error = MeshError::InsideOutShells(Box::new(misplaced)).into();
-        return Err(Box::new((error, Some(solid.into_mesh()))));
-    }
-    let crossings = Crossings { tolerated: found.tolerated, object: json_of(&found) };
+    let crossings =
+        Crossings { count: found.count, tolerated: found.tolerated, object: json_of(&found), found };
     Ok(Usable { solid, crossings: Some(crossings) })
 }
 

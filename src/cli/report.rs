@@ -146,6 +146,7 @@ pub(crate) fn operand_json(operand: &Operand, index: usize, measures: &Measures)
         "cleaning": cleaning(&operand.solid).1,
         "mending": json_of(operand.solid.mending()),
         "self_crossings": operand.crossings.as_ref().map(|crossings| &crossings.object),
+        "rule": operand.request.rule.name(),
         "warnings": operand.warnings,
         "seconds": operand.seconds,
     })));
@@ -156,12 +157,20 @@ pub(crate) fn operand_json(operand: &Operand, index: usize, measures: &Measures)
 pub(crate) fn operand_line(operand: &Operand, measures: &Measures) -> String {
     let mut line = format!("{}: {}", operand.request.name(), measures.line());
     line.push_str(&mending_in_line(operand.solid.mending()));
-    match operand.crossings.as_ref().map(|crossings| crossings.tolerated) {
+    match &operand.crossings {
         None => line.push_str(", not checked for self-crossings"),
-        Some(0) => {}
-        Some(count) => {
-            line.push_str(&format!(", {} no deeper than rounding", counted(count, "self-crossing")));
+        Some(crossings) if crossings.count > 0 => {
+            line.push_str(&format!(
+                ", {} resolved by winding number ({})",
+                counted(crossings.count, "self-crossing"),
+                operand.request.rule
+            ));
         }
+        Some(crossings) if crossings.tolerated > 0 => {
+            let count = counted(crossings.tolerated, "self-crossing");
+            line.push_str(&format!(", {count} no deeper than rounding"));
+        }
+        Some(_) => {}
     }
     format!("{line} ({})", time(operand.seconds))
 }
@@ -206,6 +215,12 @@ pub(crate) fn certificate(certificate: &Certificate) -> Value {
     let operands = certificate.operands.iter().map(|state| match state {
         OperandState::Clean { tolerated } => json!({ "self_crossings": 0, "tolerated": tolerated }),
         OperandState::Crossing { count } => json!({ "self_crossings": count }),
+        OperandState::Resolved { crossings, touching, winding_volume } => json!({
+            "resolved": true,
+            "self_crossings": crossings,
+            "self_touching": touching,
+            "winding_volume": winding_volume,
+        }),
         _ => json!({ "self_crossings": null }),
     });
     let mut object = into_map(json_of(certificate));

@@ -2,13 +2,15 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::ArgMatches;
 use trisect::io::Format;
-use trisect::{Mesh, MeshError};
+use trisect::{Mesh, MeshError, Rule};
 
 use super::fault::Fault;
 use super::repairs::Repairs;
+use super::selection::{self, Chosen};
 
 /// The name that stands for standard input and output.
 pub(crate) const STANDARD: &str = "-";
@@ -55,17 +57,28 @@ impl fmt::Display for Transform {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Request {
     pub(crate) path: PathBuf,
+    /// The name or pattern of parts of the file.
+    pub(crate) part: Option<String>,
+    /// What was read of the file already.
+    pub(crate) chosen: Option<Arc<Chosen>>,
     pub(crate) format: Option<Format>,
     /// How many times the bytes of its file a scene may take; `None` for what the library allows.
     pub(crate) expansion: Option<u64>,
     pub(crate) transforms: Vec<Transform>,
     pub(crate) repairs: Repairs,
+    /// What is inside, where the surface crosses itself.
+    pub(crate) rule: Rule,
 }
 
 impl Request {
     /// The name in messages.
     pub(crate) fn name(&self) -> String {
-        if self.is_standard() { "standard input".into() } else { self.path.display().to_string() }
+        let file = if self.is_standard() { "standard input".into() } else { self.path.display().to_string() };
+        let chosen = self.chosen.as_ref().and_then(|chosen| chosen.name.as_ref());
+        match chosen.or(self.part.as_ref()) {
+            Some(part) => format!("{file}#{part}"),
+            None => file,
+        }
     }
 
     /// Whether this is standard input.
@@ -90,6 +103,7 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
         File(PathBuf),
         Transform(&'static str, Transform),
         Repair(Repairs),
+        Rule(Rule),
     }
     let mut items: Vec<(usize, Item)> =
         placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(path))).collect();
@@ -104,17 +118,24 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     transforms("--scale", placed(matches, "scale").map(|(at, v)| (at, Transform::Scale(v))).collect());
     transforms("--matrix", placed(matches, "matrix").map(|(at, v)| (at, Transform::Matrix(v))).collect());
     items.extend(placed_repairs(matches).into_iter().map(|(at, repairs)| (at, Item::Repair(repairs))));
+    if matches.try_contains_id("rule").is_ok() {
+        items.extend(placed(matches, "rule").map(|(at, rule)| (at, Item::Rule(rule))));
+    }
     items.sort_by_key(|&(at, _)| at);
 
     let expansion = matches.get_one::<u64>("expansion").copied();
     let mut requests: Vec<Request> = Vec::new();
-    let mut for_all = Repairs::default();
+    let (mut for_all, mut rule_for_all) = (Repairs::default(), Rule::default());
     for (_, item) in items {
         match (item, requests.last_mut()) {
             (Item::File(path), _) => {
-                let (transforms, repairs) = (Vec::new(), Repairs::default());
-                requests.push(Request { path, format: None, expansion, transforms, repairs });
+                let (path, part) = selection::split(path);
+                let (format, chosen, transforms) = (None, None, Vec::new());
+                let (repairs, rule) = (Repairs::default(), rule_for_all);
+                requests.push(Request { path, part, chosen, format, expansion, transforms, repairs, rule });
             }
+            (Item::Rule(rule), Some(request)) => request.rule = rule,
+            (Item::Rule(rule), None) => rule_for_all = rule,
             (Item::Transform(_, transform), Some(request)) => request.transforms.push(transform),
             (Item::Repair(repairs), Some(request)) => request.repairs = repairs.with(request.repairs),
             (Item::Repair(repairs), None) => for_all = repairs.with(for_all),

@@ -163,6 +163,11 @@ pub(crate) fn picture_size(text: &str) -> Result<[u32; 2], String> {
         .ok_or_else(|| format!("expected WIDTHxHEIGHT such as 1024x768, each from 1 to {MAX_PICTURE}"))
 }
 
+/// A rule by its name.
+pub(crate) fn rule(text: &str) -> Result<trisect::Rule, String> {
+    text.parse().map_err(|error: trisect::UnknownName| error.to_string())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

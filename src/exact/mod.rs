@@ -18,6 +18,7 @@ mod lattice;
 pub(crate) mod order;
 mod orient;
 pub(crate) mod perturbed;
+pub(crate) mod planes;
 pub(crate) mod position;
 mod projection;
 

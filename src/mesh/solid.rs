@@ -54,6 +54,8 @@ pub struct Solid {
     pub(super) mending: Option<Box<Mending>>,
     pub(super) volume: OnceLock<f64>,
     pub(super) self_crossings: OnceLock<SelfCrossings>,
+    /// Whether an operation made it so that it crosses itself no deeper than rounding.
+    pub(super) made_clean: bool,
 }
 
 /// What was left out or joined to make a [`Solid`] of a mesh.
@@ -142,6 +144,17 @@ impl Solid {
 
     pub(crate) fn remember_self_crossings(&self, found: SelfCrossings) -> &SelfCrossings {
         self.self_crossings.get_or_init(|| found)
+    }
+
+    /// Whether it is known, from a check or from the operation that made it, to cross itself no deeper than rounding, and not
+    /// to touch itself.
+    pub(crate) fn is_known_clean(&self) -> bool {
+        self.made_clean || self.self_crossings.get().is_some_and(SelfCrossings::is_clean)
+    }
+
+    /// Notes that an operation made this so that it crosses itself no deeper than rounding.
+    pub(crate) fn set_made_clean(&mut self) {
+        self.made_clean = true;
     }
 
     pub(crate) fn set_groups(&mut self, groups: FaceGroups) {

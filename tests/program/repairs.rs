@@ -172,18 +172,21 @@ fn a_cavity_that_touches_the_outside_everywhere_it_can_is_one() {
 }
 
 #[test]
-fn pictures_of_gltf_have_y_upwards() {
+fn pictures_of_gltf_and_obj_have_y_upwards() {
     let folder = Folder::new();
     folder.write("a.obj", cube([0.0; 3], [1.0, 2.0, 4.0]));
-    folder.run("convert a.obj a.glb").exits(0);
+    folder.run("convert a.obj -o a.glb -o a.stl -o a.ply -o a.off").exits(0);
     let picture = |line: &str| {
         folder.run(&format!("{line} --png p.png --png-size 64x48 --png-color none")).exits(0);
         bytes(&folder.path("p.png"))
     };
     let (up_y, up_z) = (picture("convert a.obj --png-up y"), picture("convert a.obj --png-up z"));
     assert_ne!(up_y, up_z);
-    assert_eq!(picture("convert a.obj"), up_z);
+    assert_eq!(picture("convert a.obj"), up_y);
     assert_eq!(picture("convert a.glb"), up_y);
+    for z in ["a.stl", "a.ply", "a.off"] {
+        assert_eq!(picture(&format!("convert {z}")), up_z, "{z}");
+    }
     assert_eq!(picture("union a.glb"), up_y);
     assert_eq!(picture("convert a.glb --png-up z"), up_z);
 }

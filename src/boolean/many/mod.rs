@@ -4,6 +4,7 @@
 //! early; a difference takes the union of all tools off the first operand in one step; an intersection starts with the
 //! smallest operands; a symmetric difference goes from left to right.
 
+mod expressions;
 mod merge_order;
 pub(super) mod options;
 
@@ -11,6 +12,7 @@ use std::borrow::Cow;
 
 use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::complex::origin::Origin;
+use crate::boolean::expression::Rule;
 use crate::boolean::pair::{self, Combined, Settings};
 use crate::boolean::result::certificate::{Notes, OperandState};
 use crate::boolean::result::origins::Origins;
@@ -19,6 +21,7 @@ use crate::exact::{Projection, Sign, orient2d};
 use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
+use expressions::Wanted;
 
 /// From this many triangles on, threads are worth waking.
 const PARALLEL_FROM: usize = 4_096;
@@ -30,6 +33,10 @@ pub(crate) struct Policy {
     pub(crate) contact: Contact,
     /// Whether vertices that nobody needs are left out where the operation cuts.
     pub(crate) remove_vertices: bool,
+    /// Whether operands of which it is not known are taken not to cross themselves.
+    pub(crate) assume_clean: bool,
+    /// What is inside an operand, unless it has a rule of its own.
+    pub(crate) rule: Rule,
 }
 
 /// An operand, or what some of them have become.
@@ -58,8 +65,27 @@ impl<'a> Partial<'a> {
     }
 }
 
-/// Runs an operation over all operands.
+/// Runs an operation over all operands: in one arrangement where one of them crosses or touches itself, else pair by pair.
 pub(crate) fn run(
+    policy: Policy,
+    rules: &[Rule],
+    operation: Operation,
+    operands: &[&Solid],
+    runner: Runner<'_>,
+) -> Result<Outcome, Error> {
+    for solid in operands {
+        if !expressions::is_simple(policy, solid, runner.control)? {
+            let expression = expressions::of_operation(operation, operands.len());
+            let wanted = Wanted { expressions: &[expression], rules, policy };
+            let mut outcomes = expressions::run(&wanted, operands, runner)?;
+            return Ok(outcomes.swap_remove(0));
+        }
+    }
+    run_in_pairs(policy, operation, operands, runner)
+}
+
+/// Runs an operation over operands that do not cross themselves.
+fn run_in_pairs(
     policy: Policy,
     operation: Operation,
     operands: &[&Solid],
@@ -108,8 +134,10 @@ pub(crate) fn run(
         inverted: if result.may_be_inverted { count_inverted(&result, operands) } else { 0 },
         clean_up_stopped: result.clean_up_stopped,
         operands: operands.iter().map(|solid| OperandState::of(solid)).collect(),
+        ..Notes::default()
     };
-    Ok(finish(result, groups.list, notes))
+    let is_clean = policy.contact == Contact::Fuse && operands.iter().all(|solid| solid.is_known_clean());
+    Ok(finish(result, groups.list, notes, is_clean))
 }
 
 struct Engine<'o> {
@@ -208,8 +236,11 @@ fn no_operands() -> Error {
     Error::InvalidArgument("a boolean needs at least one operand".into())
 }
 
-fn finish(result: Partial<'_>, list: Vec<FaceGroup>, notes: Notes) -> Outcome {
+fn finish(result: Partial<'_>, list: Vec<FaceGroup>, notes: Notes, is_clean: bool) -> Outcome {
     let mut solid = result.solid.into_owned();
+    if is_clean {
+        solid.set_made_clean();
+    }
     solid.set_groups(FaceGroups { list, of_triangle: result.groups });
     Outcome::new(solid, result.origins, notes)
 }
