@@ -11,6 +11,7 @@
 //! demand that a determinant exceed, besides the usual relative bound, an absolute floor far above anything that underflow
 //! can have lost; on overflow they compare infinities or NaN and fail; either way the exact stage decides.
 
+pub(crate) mod at_hand;
 mod double_double;
 mod filter;
 mod integer;

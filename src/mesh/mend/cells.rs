@@ -138,21 +138,11 @@ impl Parts {
             let next = numbers.len() as u32;
             *numbers.entry(self.cell[side as usize]).or_insert(next)
         };
-        let mut cells: Vec<[u32; 2]> =
+        let cells: Vec<[u32; 2]> =
             members.iter().map(|&triangle| [number(2 * triangle), number(2 * triangle + 1)]).collect();
         let count = numbers.len();
         let outer = outer_cell(surface, members, &cells, count)?;
-        let solid = solid_cells(&cells, count, outer).or_else(|| {
-            // The wall of a cavity: what it encloses is what lies outside.
-            cells.iter_mut().for_each(|[front, back]| std::mem::swap(front, back));
-            solid_cells(&cells, count, outer)
-        })?;
-        let role = |&[front, back]: &[u32; 2]| match (front == back, solid[front as usize]) {
-            (true, _) => Role::Flap,
-            (false, true) => Role::Wall,
-            (false, false) => Role::Bounds,
-        };
-        let roles: Vec<Role> = cells.iter().map(role).collect();
+        let roles = roles_of(&cells, count, outer)?;
         roles.contains(&Role::Bounds).then_some(roles)
     }
 }
@@ -216,12 +206,40 @@ fn outer_cell(surface: &Surface<'_>, members: &[u32], cells: &[[u32; 2]], count:
     outer
 }
 
-/// Which cells are filled: those that lie behind a triangle. Then every triangle between two cells has either an empty one
-/// before it and a filled one behind it, or filled ones on both sides. `None` if the outer cell would be filled.
-fn solid_cells(cells: &[[u32; 2]], count: usize, outer: u32) -> Option<Vec<bool>> {
-    let mut solid = vec![false; count];
-    cells.iter().filter(|[front, back]| front != back).for_each(|cell| solid[cell[1] as usize] = true);
-    (!solid[outer as usize]).then_some(solid)
+/// The roles of triangles by the cells before and behind them. `None` if the outer cell is before some and behind others.
+///
+/// What lies behind a triangle between two cells is filled; then every such triangle has either an empty cell before it and a
+/// filled one behind it, or filled cells on both sides. Where the outer cell is filled, the part is the wall of a cavity, and
+/// a wall may as well have the empty cavity on both sides: what lies before a triangle is empty. Of these two the one that
+/// leaves out less.
+fn roles_of(cells: &[[u32; 2]], count: usize, outer: u32) -> Option<Vec<Role>> {
+    let between = || cells.iter().filter(|[front, back]| front != back);
+    let (before, behind) = (between().any(|cell| cell[0] == outer), between().any(|cell| cell[1] == outer));
+    if before && behind {
+        return None;
+    }
+    let mut filled = vec![false; count];
+    between().for_each(|cell| filled[cell[1] as usize] = true);
+    let roles = |filled: &[bool]| -> Vec<Role> {
+        let role = |&[front, back]: &[u32; 2]| match (
+            front == back,
+            filled[front as usize] == filled[back as usize],
+        ) {
+            (true, _) => Role::Flap,
+            (false, true) => Role::Wall,
+            (false, false) => Role::Bounds,
+        };
+        cells.iter().map(role).collect()
+    };
+    let found = roles(&filled);
+    if before {
+        return Some(found);
+    }
+    let mut not_empty = vec![true; count];
+    between().for_each(|cell| not_empty[cell[0] as usize] = false);
+    let other = roles(&not_empty);
+    let kept = |roles: &[Role]| roles.iter().filter(|&&role| role == Role::Bounds).count();
+    Some(if kept(&other) > kept(&found) { other } else { found })
 }
 
 /// Pieces of flaps must be flat to count as fins; the others open their part (or, with `closed_parts`, themselves alone).
@@ -290,7 +308,7 @@ mod tests {
     /// The triangles that are left, and how many walls, fins, strays and triangles of open parts are not.
     fn bounding(mesh: &Mesh, closed_parts: bool) -> Option<(usize, [usize; 4])> {
         let source = (0..mesh.triangles.len() as u32).collect();
-        let mut surface = Surface::new(&mesh, mesh.triangles.clone(), source);
+        let mut surface = Surface::new(mesh, mesh.triangles.clone(), source);
         let done = drop_unbounding(&mut surface, closed_parts);
         let report = &surface.report;
         let counts =

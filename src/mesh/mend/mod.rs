@@ -24,7 +24,7 @@ pub use report::Mending;
 use super::places::{Fault, Spots};
 use super::{Bounds, Mesh, chain, duplicates, measure, weld};
 use crate::exact::collinear;
-use sew::Sewing;
+use sew::{Sewing, Splits};
 
 /// What may be done.
 #[derive(Clone, Copy, Debug, Default)]
@@ -53,19 +53,38 @@ pub(super) fn mend<'a>(
     source: &[u32],
     leave: Leave,
 ) -> Option<Surface<'a>> {
+    let splits = match leave.distance {
+        Some(_) => &[Splits::ByRounding, Splits::ByDistance][..],
+        None => &[Splits::ByRounding],
+    };
+    // The first of those that leave out the least.
+    let all = splits.iter().filter_map(|&splits| mend_with(mesh, triangles, source, leave, splits));
+    all.reduce(|best, next| if open_area(&next) < open_area(&best) { next } else { best })
+}
+
+fn open_area(surface: &Surface<'_>) -> f64 {
+    surface.report.open_area
+}
+
+fn mend_with<'a>(
+    mesh: &'a Mesh,
+    triangles: &[[u32; 3]],
+    source: &[u32],
+    leave: Leave,
+    splits: Splits,
+) -> Option<Surface<'a>> {
     let given = Surface::new(mesh, triangles.to_vec(), source.to_vec());
     let (bare, fewer_open) = given.without_zero_area();
     let first = if fewer_open { bare.clone() } else { given.clone() };
-    let (careful, mut more_to_do) = attempt(first, leave, true);
+    let (careful, mut more_to_do) = attempt(first, leave, splits, true);
     let mut found: Vec<Surface<'_>> = careful.into_iter().collect();
     if fewer_open && found.is_empty() {
-        let (careful, more) = attempt(given, leave, true);
+        let (careful, more) = attempt(given, leave, splits, true);
         found.extend(careful);
         more_to_do |= more;
     }
-    let open_area = |surface: &Surface<'_>| surface.report.open_area;
     if more_to_do && found.iter().all(|surface| open_area(surface) > 0.0) {
-        found.extend(attempt(bare, leave, false).0);
+        found.extend(attempt(bare, leave, splits, false).0);
     }
     // The first of those that leave out the least.
     found.into_iter().reduce(|best, next| if open_area(&next) < open_area(&best) { next } else { best })
@@ -82,22 +101,30 @@ pub(super) fn closing_distance(mesh: &Mesh, triangles: &[[u32; 3]], source: &[u3
     if chain::examine(triangles, mesh.positions.len()).is_ok_and(|chain| chain.closed) {
         return None;
     }
-    let mut tried = DIGITS.rev().map(|digits| size * 10f64.powi(-digits));
-    let coarse =
-        tried.find(|&distance| distance > 0.0 && distance.is_finite() && sew::closes(&surface, distance))?;
-    // What is joined within that distance is no further apart than one of these.
-    let gaps = sew::gaps(&surface, coarse);
-    let least = gaps.partition_point(|&gap| !sew::closes(&surface, gap));
-    Some(gaps.get(least).copied().unwrap_or(coarse))
+    // By joining vertices where that does, else by splitting edges as well.
+    [Splits::ByRounding, Splits::ByDistance].into_iter().find_map(|splits| {
+        let mut tried = DIGITS.rev().map(|digits| size * 10f64.powi(-digits));
+        let usable = |distance: f64| distance > 0.0 && distance.is_finite();
+        let coarse = tried.find(|&distance| usable(distance) && sew::closes(&surface, distance, splits))?;
+        // What is joined within that distance is no further apart than one of these.
+        let gaps = sew::gaps(&surface, coarse);
+        let least = gaps.partition_point(|&gap| !sew::closes(&surface, gap, splits));
+        Some(gaps.get(least).copied().unwrap_or(coarse))
+    })
 }
 
 /// One attempt. Returns as well whether something was left undone because it would not close the surface.
-fn attempt(mut surface: Surface<'_>, leave: Leave, where_it_closes: bool) -> (Option<Surface<'_>>, bool) {
+fn attempt(
+    mut surface: Surface<'_>,
+    leave: Leave,
+    splits: Splits,
+    where_it_closes: bool,
+) -> (Option<Surface<'_>>, bool) {
     // 1. Seams, then seams and edges with vertices on them.
-    let sewing = Sewing { distance: leave.distance, splits: false, where_it_closes };
+    let sewing = Sewing { distance: leave.distance, splits: Splits::None, where_it_closes };
     let mut more_to_do = where_it_closes && sew::sew(&mut surface, sewing);
     if !surface.is_closed() {
-        more_to_do = sew::sew(&mut surface, Sewing { splits: true, ..sewing });
+        more_to_do = sew::sew(&mut surface, Sewing { splits, ..sewing });
     }
     // 2. Copies.
     if !surface.is_closed() {

@@ -5,6 +5,9 @@ use rustc_hash::FxHashMap;
 use super::super::weld::cells_near;
 use super::rounding::{Reaches, apart};
 
+/// A cell of a grid: the number of the grid, and where in it.
+type Cell = (usize, [i64; 3]);
+
 /// For each of the vertices the one it joins: taken in ascending order, a vertex joins the nearest (of equally near ones the
 /// first) of those that stand for a place, if it is within the reach of both, or else stands for its own. Near-linear: the
 /// reaches are sorted by their powers of two, and each power has a grid of its own.
@@ -17,7 +20,7 @@ pub(super) fn targets(positions: &[[f64; 3]], reaches: &Reaches) -> Vec<u32> {
     // the nearer side of the cell along each axis.
     let widths: Vec<f64> =
         powers.iter().map(|&power| 2.5 * f64::from_bits(((power + 1) as u64).min(2046) << 52)).collect();
-    let mut cells: FxHashMap<(usize, [i64; 3]), Vec<(u32, f64)>> = FxHashMap::default();
+    let mut cells: FxHashMap<Cell, Vec<(u32, f64)>> = FxHashMap::default();
     let mut targets = Vec::with_capacity(reaches.vertices().len());
     for (vertex, reach) in reaches.iter() {
         let place = positions[vertex as usize];

@@ -13,10 +13,20 @@ use super::{Surface, seams, splits};
 pub(super) struct Sewing {
     /// Places within this distance are one, besides those that are by rounding.
     pub(super) distance: Option<f64>,
-    /// Whether vertices on open edges split them.
-    pub(super) splits: bool,
+    /// Which vertices split open edges.
+    pub(super) splits: Splits,
     /// Whether only that is done which makes all open edges around it cancel.
     pub(super) where_it_closes: bool,
+}
+
+/// Which vertices are on an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Splits {
+    None,
+    /// Those that are by rounding.
+    ByRounding,
+    /// Those too that are within the distance that was asked for.
+    ByDistance,
 }
 
 /// What would be done to the open edges of a surface.
@@ -50,14 +60,14 @@ pub(super) fn sew(surface: &mut Surface<'_>, how: Sewing) -> bool {
 }
 
 /// Whether all open edges cancel once vertices within `distance` are joined and those on edges split them.
-pub(super) fn closes(surface: &Surface<'_>, distance: f64) -> bool {
-    let how = Sewing { distance: Some(distance), splits: true, where_it_closes: true };
+pub(super) fn closes(surface: &Surface<'_>, distance: f64, splits: Splits) -> bool {
+    let how = Sewing { distance: Some(distance), splits, where_it_closes: true };
     Plan::new(surface, how).closes.iter().all(|&closes| closes)
 }
 
 /// How far apart the vertices are that are joined within `distance`, ascending.
 pub(super) fn gaps(surface: &Surface<'_>, distance: f64) -> Vec<f64> {
-    let how = Sewing { distance: Some(distance), splits: true, where_it_closes: true };
+    let how = Sewing { distance: Some(distance), splits: Splits::None, where_it_closes: true };
     let plan = Plan::new(surface, how);
     let place = |vertex: u32| &surface.mesh.positions[vertex as usize];
     let mut gaps: Vec<f64> =
@@ -89,9 +99,11 @@ impl Plan {
             .map(|edge| (plan.target(edge.from), plan.target(edge.to), i64::from(edge.count)));
         plan.open = sums(joined.collect());
         plan.on_open = vec![Vec::new(); plan.open.len()];
-        if how.splits {
+        if how.splits != Splits::None {
+            let by_rounding = Reaches::new(surface.mesh.positions.as_slice(), &plan.edges, None);
+            let reaches = if how.splits == Splits::ByRounding { &by_rounding } else { &plan.reaches };
             let ends: Vec<(u32, u32)> = plan.open.iter().map(|&(low, high, _)| (low, high)).collect();
-            if let Some(found) = splits::on_edges(&surface.mesh.positions, &ends, &plan.reaches) {
+            if let Some(found) = splits::on_edges(&surface.mesh.positions, &ends, reaches) {
                 plan.on_open = found;
             }
         }
