@@ -126,12 +126,21 @@ fn run_task(
     Ok(Exit::Fine)
 }
 
-/// The inputs, one for each part of a file that is asked for.
+/// The inputs, one for each part of a file that is asked for; in expressions, whose operands are numbered, one for all parts
+/// that one input means.
 fn parts(task: &Task, mut requests: Vec<Request>, session: &Session<'_>) -> Result<Vec<Request>, Fault> {
     if requests.iter().all(|request| request.part.is_none()) {
         return Ok(requests);
     }
     let control = session.control();
+    if let Task::Expressions(_) = task {
+        let together = |(index, request): (usize, Request)| {
+            let name = request.name();
+            selection::together(request, &session.limits, &control)
+                .map_err(|error| Fault::from(error.of_operand(index, name)))
+        };
+        return requests.into_iter().enumerate().map(together).collect();
+    }
     if task.is_difference() && !requests.is_empty() {
         let others = requests.split_off(1);
         let name = requests.first().map(Request::name).unwrap_or_default();

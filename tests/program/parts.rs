@@ -101,6 +101,16 @@ fn other_verbs_take_parts_too() {
 }
 
 #[test]
+fn expressions_take_the_parts_of_an_input_together() {
+    let folder = scene();
+    let line = "combine a=scene.glb#base b=scene.glb#cut_* --expr a-b --json";
+    assert_eq!(folder.run(line).exits(0).json()["result"]["volume"], 3.25);
+    // What the drills and the bar have in common is counted once.
+    let report = folder.run("resolve scene.obj#* --json").exits(0).json();
+    assert_eq!(report["result"]["volume"], 4.0 + 3.0 * 0.5);
+}
+
+#[test]
 fn a_file_with_a_hash_in_its_name_is_that_file() {
     let folder = scene();
     std::fs::copy(folder.path("scene.obj"), folder.path("scene.glb#base")).expect("copied");
