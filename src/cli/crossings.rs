@@ -11,7 +11,7 @@ use super::report::counted;
 /// What is said of a file whose surface crosses itself, though what was written does not.
 ///
 /// Rounding moves no part of a surface by more than its step, and the check of operands tolerates crossings of a few steps
-/// where all coordinates are numbers of single precision. Two kinds of files may be refused all the same: those with an offset,
+/// where all coordinates are numbers of single precision. Two kinds of files may be said to cross themselves all the same: those with an offset,
 /// whose coordinates are none, and those where needles turned over, which may pass through others for more than a step. These
 /// are read back and checked as operands are, in about a microsecond a triangle.
 pub(crate) fn in_file(path: &Path, rounding: &Rounding, limits: &Limits) -> Result<Option<String>, Error> {
@@ -26,8 +26,8 @@ pub(crate) fn in_file(path: &Path, rounding: &Rounding, limits: &Limits) -> Resu
     let Some(deepest) = found.places.first() else { return Ok(None) };
     let [x, y, z] = deepest.place;
     Ok(Some(format!(
-        "rounding to single precision makes {} of triangles cross, {:.1e} deep at ({x}, {y}, {z}): as an operand the file \
-         would be refused; OBJ and PLY keep all digits{}",
+        "rounding to single precision makes {} of triangles cross, {:.1e} deep at ({x}, {y}, {z}), which the result \
+         does not; OBJ and PLY keep all digits{}",
         counted(found.count, "pair"),
         deepest.depth,
         if rounding.has_offset {
