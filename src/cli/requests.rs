@@ -102,7 +102,7 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     transforms("--matrix", placed(matches, "matrix").map(|(at, v)| (at, Transform::Matrix(v))).collect());
     items.sort_by_key(|&(at, _)| at);
 
-    let expansion = matches.get_one::<u64>("expansion").copied();
+    let expansion = matches.try_get_one::<u64>("expansion").ok().flatten().copied();
     let mut requests: Vec<Request> = Vec::new();
     for (_, item) in items {
         match (item, requests.last_mut()) {
