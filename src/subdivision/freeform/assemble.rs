@@ -17,7 +17,9 @@ pub(super) struct Draft {
     pub(super) origins: Vec<VertexOrigin>,
     /// For each face its operand.
     pub(super) operand_of: Vec<u8>,
-    /// For each face whether it is a control face of its operand.
+    /// For each face the operand and its control face that it is.
+    pub(super) sources: Vec<Option<(usize, u32)>>,
+    /// For each face whether it is one.
     pub(super) whole: Vec<bool>,
     /// For each vertex whether it is new, or its faces are not all the old ones.
     pub(super) changed: Vec<bool>,
@@ -76,7 +78,8 @@ pub(super) fn assemble(work: &Work, operands: [&Operand; 2], reversed: [bool; 2]
     used.sort_by_key(|&v| (work.vertices[v as usize].control.unwrap_or((u8::MAX, v)), v));
     let numbers: FxHashMap<u32, u32> = used.iter().enumerate().map(|(i, &v)| (v, i as u32)).collect();
     let corners: Vec<[u32; 3]> = faces.iter().map(|&(_, _, corners)| corners.map(|v| numbers[&v])).collect();
-    let whole: Vec<bool> = faces.iter().map(|&(o, ..)| o != rest).collect();
+    let sources: Vec<_> = faces.iter().map(|&(o, f, _)| (o != rest).then_some((o, f))).collect();
+    let whole: Vec<bool> = sources.iter().map(Option::is_some).collect();
     let operand_of = faces
         .iter()
         .map(|&(o, f, _)| if o == rest { work.faces[f as usize].operand } else { o as u8 })
@@ -113,7 +116,7 @@ pub(super) fn assemble(work: &Work, operands: [&Operand; 2], reversed: [bool; 2]
     let rules = operands[0].cage.rules();
     let cage = ControlMesh::new(positions, corners, tags, rules)?;
     let on_curve = used.iter().map(|&v| work.vertices[v as usize].on_curve).collect();
-    Ok(Draft { cage, origins, operand_of, whole, changed, targets, on_curve, fixed, sharp })
+    Ok(Draft { cage, origins, operand_of, sources, whole, changed, targets, on_curve, fixed, sharp })
 }
 
 /// Which vertices are new, or have other faces than before.

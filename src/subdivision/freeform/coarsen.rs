@@ -4,7 +4,7 @@
 use glam::DVec3;
 use smallvec::SmallVec;
 
-use super::work::{Sharp, Work, key, quality};
+use super::work::{Work, key, quality};
 
 /// Triangles must look the way the surface does: within 72 degrees, and 84 in the second half of the rounds.
 const UPRIGHT: [f64; 2] = [0.3, 0.1];
@@ -236,9 +236,4 @@ fn replace(work: &mut Work, f: u32, corners: [u32; 3]) {
         work.around[w as usize].push(f);
         work.around[w as usize].sort_unstable();
     }
-}
-
-/// Marks triangles whole again that are control faces after all, and tells whether the curve is still there.
-pub(super) fn has_curve(work: &Work) -> bool {
-    work.sharp.values().any(|&sharp| sharp == Sharp::Curve)
 }

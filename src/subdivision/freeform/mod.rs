@@ -32,13 +32,13 @@ use glam::DVec3;
 use super::control_mesh::ControlMesh;
 use super::error::CageError;
 use super::tags::Tags;
-use crate::spatial::TriangleTree;
 use crate::{BooleanOptions, Control, Error, Operation, Outcome};
 use assemble::{Draft, assemble};
 use curve::Chain;
 use fit::Fit;
 pub use measure::Errors;
-use operand::{Operand, steps_for};
+use measure::Measure;
+use operand::Operand;
 pub use report::FreeFormReport;
 use sizes::Sizes;
 use start::Start;
@@ -145,9 +145,11 @@ impl FreeFormOutcome {
 }
 
 /// The limit surfaces are triangulated within this share of the tolerance.
-const FINENESS: f64 = 0.25;
+const FINENESS: f64 = 0.5;
 /// ... but not into more triangles than this for one operand, since the working mesh begins with some of them.
 const MOST_TRIANGLES: usize = 150_000;
+/// ... and no face more often than this.
+const MOST_STEPS: u32 = 5;
 /// Tolerance without one given, over the diagonal of the operands.
 const USUAL_TOLERANCE: f64 = 1e-3;
 /// Surfaces that cross at less than this angle, in degrees, are refused: their curve is not known.
@@ -266,11 +268,11 @@ impl Run<'_> {
 
     fn operand(&self, index: usize, cage: &ControlMesh) -> Result<Operand, Error> {
         let faces = cage.faces().len().max(1);
-        let mut most = steps_for(cage, self.tolerance * FINENESS).unwrap_or(8).max(2);
+        let mut most = MOST_STEPS;
         while most > 2 && faces.saturating_mul(1 << (2 * most)) > MOST_TRIANGLES {
             most -= 1;
         }
-        let most = most.max(2 + self.settings.refine.min(3));
+        let most = most.max(2 + self.settings.refine.min(2));
         Operand::new(cage, self.tolerance * FINENESS, most)
             .map_err(|error| error.of_operand(index, format!("operand {}", index + 1)))
     }
@@ -315,7 +317,6 @@ impl Run<'_> {
         self.check_chains(&chains)?;
         self.took("curve");
         // 3. Cages with faces of smaller and smaller size beside the curve.
-        let exact_tree = TriangleTree::new(exact.solid().mesh());
         let mut best: Option<Attempt> = None;
         let last = self.settings.refine + if chains.is_empty() { 0 } else { self.settings.attempts };
         for refined in self.settings.refine..=last {
@@ -323,7 +324,7 @@ impl Run<'_> {
                 "cage",
                 f64::from(refined - self.settings.refine) / f64::from(last - self.settings.refine + 1),
             )?;
-            let attempt = self.attempt(operands, &start, &chains, &exact, &exact_tree, refined)?;
+            let attempt = self.attempt(operands, &start, &chains, &exact, refined)?;
             if best.as_ref().is_none_or(|best| attempt.errors.largest() < best.errors.largest()) {
                 best = Some(attempt);
             }
@@ -368,7 +369,6 @@ impl Run<'_> {
         start: &Start<'_>,
         chains: &[Chain],
         exact: &Outcome,
-        exact_tree: &TriangleTree,
         refined: u32,
     ) -> Result<Attempt, Error> {
         // 1. The cage's faces.
@@ -376,6 +376,7 @@ impl Run<'_> {
         let steps = start.steps(&sizes);
         let mut work = start.work(chains, &sizes, &steps)?;
         let left_over = coarsen::coarsen(&mut work);
+        relax::polish(&mut work, chains);
         relax::relax(&mut work, chains, operands, start.reversed);
         coarsen::turn_edges(&mut work);
         let mut draft = assemble(&work, operands, start.reversed)?;
@@ -394,18 +395,9 @@ impl Run<'_> {
         draft.cage = draft.cage.with_points(&positions);
         self.took("fit");
         // 3. The distance.
-        let most = steps_for(&draft.cage, self.tolerance * FINENESS).unwrap_or(4).clamp(2, 4);
-        let surface = draft.cage.surface();
-        let per_face: Vec<u32> = (0..draft.cage.faces().len() as u32)
-            .map(|f| {
-                (2..most)
-                    .find(|&s| surface.flatness(f, s as usize) <= self.tolerance * FINENESS)
-                    .unwrap_or(most)
-            })
-            .collect();
-        let limit = super::limit_mesh::LimitMesh::new(&surface, &per_face)?;
-        let allowance = 2.0 * self.tolerance * FINENESS;
-        let errors = measure::measure(&draft, &limit, exact.solid().mesh(), exact_tree, chains, allowance);
+        let fineness = self.tolerance * FINENESS;
+        let measure = Measure { operands, start, exact, chains, fineness };
+        let errors = measure.errors(&draft, &fit.unknown);
         self.took("measure");
         Ok(Attempt { draft, errors, refined, left_over })
     }

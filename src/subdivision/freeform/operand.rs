@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use crate::spatial::TriangleTree;
-use crate::subdivision::control_mesh::{ControlMesh, Place};
+use crate::subdivision::control_mesh::ControlMesh;
 use crate::subdivision::evaluate::Surface;
-use crate::subdivision::limit_mesh::{LimitMesh, most_steps};
+use crate::subdivision::limit_mesh::LimitMesh;
 use crate::{Error, Solid};
 
 /// A cage with what the boolean needs of it.
@@ -19,7 +19,6 @@ pub(super) struct Operand {
 /// The nearest point of a limit surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Foot {
-    pub(super) place: Place,
     pub(super) position: DVec3,
     pub(super) normal: DVec3,
     /// The fine triangle, as a guess for the next search.
@@ -62,8 +61,13 @@ impl Operand {
     /// The nearest point of the surface to `x`; nothing if `x` is not finite.
     pub(super) fn foot(&self, x: DVec3, guess: Option<u32>) -> Option<Foot> {
         let closest = self.tree.closest_from(x.to_array(), guess)?;
-        let weights = weights_in(self.corners(closest.triangle), closest.point.into());
-        let mut place = self.fine.place_within(closest.triangle, weights);
+        Some(self.foot_near(x, closest.triangle, closest.point.into()))
+    }
+
+    /// The point of the surface nearest to `x` in the face of a fine triangle, beginning at a point of that triangle.
+    pub(super) fn foot_near(&self, x: DVec3, triangle: u32, point: DVec3) -> Foot {
+        let weights = weights_in(self.corners(triangle), point);
+        let mut place = self.fine.place_within(triangle, weights);
         let mut sample = self.surface.at(place.face, place.weights);
         for _ in 0..CORRECTIONS {
             let away = x - sample.position;
@@ -85,7 +89,7 @@ impl Operand {
                 break;
             }
         }
-        Some(Foot { place, position: sample.position, normal: sample.normal, triangle: closest.triangle })
+        Foot { position: sample.position, normal: sample.normal, triangle }
     }
 
     /// The corners of a fine triangle.
@@ -126,9 +130,4 @@ pub(super) fn weights_in(corners: [DVec3; 3], point: DVec3) -> [f64; 3] {
     let areas = [area(0), area(1), area(2)];
     let sum: f64 = areas.iter().sum();
     if sum > 0.0 { areas.map(|a| a / sum) } else { [1.0, 0.0, 0.0] }
-}
-
-/// How many steps a tolerance asks for at most, over all faces.
-pub(super) fn steps_for(cage: &ControlMesh, tolerance: f64) -> Result<u32, Error> {
-    Ok(most_steps(&cage.surface(), tolerance)?.into_iter().max().unwrap_or(0))
 }

@@ -10,6 +10,15 @@ use super::work::{Work, quality};
 /// Sweeps over the vertices, in the order of their numbers.
 const SWEEPS: usize = 6;
 
+/// Moves the curve's vertices onto both surfaces. Not before the mesh is coarse: fine triangles beside it would turn over.
+pub(super) fn polish(work: &mut Work, chains: &[Chain]) {
+    for vertex in &mut work.vertices {
+        if let Some((c, length)) = vertex.on_curve {
+            vertex.position = chains[c as usize].at(length);
+        }
+    }
+}
+
 /// Moves vertices beside the curve and those that are new.
 pub(super) fn relax(work: &mut Work, chains: &[Chain], operands: [&Operand; 2], reversed: [bool; 2]) {
     let count = work.vertices.len() as u32;

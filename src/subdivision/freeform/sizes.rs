@@ -21,6 +21,8 @@ const TOO_NEAR: f64 = 0.45;
 pub(super) struct Sizes {
     /// Points of the curve with the size there.
     points: Vec<(DVec3, f64)>,
+    /// The same at its features alone.
+    features: Vec<(DVec3, f64)>,
     /// For each chain the size at each of its points.
     pub(super) of_chain: Vec<Vec<f64>>,
 }
@@ -59,7 +61,12 @@ impl Sizes {
             }
             kept
         });
-        Self { points: points.collect(), of_chain }
+        let points = points.collect();
+        let features = chains.iter().zip(&of_chain).flat_map(|(chain, sizes)| {
+            chain.features.iter().map(|&i| (chain.points[i], sizes[i])).collect::<Vec<_>>()
+        });
+        let features = features.collect();
+        Self { points, features, of_chain }
     }
 
     /// The size asked for at `x`; infinite without a curve.
@@ -77,9 +84,11 @@ impl Sizes {
         if ratio > 1.0 { ratio.log2().ceil() as u32 } else { 0 }
     }
 
-    /// Whether a vertex is so near to the curve that it has to go.
-    pub(super) fn is_too_near(&self, x: DVec3) -> bool {
-        self.points.iter().any(|&(point, size)| x.distance(point) < TOO_NEAR * size)
+    /// Whether a vertex is so near to the curve that it has to go. One on a crease goes only where the curve crosses the
+    /// crease: beside a curve that runs along it, it holds the crease.
+    pub(super) fn is_too_near(&self, x: DVec3, on_crease: bool) -> bool {
+        let points = if on_crease { &self.features } else { &self.points };
+        points.iter().any(|&(point, size)| x.distance(point) < TOO_NEAR * size)
     }
 
     /// Lengths along a chain at which nodes are to stand: its features, and between them as many as the size asks for.

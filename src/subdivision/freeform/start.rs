@@ -66,6 +66,18 @@ impl<'a> Start<'a> {
         Self { operands, outcome, reversed, whole, image, face_of }
     }
 
+    /// The operand and control face of a triangle of the result.
+    pub(super) fn control_face(&self, t: u32) -> (usize, u32) {
+        (self.outcome.origins()[t as usize].operand as usize, self.face_of[t as usize])
+    }
+
+    /// The operand and fine triangle of a triangle of the result.
+    pub(super) fn fine_triangle(&self, t: u32) -> (usize, u32) {
+        let origin = self.outcome.origins()[t as usize];
+        let o = origin.operand as usize;
+        (o, self.operands[o].solid().source_triangle(origin.triangle))
+    }
+
     /// The chains of the curve, polished, with their features.
     pub(super) fn chains(&self, most: f64) -> Vec<Chain> {
         let mesh = self.outcome.solid().mesh();
@@ -271,6 +283,7 @@ impl Builder<'_, '_> {
 
     /// Where vertices come from, what is normal to them, and whether they stay.
     fn describe(&mut self, active: &[Vec<bool>; 2], steps: &[Vec<u32>; 2], sizes: &Sizes) {
+        let on_crease = self.start.crease_vertices();
         // 1. Control vertices and those of splits.
         for o in 0..2 {
             let operand = self.start.operands[o];
@@ -285,7 +298,7 @@ impl Builder<'_, '_> {
                 vertex.step = vertex.step.min(operand.fine.step_of[w]);
                 let corner =
                     w < level.vertex_count && level.kind(w as u32, &level.ring(w as u32)) == Kind::Corner;
-                let near = sizes.is_too_near(vertex.position);
+                let near = sizes.is_too_near(vertex.position, on_crease.contains(&v));
                 vertex.keep = corner || (operand.fine.step_of[w] <= wanted[w] && !near);
                 vertex.fixed = corner;
             }
@@ -352,14 +365,13 @@ impl Builder<'_, '_> {
         }
     }
 
-    /// Tags the curve, moves its vertices onto both surfaces, and marks its nodes.
+    /// Tags the curve and marks its nodes.
     fn mark_chains(&mut self, chains: &[Chain], sizes: &Sizes) {
         for (c, chain) in chains.iter().enumerate() {
             let n = chain.vertices.len();
             let numbers: Vec<u32> = chain.vertices.iter().map(|&v| self.vertex(v)).collect();
             for i in 0..n {
                 let vertex = &mut self.work.vertices[numbers[i] as usize];
-                vertex.position = chain.points[i];
                 vertex.on_curve = Some((c as u32, chain.lengths[i]));
                 vertex.keep = vertex.fixed;
                 vertex.step = u8::MAX;
