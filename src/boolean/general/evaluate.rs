@@ -129,7 +129,12 @@ fn add_up(shape: &mut Shape<'_>, runner: Runner<'_>) -> Result<Sums, Error> {
 }
 
 /// The pieces of all cut faces but those `done` otherwise.
-fn cut(shape: &Shape<'_>, done: &FxHashSet<FaceId>, rounding: Rounding, runner: Runner<'_>) -> Result<Cut, Error> {
+fn cut(
+    shape: &Shape<'_>,
+    done: &FxHashSet<FaceId>,
+    rounding: Rounding,
+    runner: Runner<'_>,
+) -> Result<Cut, Error> {
     let general = shape.general;
     let cuts = runner.pieces(general.cut.len(), FACES_AT_ONCE, |range| {
         let (mut cut, mut filler) = (Cut::default(), Filler::default());
