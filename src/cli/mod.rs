@@ -2,6 +2,10 @@
 
 mod argument_groups;
 mod arguments;
+#[cfg(feature = "subdivision")]
+mod cage_arguments;
+#[cfg(feature = "subdivision")]
+mod cages;
 mod check;
 mod color;
 mod combine;
@@ -15,6 +19,8 @@ mod documents;
 mod eval;
 mod fault;
 mod field_arguments;
+#[cfg(feature = "subdivision")]
+mod freeform;
 mod grid;
 mod info;
 mod json;
@@ -32,6 +38,8 @@ mod slice;
 mod source;
 mod stage;
 mod stream;
+#[cfg(feature = "subdivision")]
+mod subdivide;
 mod task;
 mod values;
 mod verbs;
@@ -126,6 +134,10 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Grid(grid) => grid::run(grid, matches, &mut session),
             #[cfg(feature = "parametric")]
             Verb::Curve(verb) => curve::run(verb, &mut session),
+            #[cfg(feature = "subdivision")]
+            Verb::Subdivide(verb) => subdivide::run(verb, matches, &mut session),
+            #[cfg(feature = "subdivision")]
+            Verb::Freeform(verb) => freeform::run(verb, matches, &mut session),
         }
     });
     session.end(result)
