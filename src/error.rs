@@ -86,6 +86,10 @@ pub enum Error {
     #[cfg(feature = "parametric")]
     #[error(transparent)]
     Geometry(#[from] crate::parametric::GeometryError),
+    /// A cage, its tags or its file is at fault, or a boolean of cages came to none.
+    #[cfg(feature = "subdivision")]
+    #[error(transparent)]
+    Cage(#[from] crate::subdivision::CageError),
     /// The operand at this position (counted from 0) is at fault.
     #[error("operand {} ({name}): {source}", operand + 1)]
     Operand {
@@ -150,6 +154,10 @@ impl Error {
             Self::Geometry(fault) if fault.is_unreadable() => Failure::Unreadable,
             #[cfg(feature = "parametric")]
             Self::Geometry(_) => Failure::Unusable,
+            #[cfg(feature = "subdivision")]
+            Self::Cage(fault) if fault.is_unreadable() => Failure::Unreadable,
+            #[cfg(feature = "subdivision")]
+            Self::Cage(_) => Failure::Unusable,
             Self::Operand { source, .. } => source.failure(),
             #[cfg(feature = "model")]
             Self::InNode { source, .. } => source.failure(),

@@ -31,6 +31,7 @@ mod general;
 mod many;
 mod pair;
 mod result;
+mod rounding;
 mod tidy;
 
 pub use complex::operation::{Contact, Operation, UnknownName};

@@ -15,14 +15,11 @@ use crate::boolean::complex::predicates::Perturbed;
 use crate::boolean::complex::{Complex, Motion, Operand};
 use crate::boolean::cut::{cut, plane_sums};
 use crate::boolean::result::assemble::{Assembled, assemble};
+use crate::boolean::rounding::Rounding;
 use crate::boolean::tidy::{self, Ground, tidy};
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::{Error, Solid};
-
-/// Edges and heights of new triangles up to this are rounding, in units in the last place of the largest coordinate: each of
-/// two points is off by less than one in every direction, and their distance by less than twice that.
-const ROUNDING_ULPS: f64 = 4.0;
 
 /// The most vertices of both operands together; the other half of all 32-bit numbers is left for crossings.
 const MOST_VERTICES: usize = 1 << 31;
@@ -100,7 +97,7 @@ fn build(
     settings: Settings<'_>,
     runner: Runner<'_>,
 ) -> Result<Assembled, Error> {
-    let rounding = ROUNDING_ULPS * f64::EPSILON * arrangement.curve.complex.largest_coordinate();
+    let rounding = Rounding::up_to(arrangement.curve.complex.largest_coordinate());
     // 7. Cutting: sheets first, then all other faces.
     let sums = plane_sums::add_up(Body { arrangement, windings, parts }, runner)?;
     arrangement

@@ -6,6 +6,8 @@ use clap::{Args, Parser, Subcommand};
 use trisect::Operation;
 
 use super::argument_groups::{Common, Inputs, Placing, Reading, Repair, Results};
+#[cfg(feature = "subdivision")]
+use super::cage_arguments::{FreeFormVerb, Subdivide};
 #[cfg(feature = "parametric")]
 use super::field_arguments::CurveVerb;
 use super::field_arguments::{Eval, SampleGrid, Slice};
@@ -100,6 +102,19 @@ pub(crate) enum Verb {
     #[cfg(feature = "parametric")]
     #[command(subcommand)]
     Curve(CurveVerb),
+    /// Refine a cage (a subdivision surface's control mesh), or make a mesh of its limit surface
+    #[cfg(feature = "subdivision")]
+    #[command(
+        after_help = "Examples:\n  trisect subdivide cage.obj --levels 2 -o fine.obj\n  trisect subdivide cage.obj --tolerance \
+                            0.01 -o smooth.stl"
+    )]
+    Subdivide(Subdivide),
+    /// Booleans of cages that give a cage
+    #[cfg(feature = "subdivision")]
+    #[command(
+        after_help = "Example:\n  trisect freeform difference mug.obj inside.obj -o cup.obj --tolerance 0.02 --png cup.png"
+    )]
+    Freeform(FreeFormVerb),
 }
 
 impl Verb {
@@ -120,6 +135,10 @@ impl Verb {
             Self::Grid(_) => "grid",
             #[cfg(feature = "parametric")]
             Self::Curve(verb) => verb.name(),
+            #[cfg(feature = "subdivision")]
+            Self::Subdivide(_) => "subdivide",
+            #[cfg(feature = "subdivision")]
+            Self::Freeform(_) => "freeform",
         }
     }
 }

@@ -2,10 +2,15 @@
 
 mod argument_groups;
 mod arguments;
+#[cfg(feature = "subdivision")]
+mod cage_arguments;
+#[cfg(feature = "subdivision")]
+mod cages;
 mod check;
 mod color;
 mod combine;
 mod convert;
+mod crossings;
 #[cfg(feature = "parametric")]
 mod curve;
 #[cfg(feature = "parametric")]
@@ -14,6 +19,8 @@ mod documents;
 mod eval;
 mod fault;
 mod field_arguments;
+#[cfg(feature = "subdivision")]
+mod freeform;
 mod grid;
 mod info;
 mod json;
@@ -31,6 +38,8 @@ mod slice;
 mod source;
 mod stage;
 mod stream;
+#[cfg(feature = "subdivision")]
+mod subdivide;
 mod task;
 mod values;
 mod verbs;
@@ -125,6 +134,10 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Grid(grid) => grid::run(grid, matches, &mut session),
             #[cfg(feature = "parametric")]
             Verb::Curve(verb) => curve::run(verb, &mut session),
+            #[cfg(feature = "subdivision")]
+            Verb::Subdivide(verb) => subdivide::run(verb, matches, &mut session),
+            #[cfg(feature = "subdivision")]
+            Verb::Freeform(verb) => freeform::run(verb, matches, &mut session),
         }
     });
     session.end(result)

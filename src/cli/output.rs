@@ -10,6 +10,7 @@ use trisect::render::{self, Picture};
 use trisect::{Error, Failure, Mesh};
 
 use super::argument_groups::{Colours, Common, Drawing, Up, Writing};
+use super::crossings;
 use super::documents::{self, Document};
 use super::fault::Fault;
 use super::json::json_of;
@@ -195,6 +196,10 @@ pub(crate) fn write_all(
         let stage = Stage::new(&target.path, limits).map_err(|error| Fault::output(&target.path, error))?;
         let said = write_file(target, &stage.path(), product).map_err(|error| failed(target, error))?;
         warnings.extend(said_of(target, &said));
+        if let Some(rounding) = &said.rounding {
+            let crossing = crossings::in_file(&stage.path(), rounding, limits)?;
+            warnings.extend(crossing.map(|warning| format!("{}: {warning}", target.name())));
+        }
         roundings[index] = said.rounding;
         stages.push(stage);
         staged.push(index);

@@ -123,7 +123,7 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     }
     items.sort_by_key(|&(at, _)| at);
 
-    let expansion = matches.get_one::<u64>("expansion").copied();
+    let expansion = matches.try_get_one::<u64>("expansion").ok().flatten().copied();
     let mut requests: Vec<Request> = Vec::new();
     let (mut for_all, mut rule_for_all) = (Repairs::default(), Rule::default());
     for (_, item) in items {

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use clap::ArgMatches;
-use trisect::Control;
 use trisect::field::{Expression, Formula, Graph, SignRule, SignedDistance, System};
+use trisect::mesh::Gate;
 use trisect::model::{Evaluation, Model};
+use trisect::{Control, Solid};
 
 use super::fault::Fault;
 use super::field_arguments::{self, Rule, Source};
@@ -63,7 +64,9 @@ pub(crate) fn field(
         for warning in &input.warnings {
             session.warn(format!("{}: {warning}", request.name()));
         }
-        let found = Arc::new(SignedDistance::of_mesh_within(&input.mesh, source.sign.rule(), control));
+        // Seams and the like are mended as for an operand; what cannot be one is taken as it is.
+        let mended = Gate::new().solid(input.mesh).map_or_else(|refusal| refusal.mesh, Solid::into_mesh);
+        let found = Arc::new(SignedDistance::of_mesh_within(&mended, source.sign.rule(), control));
         control.check().map_err(trisect::Error::from)?;
         if source.sign == Rule::Automatic && found.decided_by() == SignRule::FastWinding {
             session.warn(open_surface(&request.name()));

@@ -26,7 +26,9 @@ pub(super) fn of_solid(solid: &Solid, normals: &PseudoNormals, control: &Control
     if let Some(rule) = without_search(normals) {
         return rule;
     }
-    let crosses = solid.self_crossings(control).map_or(true, |found| !found.is_clean());
+    // What an operation made is known to be clean.
+    let searched = || solid.self_crossings(control).map_or(true, |found| !found.is_clean());
+    let crosses = !solid.is_known_clean() && searched();
     match crosses || !solid.inside_out_shells().is_none() {
         true => SignRule::Winding,
         false => SignRule::PseudoNormal,

@@ -31,7 +31,9 @@ pub struct Written {
 /// What rounding to single precision did to a mesh.
 ///
 /// A closed mesh stays closed: vertices that become equal leave no boundary. No part of the surface is moved by more than
-/// half a step along each axis, so around every point farther from it than that the winding number is what it was.
+/// half a step along each axis, so around every point farther from it than that the winding number is what it was, and
+/// crossings that come are no deeper than a step. [`Solid::self_crossings`](crate::Solid::self_crossings) tolerates those of
+/// coordinates that are numbers of single precision; of a file with an offset it may not.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -62,6 +64,9 @@ pub struct Rounding {
     pub lost_place: Option<[f64; 3]>,
     /// How thick it was.
     pub lost_thickness: Option<f64>,
+    /// Whether the file measures from an offset or in a unit of its own (glTF): then readers get coordinates that are no
+    /// numbers of single precision, though they were rounded to it.
+    pub has_offset: bool,
     /// Whether the steps would be finer with the model at the origin ([`Mesh::recentered`]).
     pub finer_at_origin: bool,
 }
@@ -209,6 +214,7 @@ impl<'a> Examination<'a> {
             lost_gaps: films.gaps,
             lost_place: found.map(|film| [0, 1, 2].map(|k| film.place[k] * scale + measure.offset[k])),
             lost_thickness: found.map(|film| film.thickness * scale),
+            has_offset: measure.offset != [0.0; 3] || scale != 1.0,
             finer_at_origin: largest > FAR * size,
         })
     }

@@ -69,3 +69,67 @@ fn names_of_ascii_stl_are_no_warning() {
     assert!(folder.read("a.stl").contains("solid part"));
     folder.run("convert a.stl -o b.stl -o b.ply -o b.off --strict").exits(0);
 }
+
+/// A block of a hundred metres at map coordinates with a slanted bottom, and a pit whose tip ends a hair above it.
+fn pit(heights: [f64; 3]) -> trisect::Mesh {
+    let base = [500_000.0, 4_649_776.0, 120.0];
+    let plane = heights[0] + (heights[1] - heights[0]) * 0.33 + (heights[2] - heights[0]) * 0.33;
+    let mut positions = vec![
+        [0.0, 0.0, heights[0]],
+        [1.0, 0.0, heights[1]],
+        [0.0, 1.0, heights[2]],
+        [0.33, 0.33, plane + 1e-9],
+        [0.0, 0.0, 0.4],
+        [1.0, 0.0, 0.4],
+        [0.0, 1.0, 0.4],
+        [0.1, 0.1, 0.4],
+        [0.8, 0.1, 0.4],
+        [0.1, 0.8, 0.4],
+    ];
+    positions.iter_mut().for_each(|p| (0..3).for_each(|k| p[k] = base[k] + 100.0 * p[k]));
+    let triangles = vec![
+        [0, 2, 1],
+        [0, 1, 5],
+        [0, 5, 4],
+        [1, 2, 6],
+        [1, 6, 5],
+        [2, 0, 4],
+        [2, 4, 6],
+        // The ring on top, and the pit.
+        [4, 5, 8],
+        [4, 8, 7],
+        [5, 6, 9],
+        [5, 9, 8],
+        [6, 4, 7],
+        [6, 7, 9],
+        [7, 8, 3],
+        [8, 9, 3],
+        [9, 7, 3],
+    ];
+    trisect::Mesh::new(positions, triangles)
+}
+
+#[test]
+fn a_file_that_would_be_refused_is_told() {
+    let folder = Folder::new();
+    let crosses = |mesh: &trisect::Mesh| {
+        mesh.save(folder.path("try.glb")).expect("written");
+        let back = trisect::Mesh::load(folder.path("try.glb")).expect("read");
+        let solid = trisect::Solid::try_from(back).expect("closed");
+        !solid.self_crossings(&trisect::Control::new()).expect("no limits").is_clean()
+    };
+    // Some slant rounds the bottom up and the tip down.
+    let slants = (1..400).map(|k| pit([0.1 + 1.3e-9 * f64::from(k), 0.2 + 1.7e-9 * f64::from(k), 0.3]));
+    let mesh = slants.into_iter().find(|mesh| crosses(mesh)).expect("one of many");
+    mesh.save(folder.path("pit.ply")).expect("written");
+    folder.run("check pit.ply").exits(0);
+    folder
+        .run("convert pit.ply out.glb --strict")
+        .exits(5)
+        .says("out.glb: rounding")
+        .says("cross")
+        .says("--recenter");
+    folder.run("check out.glb").exits(3);
+    folder.run("convert pit.ply out.glb --recenter").exits(0);
+    folder.run("check out.glb").exits(0);
+}

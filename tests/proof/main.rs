@@ -19,4 +19,5 @@ mod properties;
 mod recorded;
 mod regressions;
 mod same_bits;
+mod scales;
 mod trial;

@@ -21,6 +21,7 @@ use crate::boolean::classify::body::Body;
 use crate::boolean::classify::multiplicity::Part;
 use crate::boolean::complex::ids::{CutFaceId, FaceId, PointId};
 use crate::boolean::complex::origin::Origin;
+use crate::boolean::rounding::Rounding;
 use crate::exact::Projection;
 use crate::parallel::Runner;
 use crate::polygon::{Shape, Triangulator};
@@ -47,15 +48,15 @@ impl Cut {
     }
 }
 
-/// The pieces of a body, part by part and face by face, without the faces `done` otherwise. Edges up to `rounding` long, in
-/// units of the coordinates, are reported as slivers.
+/// The pieces of a body, part by part and face by face, without the faces `done` otherwise. Edges no longer than
+/// rounding are reported as slivers.
 ///
 /// # Errors
 /// Only limits.
 pub(crate) fn cut(
     body: Body<'_>,
     done: &FxHashSet<FaceId>,
-    rounding: f64,
+    rounding: Rounding,
     runner: Runner<'_>,
 ) -> Result<Cut, Error> {
     let cutter = Cutter { body, done, rounding };
@@ -99,7 +100,7 @@ impl Filler {
         position: impl Fn(PointId) -> &'p [f64; 3],
         seen: Projection,
         origin: Origin,
-        rounding: f64,
+        rounding: Rounding,
         cut: &mut Cut,
     ) {
         // 1. What is left of the boundary.
@@ -134,10 +135,10 @@ impl Filler {
 }
 
 /// Whether two consecutive points of a boundary are no further apart than rounding.
-fn has_short_edge(positions: &[[f64; 3]], boundary: &[[u32; 2]], rounding: f64) -> bool {
+fn has_short_edge(positions: &[[f64; 3]], boundary: &[[u32; 2]], rounding: Rounding) -> bool {
     boundary.iter().any(|edge| {
         let [p, q] = edge.map(|i| positions[i as usize]);
-        (0..3).all(|k| (p[k] - q[k]).abs() <= rounding)
+        rounding.is_short(&p, &q)
     })
 }
 
@@ -145,7 +146,7 @@ fn has_short_edge(positions: &[[f64; 3]], boundary: &[[u32; 2]], rounding: f64) 
 struct Cutter<'a> {
     body: Body<'a>,
     done: &'a FxHashSet<FaceId>,
-    rounding: f64,
+    rounding: Rounding,
 }
 
 impl Cutter<'_> {

@@ -199,10 +199,9 @@ impl Sum<'_> {
         let axis = self.seen.axis();
         let size = (0..3).fold(0.0f64, |size, k| size.max((b[k] - a[k]).abs()));
         let mut above = *a;
-        above[axis] += size;
-        if above[axis] == a[axis] || !above[axis].is_finite() {
-            return None;
-        }
+        // (Any other point above or below gives the same plane, if this one is lost beside a large coordinate.)
+        let other = [a[axis] + size, a[axis].next_up(), a[axis].next_down()];
+        above[axis] = other.into_iter().find(|&x| x != a[axis] && x.is_finite())?;
         let still =
             |position: &[f64; 3]| PerturbedPoint { position: *position, first: [0; 3], second: [0; 3] };
         let (edge, triangle) = ([p, q].map(still), [a, b, &above].map(still));

@@ -67,14 +67,14 @@ impl Crossed {
         let memory = runner.control.reserve(bytes as u64)?;
         // 1. All operands as one complex, in general position.
         let (mut surfaces, mut edges) = Surfaces::new(operands, groups);
-        let pairs = crossings::find_pairs(&surfaces, operands, simple, runner)?;
+        let bounds = operands.iter().filter_map(|solid| solid.bounds());
+        let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
+        let pairs = crossings::find_pairs(&surfaces, &bounds, simple, runner)?;
         surfaces.set_near(&pairs);
         let contacts = seeds::sort_radially(&surfaces, &mut edges);
         // 2. Which faces cross.
         let crossings = Crossings::find(&surfaces, &edges, &pairs, runner)?;
         let contacts = contacts + crossings.contacts;
-        let bounds = operands.iter().filter_map(|solid| solid.bounds());
-        let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
         Ok(Self { surfaces, edges, crossings, contacts, bounds, _memory: memory })
     }
 

@@ -6,16 +6,18 @@
 
 use super::edges::Edges;
 use super::surfaces::Surfaces;
+use crate::Error;
 use crate::boolean::arrangement::cut_edges::compare_by_sides;
 use crate::boolean::complex::Corner;
 use crate::boolean::complex::ids::{EdgeId, FaceId, NodeId, PointId, SegmentId, VertexId};
 use crate::boolean::complex::predicates::{Perturbed, Plane, Predicates};
 use crate::exact::order;
-use crate::exact::{Projection, Sign, collinear, orient2d, orient3d};
-use crate::mesh::Buckets;
+use crate::exact::{
+    FILTER_RANGE, PlaneFilter, Projection, Sign, collinear, orient2d, orient2d_filter, orient3d,
+};
+use crate::mesh::{Bounds, Buckets};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame, self_overlapping_pairs};
-use crate::{Error, Solid};
 
 /// Where an edge pierces a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -69,38 +71,113 @@ impl Default for SegmentId {
 /// Pairs that one thread decides on before the limits are checked.
 const PAIRS_AT_ONCE: usize = 4096;
 
-/// The pairs of faces whose boxes meet, the lower one first, but not those with a common edge; and pairs that are folded back on
-/// each other at a common edge. Pairs of faces of one operand are left out where it is `simple`: known to neither cross nor
+/// The pairs of faces that may cross or lie on each other, the lower one first: those whose boxes meet and that plain
+/// arithmetic cannot tell apart. Pairs of faces of one operand are left out where it is `simple`: known to neither cross nor
 /// touch itself.
 ///
 /// # Errors
 /// Only limits.
 pub(crate) fn find_pairs(
     surfaces: &Surfaces,
-    operands: &[&Solid],
+    bounds: &Bounds,
     simple: &[bool],
     runner: Runner<'_>,
 ) -> Result<Vec<[FaceId; 2]>, Error> {
-    let bounds = operands.iter().filter_map(|solid| solid.bounds()).reduce(crate::mesh::Bounds::united);
-    let Some(bounds) = bounds else { return Ok(Vec::new()) };
     let frame = Frame::of(bounds.low, bounds.high);
     let all: Vec<u32> = (0..surfaces.face_count()).collect();
     let tree = BoxTree::new(&all, |t| {
         let corners = surfaces.positions(FaceId::new(t));
         frame.triangle(corners.each_ref())
     });
+    let filters_hold = surfaces.largest_coordinate() <= FILTER_RANGE;
     let pairs = self_overlapping_pairs(&tree, runner, |pair| {
         let [f, g] = pair.map(FaceId::new);
         if surfaces.owner(f) == surfaces.owner(g) && simple[surfaces.owner(f) as usize] {
             return false;
         }
         let (a, b) = (surfaces.vertices(f), surfaces.vertices(g));
-        let common = a.iter().filter(|v| b.contains(v)).count();
-        common < 2 || (common == 2 && are_folded(surfaces, f, g))
+        match a.iter().filter(|v| b.contains(v)).count() {
+            2 => are_folded(surfaces, f, g),
+            _ => !filters_hold || !surely_apart(surfaces, [f, g], [&a, &b]),
+        }
     })?;
     let mut pairs: Vec<[FaceId; 2]> = pairs.into_iter().map(|pair| pair.map(FaceId::new)).collect();
     runner.sort(&mut pairs);
     Ok(pairs)
+}
+
+/// Whether `f64` is certain that two faces have nothing in common but a vertex: one lies on one side of the other's plane, or
+/// they lie in one plane, or nearly, on different sides of a line.
+#[inline]
+fn surely_apart(surfaces: &Surfaces, [f, g]: [FaceId; 2], [a, b]: [&[VertexId; 3]; 2]) -> bool {
+    let (p, q) = (surfaces.positions(f), surfaces.positions(g));
+    let others = |t: &[VertexId; 3], of: &[VertexId; 3]| [0, 1, 2].map(|k| !of.contains(&t[k]));
+    // 1. By the planes. (A common vertex lies in both.)
+    let (in_a, in_b) = (others(a, b), others(b, a));
+    let of_b = sides(&p, &q, in_b);
+    if of_b.is_one_sided() {
+        return true;
+    }
+    let of_a = sides(&q, &p, in_a);
+    if of_a.is_one_sided() {
+        return true;
+    }
+    // 2. By a line, where at least one of them may lie in the other's plane.
+    (of_a.open > 0 || of_b.open > 0) && (separated_in_plane(&p, &q, in_b) || separated_in_plane(&q, &p, in_a))
+}
+
+/// On which sides of a plane some points lie.
+struct Sides {
+    inside: u32,
+    outside: u32,
+    /// Too near to tell.
+    open: u32,
+}
+
+impl Sides {
+    fn is_one_sided(&self) -> bool {
+        self.open == 0 && (self.inside == 0 || self.outside == 0)
+    }
+}
+
+#[inline]
+fn sides(plane: &[[f64; 3]; 3], points: &[[f64; 3]; 3], wanted: [bool; 3]) -> Sides {
+    let filter = PlaneFilter::new(&plane[0], &plane[1], &plane[2]);
+    let mut sides = Sides { inside: 0, outside: 0, open: 0 };
+    for k in 0..3 {
+        if wanted[k] {
+            let (determinant, bound) = filter.determinant(&points[k]);
+            if determinant > bound {
+                sides.inside += 1;
+            } else if determinant < -bound {
+                sides.outside += 1;
+            } else {
+                sides.open += 1;
+            }
+        }
+    }
+    sides
+}
+
+/// Whether the points that are wanted lie outside one side of a triangle, seen along the axis it looks along most, and so do,
+/// or lie in the line of that side, those that it shares.
+fn separated_in_plane(triangle: &[[f64; 3]; 3], points: &[[f64; 3]; 3], wanted: [bool; 3]) -> bool {
+    let seen = Projection::of(triangle);
+    let corners = triangle.map(|p| seen.project(&p));
+    if orient2d(corners[0], corners[1], corners[2]) == Sign::Negative {
+        return false;
+    }
+    let points = points.map(|p| seen.project(&p));
+    // A vertex that is shared is a corner: only sides through it can have it in their line.
+    let is_beyond = |from: [f64; 2], to: [f64; 2], k: usize| {
+        if wanted[k] {
+            let (determinant, bound) = orient2d_filter(from, to, points[k]);
+            determinant < -bound
+        } else {
+            points[k] == from || points[k] == to
+        }
+    };
+    (0..3).any(|side| (0..3).all(|k| is_beyond(corners[side], corners[(side + 1) % 3], k)))
 }
 
 /// Whether two faces with a common edge lie on each other.

@@ -14,14 +14,12 @@ use crate::boolean::cut::plane_sums::{SheetEdge, SheetFaces, SheetSource};
 use crate::boolean::cut::{Cut, Filler};
 use crate::boolean::result::assemble::Assembled;
 use crate::boolean::result::origins::Origins;
+use crate::boolean::rounding::Rounding;
 use crate::boolean::tidy::{self, Ground, tidy};
 use crate::exact::Projection;
 use crate::mesh::BitSet;
 use crate::parallel::Runner;
 
-/// Edges and heights of new triangles up to this are rounding, in units in the last place of the largest coordinate: each of
-/// two points is off by less than one in every direction, and their distance by less than twice that.
-const ROUNDING_ULPS: f64 = 4.0;
 /// Faces that one thread cuts before the limits are checked.
 const FACES_AT_ONCE: usize = 512;
 
@@ -44,7 +42,7 @@ pub(crate) fn evaluate(
     glue: bool,
     runner: Runner<'_>,
 ) -> Result<Evaluated, Error> {
-    let rounding = ROUNDING_ULPS * f64::EPSILON * general.surfaces.largest_coordinate();
+    let rounding = Rounding::up_to(general.surfaces.largest_coordinate());
     let mut shape = Shape::new(general, inside);
     // 1. Sheets are added up.
     let mut sums = add_up(&mut shape, runner)?;
@@ -131,7 +129,12 @@ fn add_up(shape: &mut Shape<'_>, runner: Runner<'_>) -> Result<Sums, Error> {
 }
 
 /// The pieces of all cut faces but those `done` otherwise.
-fn cut(shape: &Shape<'_>, done: &FxHashSet<FaceId>, rounding: f64, runner: Runner<'_>) -> Result<Cut, Error> {
+fn cut(
+    shape: &Shape<'_>,
+    done: &FxHashSet<FaceId>,
+    rounding: Rounding,
+    runner: Runner<'_>,
+) -> Result<Cut, Error> {
     let general = shape.general;
     let cuts = runner.pieces(general.cut.len(), FACES_AT_ONCE, |range| {
         let (mut cut, mut filler) = (Cut::default(), Filler::default());
@@ -148,7 +151,7 @@ fn cut(shape: &Shape<'_>, done: &FxHashSet<FaceId>, rounding: f64, runner: Runne
 }
 
 /// What a cut face keeps, and what of it is turned over.
-fn cut_face(shape: &Shape<'_>, face: FaceId, rounding: f64, filler: &mut Filler, cut: &mut Cut) {
+fn cut_face(shape: &Shape<'_>, face: FaceId, rounding: Rounding, filler: &mut Filler, cut: &mut Cut) {
     let seen = Projection::of(&shape.general.surfaces.positions(face));
     for (part, seen) in [(Part::Kept, seen), (Part::Reversed, seen.reversed())] {
         let reversed = part == Part::Reversed;

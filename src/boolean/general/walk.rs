@@ -9,8 +9,6 @@
 //!
 //! So one label for each piece of surface gives all: that beside its vertex with the largest x, by a ray in +x.
 
-use rustc_hash::FxHashMap;
-
 use super::crossings::Crossings;
 use super::edges::{Edges, Side};
 use super::labels::Labels;
@@ -28,7 +26,7 @@ const FACES_AT_ONCE: usize = 1 << 14;
 #[derive(Debug)]
 pub(crate) struct FaceLabels {
     pub(crate) labels: Labels,
-    /// By face: its label where it is not cut, else where its list of labels begins.
+    /// By face: its label where it is not cut, else its place among the cut faces met.
     of_face: Vec<u32>,
     /// By face, the label on the inner side, where it is not cut.
     inner: Vec<LabelId>,
@@ -36,8 +34,8 @@ pub(crate) struct FaceLabels {
     of_pieces: Vec<LabelId>,
     /// The same on the inner side.
     inner_of_pieces: Vec<LabelId>,
-    /// By cut face, where the lists of its three sides begin, relative to that of the face.
-    starts: FxHashMap<FaceId, [u32; 3]>,
+    /// By cut face met, where the lists of its three sides begin.
+    starts: Vec<[u32; 3]>,
 }
 
 impl FaceLabels {
@@ -65,7 +63,7 @@ impl FaceLabels {
                 inner: vec![LabelId::NONE; count],
                 of_pieces: Vec::new(),
                 inner_of_pieces: Vec::new(),
-                starts: FxHashMap::default(),
+                starts: Vec::new(),
             },
             stack: Vec::new(),
         };
@@ -94,7 +92,7 @@ impl FaceLabels {
     /// The labels on the outer side of a cut face along its side k, from the low end of the edge to the high end: one more than
     /// there are nodes; and those on the inner side.
     pub(crate) fn of_side(&self, face: FaceId, k: usize, nodes: usize) -> [&[LabelId]; 2] {
-        let first = (self.of_face[face.index()] + self.starts[&face][k]) as usize;
+        let first = self.starts[self.of_face[face.index()] as usize][k] as usize;
         let range = first..=first + nodes;
         [&self.of_pieces[range.clone()], &self.inner_of_pieces[range]]
     }
@@ -125,27 +123,27 @@ impl Walk<'_> {
             return;
         }
         // Room for the labels of the three sides.
-        let mut starts = [0; 3];
-        let mut count = 0;
-        for (k, start) in starts.iter_mut().enumerate() {
-            *start = count;
-            count += self.lines.on_edge(self.edges.edge(face, k)).len() as u32 + 1;
-        }
         let first = self.found.of_pieces.len() as u32;
-        self.found.of_face[face.index()] = first;
-        self.found.of_pieces.resize((first + count) as usize, LabelId::NONE);
-        self.found.starts.insert(face, starts);
+        let mut starts = [0; 3];
+        let mut end = first;
+        for (k, start) in starts.iter_mut().enumerate() {
+            *start = end;
+            end += self.lines.on_edge(self.edges.edge(face, k)).len() as u32 + 1;
+        }
+        self.found.of_face[face.index()] = self.found.starts.len() as u32;
+        self.found.of_pieces.resize(end as usize, LabelId::NONE);
+        self.found.starts.push(starts);
         // Round the face, from the known side on.
         let mut known = (at_low, label);
         for i in 0..3 {
             let k = (side.place() + i) % 3;
-            let end = self.along_side(face, k, (first + starts[k]) as usize, known);
+            let last = self.along_side(face, k, starts[k] as usize, known);
             if i < 2 {
                 let (_, next_is_forward) = self.edges.of_side(self.surfaces, face, (k + 1) % 3);
-                known = (next_is_forward, self.round_corner(face, (k + 1) % 3, end));
+                known = (next_is_forward, self.round_corner(face, (k + 1) % 3, last));
             }
         }
-        for place in first as usize..(first + count) as usize {
+        for place in first as usize..end as usize {
             let inner = self.found.labels.step(self.found.of_pieces[place], owner, step);
             self.found.inner_of_pieces.push(inner);
         }

@@ -28,6 +28,7 @@ mod splits;
 
 use crate::boolean::complex::ids::PointId;
 use crate::boolean::cut::piece::Piece;
+use crate::boolean::rounding::Rounding;
 use crate::parallel::Runner;
 use crate::{Control, Error};
 use face::LocalPoint;
@@ -45,8 +46,8 @@ const MOST_ROUNDS: usize = 3;
 pub(super) struct Settings {
     /// Whether needless vertices are removed, and faces of one plane triangulated together.
     pub(super) remove_vertices: bool,
-    /// What a rounded point can be off, in units of the coordinates: edges and heights up to this are not worth a triangle.
-    pub(super) rounding: f64,
+    /// Edges and heights that are not worth a triangle.
+    pub(super) rounding: Rounding,
     /// Whether points at the same place are snapped to one where operands touch.
     pub(super) glue: bool,
     /// How many decisions plain coordinates left open: without any, nothing touches.
@@ -130,13 +131,12 @@ fn attempt(
         control.check()?;
         // 5. Needless vertices are removed.
         if settings.remove_vertices {
-            flip::flip_low(&mut patch, 0.0);
+            flip::flip_low(&mut patch, Rounding::has_no_height);
             remove_vertices::remove_vertices(&mut patch, candidates.clone(), control)?;
         }
         // 6. Edges within rounding are collapsed, and slivers within rounding flipped.
-        let rounding = patch.source().rounding;
-        short_edges::collapse(&mut patch, rounding);
-        flip::flip_low(&mut patch, rounding);
+        short_edges::collapse(&mut patch);
+        flip::flip_low(&mut patch, Rounding::is_low);
         // 7. Again, if that has left triangles without area.
         if !flatness::has_flat(&patch) {
             break;
@@ -183,8 +183,13 @@ mod tests {
         let arrangement = Arrangement::new(curve, Vec::new(), true, runner).unwrap();
         let parts = multiplicity::parts(Operation::Intersection);
         let body = Body { arrangement: &arrangement, windings: &windings, parts };
-        let settings =
-            Settings { remove_vertices: true, rounding: 1e-15, glue: false, contacts: 0, always: true };
+        let settings = Settings {
+            remove_vertices: true,
+            rounding: Rounding::up_to(6.0),
+            glue: false,
+            contacts: 0,
+            always: true,
+        };
         tidy(Ground::Body(body), pieces, &settings, runner).unwrap().expect("it was asked for")
     }
 

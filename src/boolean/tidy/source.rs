@@ -9,6 +9,7 @@ use crate::boolean::classify::body::Body;
 use crate::boolean::complex::ids::PointId;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::shape::Shape;
+use crate::boolean::rounding::Rounding;
 use crate::exact::Projection;
 
 /// An uncut triangle that the result keeps.
@@ -35,8 +36,8 @@ pub(crate) enum Ground<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
     pub(super) ground: Ground<'a>,
-    /// What a rounded point can be off, in units of the coordinates.
-    pub(super) rounding: f64,
+    /// Edges and heights that rounding can make.
+    pub(super) rounding: Rounding,
     /// Whether the operands touch: plain coordinates left some decision open.
     pub(super) has_contacts: bool,
 }
