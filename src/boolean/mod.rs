@@ -37,6 +37,8 @@ mod tidy;
 pub use complex::operation::{Contact, Operation, UnknownName};
 pub use complex::origin::Origin;
 pub use expression::{Expression, ExpressionError, Rule};
+pub use general::embed::{Embedding, Grid};
+pub use many::made::Embed;
 pub use many::options::BooleanOptions;
 pub use result::certificate::{Certificate, OperandState};
 pub use result::outcome::Outcome;

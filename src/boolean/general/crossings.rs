@@ -164,7 +164,8 @@ fn sides(plane: &[[f64; 3]; 3], points: &[[f64; 3]; 3], wanted: [bool; 3]) -> Si
 fn separated_in_plane(triangle: &[[f64; 3]; 3], points: &[[f64; 3]; 3], wanted: [bool; 3]) -> bool {
     let seen = Projection::of(triangle);
     let corners = triangle.map(|p| seen.project(&p));
-    if orient2d(corners[0], corners[1], corners[2]) == Sign::Negative {
+    // (One without area has no sides that are sure to stay apart.)
+    if orient2d(corners[0], corners[1], corners[2]) != Sign::Positive {
         return false;
     }
     let points = points.map(|p| seen.project(&p));

@@ -69,7 +69,9 @@ pub(crate) fn evaluate(
         }
     };
     let arrays = assemble(&shape, &pieces, replaced.as_ref());
-    let arrays = Assembled { has_inverted: cut.has_inverted, clean_up_stopped, ..arrays };
+    let has_inverted = cut.has_inverted;
+    let may_cross = has_inverted || rounding.has_low(&pieces, |point| shape.position(point));
+    let arrays = Assembled { has_inverted, may_cross, clean_up_stopped, ..arrays };
     Ok(Evaluated { arrays, walls_left: sums.declined })
 }
 

@@ -1,5 +1,6 @@
 //! Expressions of any number of operands, in one arrangement.
 
+use super::made::Made;
 use super::{MergedGroups, Policy, merged_groups, no_operands};
 use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::expression::{Expression, Rule};
@@ -108,12 +109,8 @@ impl Arranged<'_> {
                 |origin: crate::Origin| self.of_triangles[origin.operand as usize][origin.triangle as usize];
             of_triangle = arrays.origins.iter().map(group).collect();
         }
-        let mut solid = Solid::from_closed_unchecked(Mesh::new(arrays.positions, arrays.triangles));
-        if policy.contact == Contact::Fuse {
-            solid.set_made_clean();
-        }
+        let solid = Solid::from_closed_unchecked(Mesh::new(arrays.positions, arrays.triangles));
         let inverted = if arrays.has_inverted { self.count_inverted(&solid, &arrays.origins) } else { 0 };
-        solid.set_groups(FaceGroups { list: self.groups.list.clone(), of_triangle });
         let notes = Notes {
             contacts: self.general.contacts,
             inverted,
@@ -121,8 +118,17 @@ impl Arranged<'_> {
             three_face_points: self.general.lines.triples.len() as u64,
             walls_left: made.walls_left,
             operands: self.states(),
+            ..Notes::default()
         };
-        Ok(Outcome::new(solid, arrays.origins, notes))
+        let made = Made {
+            may_cross: arrays.may_cross,
+            origins: arrays.origins,
+            groups: FaceGroups { list: self.groups.list.clone(), of_triangle },
+            solid,
+            notes,
+            is_clean: policy.contact == Contact::Fuse,
+        };
+        made.finish(policy, runner)
     }
 
     /// What is known of each operand.

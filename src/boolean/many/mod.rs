@@ -5,6 +5,7 @@
 //! smallest operands; a symmetric difference goes from left to right.
 
 mod expressions;
+pub(super) mod made;
 mod merge_order;
 pub(super) mod options;
 
@@ -22,6 +23,7 @@ use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
 use expressions::Wanted;
+use made::{Embed, Made};
 
 /// From this many triangles on, threads are worth waking.
 const PARALLEL_FROM: usize = 4_096;
@@ -37,6 +39,8 @@ pub(crate) struct Policy {
     pub(crate) assume_clean: bool,
     /// What is inside an operand, unless it has a rule of its own.
     pub(crate) rule: Rule,
+    /// What becomes of crossings that rounding makes.
+    pub(crate) embed: Embed,
 }
 
 /// An operand, or what some of them have become.
@@ -50,13 +54,23 @@ struct Partial<'a> {
     contacts: u64,
     /// Whether rounding turned over some triangle on the way.
     may_be_inverted: bool,
+    /// Whether rounding may have made something cross on the way.
+    may_cross: bool,
     /// How often a step of the clean-up stopped at its bound on the way.
     clean_up_stopped: u64,
 }
 
 impl<'a> Partial<'a> {
     fn new(solid: Cow<'a, Solid>, origins: Origins, groups: Vec<u32>) -> Self {
-        Self { solid, origins, groups, contacts: 0, may_be_inverted: false, clean_up_stopped: 0 }
+        Self {
+            solid,
+            origins,
+            groups,
+            contacts: 0,
+            may_be_inverted: false,
+            may_cross: false,
+            clean_up_stopped: 0,
+        }
     }
 
     /// The middle of its box.
@@ -137,7 +151,15 @@ fn run_in_pairs(
         ..Notes::default()
     };
     let is_clean = policy.contact == Contact::Fuse && operands.iter().all(|solid| solid.is_known_clean());
-    Ok(finish(result, groups.list, notes, is_clean))
+    let made = Made {
+        may_cross: result.may_cross,
+        origins: result.origins,
+        groups: FaceGroups { list: groups.list, of_triangle: result.groups },
+        solid: result.solid.into_owned(),
+        notes,
+        is_clean,
+    };
+    made.finish(policy, runner)
 }
 
 struct Engine<'o> {
@@ -212,6 +234,7 @@ impl Engine<'_> {
             groups,
             contacts: a.contacts + b.contacts + contacts,
             may_be_inverted: a.may_be_inverted || b.may_be_inverted || made.has_inverted,
+            may_cross: a.may_cross || b.may_cross || made.may_cross,
             clean_up_stopped: a.clean_up_stopped + b.clean_up_stopped + made.clean_up_stopped,
         })
     }
@@ -234,15 +257,6 @@ fn count_inverted(result: &Partial<'_>, operands: &[&Solid]) -> u64 {
 
 fn no_operands() -> Error {
     Error::InvalidArgument("a boolean needs at least one operand".into())
-}
-
-fn finish(result: Partial<'_>, list: Vec<FaceGroup>, notes: Notes, is_clean: bool) -> Outcome {
-    let mut solid = result.solid.into_owned();
-    if is_clean {
-        solid.set_made_clean();
-    }
-    solid.set_groups(FaceGroups { list, of_triangle: result.groups });
-    Outcome::new(solid, result.origins, notes)
 }
 
 /// The groups of all operands together; equal ones become one.

@@ -1,6 +1,7 @@
 //! Settings of a boolean.
 
 use super::expressions::{self, Wanted};
+use super::made::Embed;
 use super::{Policy, run};
 use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::expression::{Expression, Rule};
@@ -31,6 +32,7 @@ impl Default for BooleanOptions {
                 remove_vertices: true,
                 assume_clean: false,
                 rule: Rule::Positive,
+                embed: Embed::default(),
             },
             rules: Vec::new(),
         }
@@ -96,6 +98,13 @@ impl BooleanOptions {
     #[must_use]
     pub fn assume_clean(mut self, assume: bool) -> Self {
         self.policy.assume_clean = assume;
+        self
+    }
+
+    /// What becomes of crossings that rounding makes. Default: [`Embed::WhereNeeded`].
+    #[must_use]
+    pub fn embed(mut self, embed: Embed) -> Self {
+        self.policy.embed = embed;
         self
     }
 

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::Solid;
+use crate::boolean::general::embed::Embedding;
 use crate::exact::collinear;
 
 /// What a result is, and what making it met.
@@ -43,6 +44,8 @@ pub struct Certificate {
     pub three_face_points: u64,
     /// Planes in which faces touch that could not be added up: there walls without thickness may be left.
     pub walls_left: u64,
+    /// What was done about crossings that rounding makes; `None` where nothing gave reason to look for any.
+    pub embedding: Option<Embedding>,
     /// For each operand what is known of its crossings with itself.
     pub operands: Vec<OperandState>,
 }
@@ -96,6 +99,7 @@ pub(crate) struct Notes {
     pub(crate) inverted: u64,
     pub(crate) three_face_points: u64,
     pub(crate) walls_left: u64,
+    pub(crate) embedding: Option<Embedding>,
     pub(crate) operands: Vec<OperandState>,
 }
 
@@ -129,6 +133,7 @@ impl Certificate {
             clean_up_stopped: notes.clean_up_stopped,
             three_face_points: notes.three_face_points,
             walls_left: notes.walls_left,
+            embedding: notes.embedding,
             operands: notes.operands.clone(),
         }
     }
