@@ -103,9 +103,18 @@ pub(crate) fn remedy(
         };
         sets.push((names.join(" "), tried));
     }
-    sets.into_iter().find_map(|(options, tried)| {
-        let usable = operands::tried(mesh.clone(), tried, assume_clean, control).ok()?;
-        let mending = usable.solid.mending();
-        (!usable.solid.is_empty()).then(|| Remedy { options, effect: operands::effect(mending) })
-    })
+    let mut crossing = None;
+    for (options, tried) in sets {
+        let Ok(usable) = operands::tried(mesh.clone(), tried, assume_clean, control) else { continue };
+        if usable.solid.is_empty() {
+            continue;
+        }
+        let remedy = Remedy { options, effect: operands::effect(usable.solid.mending()) };
+        // What crosses itself afterwards is usable as well, but the second choice.
+        if usable.crossings.is_none_or(|crossings| crossings.count == 0) {
+            return Some(remedy);
+        }
+        crossing.get_or_insert(remedy);
+    }
+    crossing
 }

@@ -179,7 +179,7 @@ impl Gate {
         let distance = || match self.weld {
             Welding::Rounding => None,
             Welding::Within(distance) => Some(distance),
-            Welding::Closing => mend::closing_distance(mesh, &cleaned.triangles, &cleaned.source),
+            Welding::Closing => mend::closing_distance(mesh, &cleaned.triangles),
         };
         // What is asked for is done only where what is certain does not do.
         let by_distance = || {

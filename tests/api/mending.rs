@@ -193,7 +193,9 @@ fn the_least_distance_that_closes_is_found() {
     assert!((distance / (1e-3 * 3f64.sqrt()) - 1.0).abs() < 1e-9, "{distance}");
     assert_eq!(solid.mending().seams.count, 2);
     assert!(Gate::new().weld(Welding::Within(distance)).solid(mesh.clone()).is_ok());
-    assert!(Gate::new().weld(Welding::Within(distance.next_down())).solid(mesh).is_err());
+    // By less, only if edges are split as well.
+    let less = Gate::new().weld(Welding::Within(distance.next_down())).solid(mesh);
+    assert!(less.is_err() || less.is_ok_and(|solid| solid.mending().split_edges.count > 0));
 }
 
 #[test]
@@ -246,7 +248,8 @@ mod damage {
         for _ in 0..random.random_range(1..6) {
             let (triangle, corner) = (any(mesh, random), random.random_range(0..3));
             let place = vertex_of(mesh, triangle, corner);
-            let size = place.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+            // The origin has no rounding of its own: that of the places around it counts there.
+            let size = place.iter().fold(0.0f64, |size, x| size.max(x.abs())).max(0.5);
             let off = |random: &mut ChaCha8Rng| {
                 random.random_range(-1.0..1.0) * size * f64::from(f32::EPSILON) * 0.4
             };

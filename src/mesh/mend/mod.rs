@@ -91,25 +91,30 @@ fn mend_with<'a>(
 }
 
 /// The least distance within which joining vertices (and splitting edges) closes the surface of `triangles`; `None` if none
-/// up to a thousandth of its size does, or if it is closed.
-pub(super) fn closing_distance(mesh: &Mesh, triangles: &[[u32; 3]], source: &[u32]) -> Option<f64> {
-    /// Powers of ten of the size that are tried: from what single precision rounds to what is seen.
-    const DIGITS: std::ops::RangeInclusive<i32> = 3..=9;
-    let surface = Surface::new(mesh, triangles.to_vec(), source.to_vec());
-    let corners = triangles.iter().flatten().map(|&corner| &mesh.positions[corner as usize]);
+/// up to a thousandth of its size does, or if it is closed. (The least of those tried: the more is joined the more cancels, but
+/// for what is joined too much.)
+pub(super) fn closing_distance(mesh: &Mesh, triangles: &[[u32; 3]]) -> Option<f64> {
+    /// Parts of the size that are tried, ascending: from what single precision rounds to what is seen, four to a power of ten.
+    const DIGITS: std::ops::RangeInclusive<i32> = 4..=9;
+    const QUARTERS: [f64; 4] = [1.8, 3.2, 5.6, 10.0];
+    let positions = &mesh.positions;
+    let edges = weld::boundary(triangles, positions.len());
+    let corners = triangles.iter().flatten().map(|&corner| &positions[corner as usize]);
     let size = Bounds::of(corners)?.diagonal();
-    if chain::examine(triangles, mesh.positions.len()).is_ok_and(|chain| chain.closed) {
+    if edges.is_empty() {
         return None;
     }
+    let usable = |distance: f64| distance > 0.0 && distance.is_finite();
     // By joining vertices where that does, else by splitting edges as well.
     [Splits::ByRounding, Splits::ByDistance].into_iter().find_map(|splits| {
-        let mut tried = DIGITS.rev().map(|digits| size * 10f64.powi(-digits));
-        let usable = |distance: f64| distance > 0.0 && distance.is_finite();
-        let coarse = tried.find(|&distance| usable(distance) && sew::closes(&surface, distance, splits))?;
+        let closes = |distance: f64| usable(distance) && sew::closes(positions, &edges, distance, splits);
+        let mut tried =
+            DIGITS.rev().flat_map(|digits| QUARTERS.map(|part| size * part * 10f64.powi(-digits)));
+        let coarse = tried.find(|&distance| closes(distance))?;
         // What is joined within that distance is no further apart than one of these.
-        let gaps = sew::gaps(&surface, coarse);
-        let least = gaps.partition_point(|&gap| !sew::closes(&surface, gap, splits));
-        Some(gaps.get(least).copied().unwrap_or(coarse))
+        let gaps = sew::gaps(positions, &edges, coarse);
+        let least = gaps.partition_point(|&gap| !closes(gap));
+        Some(gaps.get(least).copied().filter(|&gap| closes(gap)).unwrap_or(coarse))
     })
 }
 

@@ -30,8 +30,8 @@ pub(super) enum Splits {
 }
 
 /// What would be done to the open edges of a surface.
-struct Plan {
-    edges: Vec<OpenEdge>,
+struct Plan<'a> {
+    edges: &'a [OpenEdge],
     reaches: Reaches,
     /// For each vertex of `reaches` the one it joins.
     targets: Vec<u32>,
@@ -47,7 +47,8 @@ struct Plan {
 
 /// Joins and splits. Returns whether something was found and not done, because it would not close the surface there.
 pub(super) fn sew(surface: &mut Surface<'_>, how: Sewing) -> bool {
-    let plan = Plan::new(surface, how);
+    let edges = weld::boundary(&surface.triangles, surface.mesh.positions.len());
+    let plan = Plan::new(&surface.mesh.positions, &edges, how);
     let done = |vertex: u32| !how.where_it_closes || plan.closes[plan.part_of(vertex)];
     let found = plan.joins().map(|(vertex, _)| vertex).chain(plan.splits().map(|((low, _), _)| low));
     let rejected = found.clone().any(|vertex| !done(vertex));
@@ -60,16 +61,16 @@ pub(super) fn sew(surface: &mut Surface<'_>, how: Sewing) -> bool {
 }
 
 /// Whether all open edges cancel once vertices within `distance` are joined and those on edges split them.
-pub(super) fn closes(surface: &Surface<'_>, distance: f64, splits: Splits) -> bool {
+pub(super) fn closes(positions: &[[f64; 3]], edges: &[OpenEdge], distance: f64, splits: Splits) -> bool {
     let how = Sewing { distance: Some(distance), splits, where_it_closes: true };
-    Plan::new(surface, how).closes.iter().all(|&closes| closes)
+    Plan::new(positions, edges, how).closes.iter().all(|&closes| closes)
 }
 
 /// How far apart the vertices are that are joined within `distance`, ascending.
-pub(super) fn gaps(surface: &Surface<'_>, distance: f64) -> Vec<f64> {
+pub(super) fn gaps(positions: &[[f64; 3]], edges: &[OpenEdge], distance: f64) -> Vec<f64> {
     let how = Sewing { distance: Some(distance), splits: Splits::None, where_it_closes: true };
-    let plan = Plan::new(surface, how);
-    let place = |vertex: u32| &surface.mesh.positions[vertex as usize];
+    let plan = Plan::new(positions, edges, how);
+    let place = |vertex: u32| &positions[vertex as usize];
     let mut gaps: Vec<f64> =
         plan.joins().map(|(vertex, target)| apart(place(vertex), place(target))).collect();
     gaps.sort_unstable_by(f64::total_cmp);
@@ -77,12 +78,11 @@ pub(super) fn gaps(surface: &Surface<'_>, distance: f64) -> Vec<f64> {
     gaps
 }
 
-impl Plan {
-    fn new(surface: &Surface<'_>, how: Sewing) -> Self {
+impl<'a> Plan<'a> {
+    fn new(positions: &[[f64; 3]], edges: &'a [OpenEdge], how: Sewing) -> Self {
         // 1. Who joins whom.
-        let edges = weld::boundary(&surface.triangles, surface.mesh.positions.len());
-        let reaches = Reaches::new(&surface.mesh.positions, &edges, how.distance);
-        let targets = seams::targets(&surface.mesh.positions, &reaches);
+        let reaches = Reaches::new(positions, edges, how.distance);
+        let targets = seams::targets(positions, &reaches);
         let mut plan = Self {
             edges,
             reaches,
@@ -100,10 +100,10 @@ impl Plan {
         plan.open = sums(joined.collect());
         plan.on_open = vec![Vec::new(); plan.open.len()];
         if how.splits != Splits::None {
-            let by_rounding = Reaches::new(surface.mesh.positions.as_slice(), &plan.edges, None);
+            let by_rounding = Reaches::new(positions, edges, None);
             let reaches = if how.splits == Splits::ByRounding { &by_rounding } else { &plan.reaches };
             let ends: Vec<(u32, u32)> = plan.open.iter().map(|&(low, high, _)| (low, high)).collect();
-            if let Some(found) = splits::on_edges(&surface.mesh.positions, &ends, reaches) {
+            if let Some(found) = splits::on_edges(positions, &ends, reaches) {
                 plan.on_open = found;
             }
         }
@@ -117,7 +117,7 @@ impl Plan {
         for (vertex, &target) in self.reaches.vertices().iter().zip(&self.targets) {
             parts.join(self.number(*vertex), self.number(target));
         }
-        for edge in &self.edges {
+        for edge in self.edges {
             parts.join(self.number(edge.from), self.number(edge.to));
         }
         let mut pieces = Vec::new();
