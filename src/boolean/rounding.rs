@@ -16,6 +16,8 @@ use crate::mesh::scale;
 pub(crate) struct Rounding {
     /// The largest coordinate of both operands.
     largest: f64,
+    /// The distance from 1 to the next number that coordinates are rounded to.
+    unit: f64,
 }
 
 /// A question about the height of a triangle.
@@ -24,14 +26,19 @@ pub(crate) type IsLow = fn(&Rounding, [&[f64; 3]; 3]) -> bool;
 impl Rounding {
     /// For points whose coordinates are no larger than this.
     pub(crate) fn up_to(largest: f64) -> Self {
-        Self { largest }
+        Self { largest, unit: f64::EPSILON }
+    }
+
+    /// The same for coordinates that are rounded to a coarser grid: `unit` is the distance from 1 to the next number there.
+    pub(crate) fn in_units_of(self, unit: f64) -> Self {
+        Self { unit, ..self }
     }
 
     /// Whether two points are no further apart along each axis than rounding.
     #[inline]
     pub(crate) fn is_short(&self, p: &[f64; 3], q: &[f64; 3]) -> bool {
         let longest = (0..3).fold(0.0f64, |longest, k| longest.max((p[k] - q[k]).abs()));
-        let length = |size: f64| ROUNDING_ULPS * f64::EPSILON * size;
+        let length = |size: f64| ROUNDING_ULPS * self.unit * size;
         let own = || largest_coordinate(p).max(largest_coordinate(q));
         longest <= length(self.largest) && longest <= length(size_at_hand(self.largest, own()))
     }
@@ -62,7 +69,7 @@ impl Rounding {
         // 1. Nearly always no, by the largest coordinate there is. (What is not a number is looked at again.)
         let corners = corners.map(|corner| DVec3::from_array(*corner));
         let (area, longest) = twice_area_and_longest_side(corners);
-        let height = ulps * f64::EPSILON * self.largest;
+        let height = ulps * self.unit * self.largest;
         if area > height * height * longest {
             return false;
         }
@@ -80,7 +87,7 @@ impl Rounding {
             _ => [c, b, a],
         };
         let size = self.size_beside(from, middle, to, factor);
-        let height = ulps * f64::EPSILON * size;
+        let height = ulps * self.unit * size;
         let area = if is_far(longest, size) { area_from_near_end(from, middle, to) } else { area };
         area <= height * height * longest
     }
@@ -89,7 +96,7 @@ impl Rounding {
     pub(crate) fn is_near_line(&self, p: &[f64; 3], at: &[f64; 3], q: &[f64; 3]) -> bool {
         let (factor, [from, middle, to]) = near_one([p, at, q].map(|point| DVec3::from_array(*point)));
         let (size, longest) = (self.size_beside(from, middle, to, factor), from.distance_squared(to));
-        let distance = 2.0 * ROUNDING_ULPS * f64::EPSILON * size;
+        let distance = 2.0 * ROUNDING_ULPS * self.unit * size;
         let area = if is_far(longest, size) {
             area_from_near_end(from, middle, to)
         } else {

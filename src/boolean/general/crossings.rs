@@ -7,7 +7,7 @@
 use super::edges::Edges;
 use super::surfaces::Surfaces;
 use crate::Error;
-use crate::boolean::arrangement::cut_edges::compare_by_sides;
+use crate::boolean::arrangement::cut_edges::compare_with_plane;
 use crate::boolean::complex::Corner;
 use crate::boolean::complex::ids::{EdgeId, FaceId, NodeId, PointId, SegmentId, VertexId};
 use crate::boolean::complex::predicates::{Perturbed, Plane, Predicates};
@@ -374,7 +374,7 @@ pub(crate) fn compare_on_edge(
         node.leaves,
         low_inside,
     )
-    .or_else(|| compare_by_sides(predicates, &t1, &t2, node.leaves, low_inside))
+    .or_else(|| compare_with_plane(predicates, &t1, &t2, low_inside))
     .unwrap_or_else(|| {
         let point = |corner: &Corner| surfaces.perturbed(corner);
         let (t1, t2) = (t1.each_ref().map(point), t2.each_ref().map(point));
@@ -414,7 +414,7 @@ impl Search<'_> {
     /// Whether two faces lie in exactly one plane.
     fn may_touch(&self, a: &[Corner; 3], b: &[Corner; 3]) -> bool {
         let [p, q, r] = a.each_ref().map(|corner| &corner.position);
-        let filter = crate::exact::PlaneFilter::new(p, q, r);
+        let filter = PlaneFilter::new(p, q, r);
         let is_off = |corner: &Corner| {
             let (determinant, bound) = filter.determinant(&corner.position);
             determinant.abs() > bound

@@ -24,6 +24,16 @@ pub enum Grid {
     Single,
 }
 
+impl Grid {
+    /// The distance from 1 to the next number.
+    fn unit(self) -> f64 {
+        match self {
+            Self::Double => f64::EPSILON,
+            Self::Single => f64::from(f32::EPSILON),
+        }
+    }
+}
+
 /// What was done to free a result of crossings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -39,11 +49,16 @@ pub struct Embedding {
 
 /// Rounds at most.
 const MOST_ROUNDS: u32 = 10;
-/// From this round on the grid grows.
-const COARSER_FROM: u32 = 3;
+/// From this round on the grid grows,
+const COARSER_FROM: u32 = 2;
+/// by so many bits a round. (With 1, what rounding moves crosses new neighbours in round after round: of 1,200 results of random
+/// bodies on coarse grids, turned and not, five grew without end; see docs/proof.md.)
+const BITS_A_ROUND: u32 = 3;
+/// Where more triangles cross than so many times the fewest so far, it is given up.
+const GROWTH: usize = 4;
 
 /// A result that is to be freed of crossings: for each triangle where it came from and its group.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Parts {
     pub(crate) positions: Vec<[f64; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,
@@ -64,10 +79,11 @@ pub(crate) fn embed(
 ) -> Result<(Parts, Embedding), Error> {
     let mut report = Embedding::default();
     let mut troubled: Vec<u32> = Vec::new();
+    let mut best: Option<(Parts, Embedding)> = None;
     loop {
         // 1. The grid: a coarser one where it goes on too long.
         report.displacement += round(&mut parts, grid, coarser(report.rounds), &troubled);
-        if grid == Grid::Single || report.rounds + 1 >= COARSER_FROM {
+        if grid == Grid::Single || coarser(report.rounds) > 0 {
             merge(&mut parts);
         }
         // 2. What crosses.
@@ -75,17 +91,24 @@ pub(crate) fn embed(
         let solid = Solid::from_closed_unchecked(compact(mesh));
         let crossed = Crossed::new(&[&solid], std::slice::from_ref(&parts.groups), &[false], runner)?;
         troubled = crossed.troubled();
-        if crossed.is_embedded() || report.rounds == MOST_ROUNDS {
-            report.left = troubled.len();
-            let Mesh { positions, triangles, .. } = solid.into_mesh();
-            return Ok((Parts { positions, triangles, ..parts }, report));
+        report.left = troubled.len();
+        let fewest = best.as_ref().map_or(usize::MAX, |(_, report)| report.left);
+        let is_hopeless = report.rounds == MOST_ROUNDS || report.left > GROWTH.saturating_mul(fewest);
+        if report.left < fewest {
+            let Mesh { positions, triangles, .. } = solid.mesh().clone();
+            let (origins, groups) = (parts.origins.clone(), parts.groups.clone());
+            best = Some((Parts { positions, triangles, origins, groups }, report));
         }
-        // 3. Its resolution.
+        if report.left == 0 || is_hopeless {
+            return Ok(best.expect("the first round is better than none"));
+        }
+        // 3. Its resolution; what is thinner than the next grid is cleaned up.
         report.rounds += 1;
         let general = General::new(crossed, true, runner)?;
         let inside: Vec<bool> =
             general.faces.labels.all().iter().map(|label| winding(label, 0) > 0).collect();
-        let arrays = evaluate(&general, &inside, remove_vertices, false, runner)?.arrays;
+        let unit = grid.unit() * f64::from(coarser(report.rounds)).exp2();
+        let arrays = evaluate(&general, &inside, remove_vertices, unit, runner)?.arrays;
         let before = &parts;
         let origins = arrays.origins.iter().map(|origin| {
             let source = before.origins[origin.triangle as usize];
@@ -111,7 +134,7 @@ fn descendants(of: &[u32], sources: &[u32]) -> Vec<u32> {
 
 /// By how many bits the grid is coarser in a round.
 fn coarser(rounds: u32) -> u32 {
-    (rounds + 1).saturating_sub(COARSER_FROM - 1)
+    BITS_A_ROUND * (rounds + 1).saturating_sub(COARSER_FROM)
 }
 
 /// Rounds all positions to the grid, those of some triangles to one that is coarser by some bits. Returns how far a point has
@@ -147,13 +170,9 @@ fn single(x: f64) -> f64 {
 
 /// A coordinate rounded to a multiple of a spacing: that of the grid at the largest coordinate of its point, times 2^bits.
 fn to_spacing(x: f64, largest: f64, grid: Grid, bits: u32) -> f64 {
-    let digits = match grid {
-        Grid::Double => f64::MANTISSA_DIGITS,
-        Grid::Single => f32::MANTISSA_DIGITS,
-    };
     // The power of two below the largest coordinate.
     let leading = f64::from_bits(largest.to_bits() & 0x7ff0_0000_0000_0000);
-    let spacing = leading * (f64::from(bits) - f64::from(digits - 1)).exp2();
+    let spacing = leading * grid.unit() * f64::from(bits).exp2();
     if spacing == 0.0 || !spacing.is_normal() {
         return x;
     }

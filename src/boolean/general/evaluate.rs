@@ -31,7 +31,8 @@ pub(crate) struct Evaluated {
     pub(crate) walls_left: u64,
 }
 
-/// The surface of the set of all labels that are `inside`.
+/// The surface of the set of all labels that are `inside`. `unit`: the distance from 1 to the next number that coordinates are
+/// rounded to; what is thinner is cleaned up.
 ///
 /// # Errors
 /// Only limits.
@@ -39,10 +40,10 @@ pub(crate) fn evaluate(
     general: &General,
     inside: &[bool],
     remove_vertices: bool,
-    glue: bool,
+    unit: f64,
     runner: Runner<'_>,
 ) -> Result<Evaluated, Error> {
-    let rounding = Rounding::up_to(general.surfaces.largest_coordinate());
+    let rounding = Rounding::up_to(general.surfaces.largest_coordinate()).in_units_of(unit);
     let mut shape = Shape::new(general, inside);
     // 1. Sheets are added up.
     let mut sums = add_up(&mut shape, runner)?;
@@ -53,7 +54,7 @@ pub(crate) fn evaluate(
     let settings = tidy::Settings {
         remove_vertices,
         rounding,
-        glue,
+        glue: false,
         contacts: general.contacts,
         always: cut.has_slivers || !sums.done.is_empty(),
     };

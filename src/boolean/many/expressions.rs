@@ -100,7 +100,7 @@ impl Arranged<'_> {
         let inside: Vec<bool> =
             self.general.faces.labels.all().iter().map(|label| is_inside(label)).collect();
         // 2. Their surface.
-        let made = evaluate(self.general, &inside, policy.remove_vertices, false, runner)?;
+        let made = evaluate(self.general, &inside, policy.remove_vertices, f64::EPSILON, runner)?;
         // 3. What is known of it.
         let arrays = made.arrays;
         let mut of_triangle = Vec::new();
