@@ -91,7 +91,8 @@ pub mod render;
 pub mod spatial;
 
 pub use boolean::{
-    BooleanOptions, Certificate, Contact, OperandState, Operation, Origin, Outcome, UnknownName, boolean,
+    BooleanOptions, Certificate, Contact, NearContact, NearContacts, OperandState, Operation, Origin,
+    Outcome, UnknownName, boolean,
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};

@@ -36,6 +36,7 @@ pub use complex::operation::{Contact, Operation, UnknownName};
 pub use complex::origin::Origin;
 pub use many::options::BooleanOptions;
 pub use result::certificate::{Certificate, OperandState};
+pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;
 
 use crate::{Error, Solid};

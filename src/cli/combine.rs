@@ -53,6 +53,9 @@ pub(crate) fn run(
     let mut result = measures.to_json();
     result.insert("certificate".into(), report::certificate(outcome.certificate()));
     session.note("result", result);
+    if let Some(warning) = report::nearly_flush(outcome.certificate()) {
+        session.warn(warning);
+    }
     let format = operands.first().map(|operand| operand.format);
     write(arguments, &targets, &outcome, format, session)?;
     let names: Vec<String> = targets.iter().map(Target::name).collect();
