@@ -203,9 +203,9 @@ pub(crate) fn nearly_flush(certificate: &Certificate) -> Option<String> {
         .collect();
     (near.count > 0).then(|| {
         format!(
-            "{} of the result nearly flush with a face of another operand, apart by {}{}: films or gaps that thin are \
+            "{} nearly flush with a face of another operand, apart by {}{}: films or gaps that thin are \
              lost in single precision (STL, GLB); give coordinates that are flush, or let the tool reach further",
-            if near.count == 1 { "1 corner is".into() } else { format!("{} corners are", near.count) },
+            if near.count == 1 { "1 corner of the result is".into() } else { format!("{} corners of the result are", near.count) },
             places.join(", "),
             if near.count > places.len() { ", ..." } else { "" },
         )

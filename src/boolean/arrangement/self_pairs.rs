@@ -1,22 +1,27 @@
-//! Pairs of triangles of one surface that may cross, without the pairs of a fan.
+//! Pairs of triangles of one surface that may cross, without the pairs of a fan or a strip.
 //!
 //! All triangles of a fan meet in its vertex, and so do their boxes: a cap of k triangles fanned from its centre has k^2 / 2 pairs.
 //! But two triangles with a common vertex cross only where they are seen from it one behind the other: the side of each that
 //! lies opposite the vertex is an arc of the sphere of directions, and the arcs meet. So around vertices with many triangles,
-//! *hubs*, boxes of arcs are tested in place of boxes of triangles; towards all others such a fan is one item, with a tree of its
-//! own. O(n log n) and the pairs that are found.
+//! *hubs*, boxes of arcs are tested in place of boxes of triangles; towards all others such a fan has a tree of its own. Needles
+//! side by side, as in the strip between two circles, have capsules in place of boxes, as those of two operands have.
+//! O(n log n) and the pairs that are found.
 
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 
-use crate::Mesh;
-use crate::control::Limit;
+use crate::boolean::candidates::capsule_tree::{self, CapsuleTree};
+use crate::boolean::candidates::has_needles;
+use crate::boolean::candidates::refined_boxes::Corners;
 use crate::mesh::Buckets;
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame, self_overlapping_pairs, visit_pairs};
+use crate::{Error, Mesh};
 
 /// Triangles around a vertex from which it is a hub: below, a tree for its fan costs more than the pairs, some twelve a triangle.
-const HUB_FROM: usize = 24;
+const HUB_FROM: u32 = 24;
+/// Triangles from which capsules pay, if a quarter of them are needles: below, a few pairs too many cost less.
+const CAPSULES_FROM: usize = 512;
 /// What a unit vector in single precision is off, at most, and something to spare.
 const MARGIN: f32 = 1e-6;
 /// No hub.
@@ -24,51 +29,57 @@ const NONE: u32 = u32::MAX;
 
 /// All pairs of triangles that may cross and that `wanted` accepts, each once with the smaller one first, in an order that depends
 /// on the mesh alone. `tree` has the boxes of all triangles in `frame`.
+///
+/// # Errors
+/// Only limits.
 pub(super) fn self_pairs(
     mesh: &Mesh,
     tree: &BoxTree,
     frame: &Frame,
     runner: Runner<'_>,
     wanted: impl Fn([u32; 2]) -> bool + Sync,
-) -> Result<Vec<[u32; 2]>, Limit> {
-    let fans = fans_of_hubs(mesh);
-    if fans.is_empty() {
-        return self_overlapping_pairs(tree, runner, wanted);
-    }
+) -> Result<Vec<[u32; 2]>, Error> {
+    let corners =
+        |t: u32| -> Corners { mesh.triangles[t as usize].map(|v| frame.point(&mesh.positions[v as usize])) };
     let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
+    let keep = |met: &[[u32; 2]], found: &mut Vec<[u32; 2]>| {
+        let ordered = met.iter().map(|&[s, t]| [s.min(t), s.max(t)]);
+        found.extend(ordered.filter(|&pair| wanted(pair)));
+    };
+    let (fans, free) = fans_of_hubs(mesh);
+    // 1. What is in no fan.
+    let mut pairs = if free.len() >= CAPSULES_FROM && has_needles(&free, corners) {
+        let _memory = runner.control.reserve((free.len() * CapsuleTree::BYTES_PER_ITEM) as u64)?;
+        let capsules = CapsuleTree::new(&free, corners);
+        // Both ways round, and every triangle with itself.
+        capsule_tree::visit_pairs(&capsules, &capsules, runner, |met, found| {
+            found.extend(met.iter().copied().filter(|&[s, t]| s < t && wanted([s, t])));
+        })?
+    } else if fans.is_empty() {
+        self_overlapping_pairs(tree, runner, &wanted)?
+    } else {
+        self_overlapping_pairs(&BoxTree::new(&free, box_of), runner, &wanted)?
+    };
+    if fans.is_empty() {
+        return Ok(pairs);
+    }
+    // 2. Within each fan, and between it and what is in none.
+    let free = BoxTree::new(&free, box_of);
     let trees: Vec<BoxTree> = fans.iter().map(|fan| BoxTree::new(&fan.triangles, box_of)).collect();
-    let ordered = |[s, t]: [u32; 2]| [s.min(t), s.max(t)];
-    // 1. Within each fan.
-    let mut pairs = Vec::new();
-    for fan in &fans {
+    for (fan, tree) in fans.iter().zip(&trees) {
         let arcs = BoxTree::new(&fan.triangles, |t| box_of_arc(mesh, fan.hub, t));
         pairs.extend(self_overlapping_pairs(&arcs, runner, &wanted)?);
+        pairs.extend(visit_pairs(tree, &free, runner, keep)?);
     }
-    // 2. Between fans, and what is in none: a fan is one item, numbered before all triangles.
-    let items = Items::new(mesh, &fans);
-    let round = |fan: &Fan| {
-        let mut boxes = fan.triangles.iter().map(|&t| box_of(t));
+    // 3. Between fans.
+    let numbers: Vec<u32> = (0..fans.len() as u32).collect();
+    let round = BoxTree::new(&numbers, |k| {
+        let mut boxes = fans[k as usize].triangles.iter().map(|&t| box_of(t));
         let first = boxes.next().unwrap_or(Aabb::INVALID);
         boxes.fold(first, |sum, next| Aabb { min: sum.min.min(next.min), max: sum.max.max(next.max) })
-    };
-    let top = BoxTree::new(&items.numbers, |item| match items.get(item) {
-        Item::Fan(fan) => round(&fans[fan]),
-        Item::Triangle(t) => box_of(t),
     });
-    for [x, y] in self_overlapping_pairs(&top, runner, |pair| items.is_wanted(pair, &wanted))? {
-        match (items.get(x), items.get(y)) {
-            (Item::Triangle(s), Item::Triangle(t)) => pairs.push(ordered([s, t])),
-            (Item::Fan(fan), Item::Triangle(t)) | (Item::Triangle(t), Item::Fan(fan)) => {
-                trees[fan].meeting(&box_of(t), |s| {
-                    pairs.extend(Some(ordered([s, t])).filter(|&pair| wanted(pair)))
-                });
-            }
-            (Item::Fan(one), Item::Fan(other)) => {
-                pairs.extend(visit_pairs(&trees[one], &trees[other], runner, |met, found| {
-                    found.extend(met.iter().map(|&pair| ordered(pair)).filter(|&pair| wanted(pair)));
-                })?);
-            }
-        }
+    for [x, y] in self_overlapping_pairs(&round, runner, |_| true)? {
+        pairs.extend(visit_pairs(&trees[x as usize], &trees[y as usize], runner, keep)?);
     }
     Ok(pairs)
 }
@@ -79,65 +90,29 @@ struct Fan {
     triangles: Vec<u32>,
 }
 
-/// The fans of all hubs. A triangle with several belongs to that with the most triangles, the first of equal ones.
-fn fans_of_hubs(mesh: &Mesh) -> Vec<Fan> {
+/// The fans of all hubs, and the triangles that are in none. A triangle with several hubs belongs to that with the most triangles,
+/// the first of equal ones.
+fn fans_of_hubs(mesh: &Mesh) -> (Vec<Fan>, Vec<u32>) {
     let mut degrees = vec![0u32; mesh.positions.len()];
     mesh.triangles.iter().flatten().for_each(|&v| degrees[v as usize] += 1);
-    let mut hubs: Vec<u32> =
-        (0..).zip(&degrees).filter(|(_, degree)| **degree >= HUB_FROM as u32).map(|(v, _)| v).collect();
+    let hubs: Vec<u32> =
+        (0..).zip(&degrees).filter(|(_, degree)| **degree >= HUB_FROM).map(|(v, _)| v).collect();
     if hubs.is_empty() {
-        return Vec::new();
+        return (Vec::new(), (0..mesh.triangles.len() as u32).collect());
     }
-    // From here on the number of a hub, not how many triangles it has.
     let mut place = vec![NONE; mesh.positions.len()];
     (0..).zip(&hubs).for_each(|(k, &hub)| place[hub as usize] = k);
-    let members = (0..).zip(&mesh.triangles).filter_map(|(t, corners)| {
-        let hub = corners
-            .iter()
-            .copied()
-            .filter(|&v| place[v as usize] != NONE)
-            .max_by_key(|&v| (degrees[v as usize], std::cmp::Reverse(v)))?;
-        Some((place[hub as usize], t))
-    });
+    let hub_of = |corners: &[u32; 3]| {
+        let hubs = corners.iter().copied().filter(|&v| place[v as usize] != NONE);
+        hubs.max_by_key(|&v| (degrees[v as usize], std::cmp::Reverse(v)))
+    };
+    let of_triangles: Vec<Option<u32>> = mesh.triangles.iter().map(hub_of).collect();
+    let free = (0..).zip(&of_triangles).filter(|(_, hub)| hub.is_none()).map(|(t, _)| t).collect();
+    let members = (0..).zip(&of_triangles).filter_map(|(t, hub)| hub.map(|hub| (place[hub as usize], t)));
     let members = Buckets::new(hubs.len(), members);
-    hubs.drain(..)
-        .enumerate()
-        .map(|(k, hub)| Fan { hub, triangles: members.get(k).to_vec() })
-        .filter(|fan| !fan.triangles.is_empty())
-        .collect()
-}
-
-/// What the tree above all holds.
-enum Item {
-    Fan(usize),
-    Triangle(u32),
-}
-
-struct Items {
-    fans: u32,
-    numbers: Vec<u32>,
-}
-
-impl Items {
-    fn new(mesh: &Mesh, fans: &[Fan]) -> Self {
-        let mut is_free = vec![true; mesh.triangles.len()];
-        fans.iter().flat_map(|fan| &fan.triangles).for_each(|&t| is_free[t as usize] = false);
-        let count = fans.len() as u32;
-        let free = (count..).zip(is_free).filter(|(_, is_free)| *is_free).map(|(item, _)| item);
-        Self { fans: count, numbers: (0..count).chain(free).collect() }
-    }
-
-    fn get(&self, item: u32) -> Item {
-        if item < self.fans { Item::Fan(item as usize) } else { Item::Triangle(item - self.fans) }
-    }
-
-    /// Pairs of triangles are asked about; all others are opened later.
-    fn is_wanted(&self, [x, y]: [u32; 2], wanted: impl Fn([u32; 2]) -> bool) -> bool {
-        match (self.get(x), self.get(y)) {
-            (Item::Triangle(s), Item::Triangle(t)) => wanted([s.min(t), s.max(t)]),
-            _ => true,
-        }
-    }
+    let fan = |(k, hub)| Fan { hub, triangles: members.get(k).to_vec() };
+    let fans = hubs.into_iter().enumerate().map(fan).filter(|fan| !fan.triangles.is_empty());
+    (fans.collect(), free)
 }
 
 /// A box round the directions in which a triangle is seen from a corner of it.
@@ -198,19 +173,36 @@ mod tests {
         self_pairs(mesh, &tree, &frame, Runner::new(&control, false), wanted).unwrap()
     }
 
+    /// A ring: between two circles, above and below.
+    fn ring(sides: u32) -> Mesh {
+        let positions = (0..sides).flat_map(|k| {
+            let angle = TAU * f64::from(k) / f64::from(sides);
+            [(0.5, 0.0), (1.0, 0.0), (0.5, 0.25), (1.0, 0.25)]
+                .map(|(r, z)| [r * angle.cos(), r * angle.sin(), z])
+        });
+        let at = |k: u32, which: u32| 4 * (k % sides) + which;
+        let strips = [[0, 1], [1, 3], [3, 2], [2, 0]];
+        let triangles = (0..sides).flat_map(|k| {
+            strips.map(|[i, j]| [[at(k, j), at(k, i), at(k + 1, i)], [at(k, j), at(k + 1, i), at(k + 1, j)]])
+        });
+        Mesh::new(positions.collect(), triangles.flatten().collect())
+    }
+
     #[test]
     fn pairs_looked_at_grow_with_the_sides() {
-        let looked_at = |sides: u32| {
+        let looked_at = |mesh: Mesh| {
             let count = AtomicUsize::new(0);
-            pairs_of(&fan_cylinder(sides), |_| {
+            pairs_of(&mesh, |_| {
                 count.fetch_add(1, Ordering::Relaxed);
                 true
             });
             count.into_inner()
         };
         for sides in [64, 256, 1024, 4096, 8192] {
-            let count = looked_at(sides);
+            let count = looked_at(fan_cylinder(sides));
             assert!(count < 48 * sides as usize, "{count} pairs for {sides} sides");
+            let count = looked_at(ring(sides));
+            assert!(count < 400 * sides as usize, "{count} pairs for a ring of {sides} sides");
         }
     }
 
