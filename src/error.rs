@@ -9,7 +9,7 @@ use crate::control::Limit;
 use crate::field::{FieldError, FormulaError};
 #[cfg(feature = "formats")]
 use crate::io::FormatError;
-use crate::mesh::MeshError;
+use crate::mesh::{MeshError, Refusal};
 
 /// What was tried with a file. The text is the verb.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,6 +86,10 @@ pub enum Error {
     #[cfg(feature = "parametric")]
     #[error(transparent)]
     Geometry(#[from] crate::parametric::GeometryError),
+    /// A cage, its tags or its file is at fault, or a boolean of cages came to none.
+    #[cfg(feature = "subdivision")]
+    #[error(transparent)]
+    Cage(#[from] crate::subdivision::CageError),
     /// The operand at this position (counted from 0) is at fault.
     #[error("operand {} ({name}): {source}", operand + 1)]
     Operand {
@@ -121,12 +125,20 @@ pub enum Failure {
     Limit,
 }
 
+impl From<Box<Refusal>> for Error {
+    fn from(refusal: Box<Refusal>) -> Self {
+        refusal.error.into()
+    }
+}
+
 impl Error {
     /// Which kind of failure this is.
     #[must_use]
     pub fn failure(&self) -> Failure {
         match self {
             Self::File { .. } => Failure::Unreadable,
+            #[cfg(feature = "formats")]
+            Self::Format(FormatError::NoSuchPart { .. }) => Failure::Unusable,
             #[cfg(feature = "formats")]
             Self::Format(_) => Failure::Unreadable,
             Self::InvalidArgument(_)
@@ -142,6 +154,10 @@ impl Error {
             Self::Geometry(fault) if fault.is_unreadable() => Failure::Unreadable,
             #[cfg(feature = "parametric")]
             Self::Geometry(_) => Failure::Unusable,
+            #[cfg(feature = "subdivision")]
+            Self::Cage(fault) if fault.is_unreadable() => Failure::Unreadable,
+            #[cfg(feature = "subdivision")]
+            Self::Cage(_) => Failure::Unusable,
             Self::Operand { source, .. } => source.failure(),
             #[cfg(feature = "model")]
             Self::InNode { source, .. } => source.failure(),

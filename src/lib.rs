@@ -54,6 +54,7 @@
 //! | `parametric` | yes | the module `parametric`: curves, regions, patches, solids of them | 31 |
 //! | `render` | with `cli` | the module `render`: pictures of meshes as PNG | 9 |
 //! | `serde` | with `cli` | `Serialize` and `Deserialize` for meshes, settings and reports | 3 |
+//! | `subdivision` | yes | the module `subdivision`: subdivision surfaces given by cages, and their booleans as cages | none |
 //!
 //! For the engine alone: `default-features = false`, with `parallel` or not.
 //!
@@ -89,10 +90,12 @@ pub mod primitives;
 #[cfg(feature = "render")]
 pub mod render;
 pub mod spatial;
+#[cfg(feature = "subdivision")]
+pub mod subdivision;
 
 pub use boolean::{
-    BooleanOptions, Certificate, Contact, NearContact, NearContacts, OperandState, Operation, Origin,
-    Outcome, UnknownName, boolean,
+    BooleanOptions, Certificate, Contact, Embed, Embedding, Expression, ExpressionError, Grid, NearContact,
+    NearContacts, OperandState, Operation, Origin, Outcome, Rule, UnknownName, boolean,
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};

@@ -26,6 +26,8 @@ mod candidates;
 mod classify;
 mod complex;
 mod cut;
+mod expression;
+mod general;
 mod many;
 mod pair;
 mod result;
@@ -34,6 +36,9 @@ mod tidy;
 
 pub use complex::operation::{Contact, Operation, UnknownName};
 pub use complex::origin::Origin;
+pub use expression::{Expression, ExpressionError, Rule};
+pub use general::embed::{Embedding, Grid};
+pub use many::made::Embed;
 pub use many::options::BooleanOptions;
 pub use result::certificate::{Certificate, OperandState};
 pub use result::near_contacts::{NearContact, NearContacts};

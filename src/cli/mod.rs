@@ -2,10 +2,15 @@
 
 mod argument_groups;
 mod arguments;
+#[cfg(feature = "subdivision")]
+mod cage_arguments;
+#[cfg(feature = "subdivision")]
+mod cages;
 mod check;
 mod color;
 mod combine;
 mod convert;
+mod crossings;
 #[cfg(feature = "parametric")]
 mod curve;
 #[cfg(feature = "parametric")]
@@ -14,6 +19,8 @@ mod documents;
 mod eval;
 mod fault;
 mod field_arguments;
+#[cfg(feature = "subdivision")]
+mod freeform;
 mod grid;
 mod info;
 mod json;
@@ -21,13 +28,19 @@ mod limits;
 mod operands;
 mod output;
 mod progress;
+mod recenter;
+mod repairs;
 mod report;
 mod requests;
+mod selection;
 mod session;
 mod slice;
 mod source;
 mod stage;
 mod stream;
+#[cfg(feature = "subdivision")]
+mod subdivide;
+mod task;
 mod values;
 mod verbs;
 
@@ -111,6 +124,8 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Xor(combine) => {
                 combine::run(Operation::SymmetricDifference, combine, matches, &mut session)
             }
+            Verb::Combine(combination) => combine::run_combination(combination, matches, &mut session),
+            Verb::Resolve(resolve) => combine::run_resolve(resolve, matches, &mut session),
             Verb::Check(check) => check::run(check, matches, &mut session),
             Verb::Info(info) => info::run(info, matches, &mut session),
             Verb::Convert(convert) => convert::run(convert, matches, &mut session),
@@ -119,6 +134,10 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Grid(grid) => grid::run(grid, matches, &mut session),
             #[cfg(feature = "parametric")]
             Verb::Curve(verb) => curve::run(verb, &mut session),
+            #[cfg(feature = "subdivision")]
+            Verb::Subdivide(verb) => subdivide::run(verb, matches, &mut session),
+            #[cfg(feature = "subdivision")]
+            Verb::Freeform(verb) => freeform::run(verb, matches, &mut session),
         }
     });
     session.end(result)

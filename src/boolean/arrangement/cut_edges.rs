@@ -6,7 +6,7 @@ use std::ops::Index;
 use super::crossings::{Crossing, Crossings};
 use crate::Error;
 use crate::boolean::complex::ids::{CutEdgeId, NodeId, VertexId};
-use crate::boolean::complex::predicates::Predicates;
+use crate::boolean::complex::predicates::{Perturbed, Predicates};
 use crate::boolean::complex::{Complex, Corner};
 use crate::exact::{Sign, order};
 use crate::parallel::Runner;
@@ -148,7 +148,7 @@ fn compare(complex: &Complex<'_>, predicates: &Predicates<'_>, x: &Crossing, y: 
 }
 
 /// The order where one face lies wholly on one side of the other's plane: then so does its crossing point.
-fn compare_by_sides(
+pub(crate) fn compare_by_sides(
     predicates: &Predicates<'_>,
     t1: &[Corner; 3],
     t2: &[Corner; 3],

@@ -26,7 +26,6 @@ mod source;
 mod split_faces;
 mod splits;
 
-use crate::boolean::classify::body::Body;
 use crate::boolean::complex::ids::PointId;
 use crate::boolean::cut::piece::Piece;
 use crate::boolean::rounding::Rounding;
@@ -35,6 +34,7 @@ use crate::{Control, Error};
 use face::LocalPoint;
 use patch::{Patch, Tidied};
 use separate::Separation;
+pub(crate) use source::Ground;
 use source::Source;
 
 /// Rounds of all steps at most, while triangles without area are left: removing vertices, collapsing and flipping may leave
@@ -61,13 +61,13 @@ pub(super) struct Settings {
 ///
 /// # Errors
 /// Those of the limits.
-pub(super) fn tidy(
-    body: Body<'_>,
+pub(crate) fn tidy(
+    ground: Ground<'_>,
     pieces: &[Piece],
     settings: &Settings,
     runner: Runner<'_>,
 ) -> Result<Option<Tidied>, Error> {
-    let source = Source { body, rounding: settings.rounding, has_contacts: settings.contacts > 0 };
+    let source = Source { ground, rounding: settings.rounding, has_contacts: settings.contacts > 0 };
     if !settings.always && !source.needs_clean_up() {
         return Ok(None);
     }
@@ -78,7 +78,7 @@ pub(super) fn tidy(
     }
     // Where an operand touches itself, triangles may come apart at points that are not wholly in the patch. Then all starts
     // again with those; each is taken in but once.
-    let mut extra: Vec<PointId> = Vec::new();
+    let mut extra: Vec<PointId> = source.points_on_pinched_edges();
     loop {
         let patch = gather::gather(source, pieces, &extra);
         // Candidates outside the patch have nothing that changed around them.
@@ -158,6 +158,7 @@ mod tests {
     use crate::boolean::arrangement::curve::Curve;
     use crate::boolean::candidates::Candidates;
     use crate::boolean::candidates::overlap::Overlap;
+    use crate::boolean::classify::body::Body;
     use crate::boolean::classify::multiplicity;
     use crate::boolean::classify::winding::Windings;
     use crate::boolean::complex::origin::Origin;
@@ -189,7 +190,7 @@ mod tests {
             contacts: 0,
             always: true,
         };
-        tidy(body, pieces, &settings, runner).unwrap().expect("it was asked for")
+        tidy(Ground::Body(body), pieces, &settings, runner).unwrap().expect("it was asked for")
     }
 
     fn piece(corners: [u32; 3], flat: bool) -> Piece {

@@ -1,0 +1,179 @@
+//! `freeform`: booleans of cages that give cages.
+
+use std::time::Instant;
+
+use clap::ArgMatches;
+use serde_json::{Value, json};
+use trisect::subdivision::{ControlMesh, FreeForm, FreeFormOutcome, FreeFormReport};
+
+use super::argument_groups::{Drawing, Writing};
+use super::cage_arguments::FreeFormVerb;
+use super::cages::{self, Read};
+use super::fault::{Exit, Fault};
+use super::output::{self, Product};
+use super::report;
+use super::session::Session;
+
+/// Combines cages.
+pub(crate) fn run(
+    arguments: &FreeFormVerb,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    // 1. Where to: files that hold cages, meshes and pictures of the limit surface, the exact result.
+    let (cage_paths, mesh_paths) = cages::sorted(&arguments.output)?;
+    let writing =
+        |output| Writing { output, output_format: None, ascii: false, single: false, recenter: false };
+    let targets = output::targets(&writing(mesh_paths), &arguments.drawing, session.common)?;
+    let no_picture = Drawing { png: None, ..arguments.drawing };
+    let exact_targets =
+        output::targets(&writing(arguments.exact.iter().cloned().collect()), &no_picture, session.common)?;
+    super::documents::check(
+        cage_paths.iter().map(std::path::PathBuf::as_path),
+        session.common,
+        &session.limits,
+    )?;
+    if targets.len() + exact_targets.len() + cage_paths.len() == 0
+        && !session.common.json
+        && session.common.report.is_none()
+    {
+        return Err(Fault::usage(
+            "nowhere to put the result: add -o FILE.obj, --png FILE, --json or --report FILE",
+        ));
+    }
+    output::probe(&targets, &session.limits)?;
+    output::probe(&exact_targets, &session.limits)?;
+    // 2. The cages, combined one after the other.
+    let start = Instant::now();
+    let read = cages::read(matches, arguments.cages, session)?;
+    session.took("read", start);
+    let start = Instant::now();
+    let outcome = combine(arguments, &read, session)?;
+    let seconds = session.took("run", start);
+    // 3. The outputs.
+    let start = Instant::now();
+    let cage = outcome.surface();
+    write(arguments, cage, &cage_paths, &targets, session)?;
+    if !exact_targets.is_empty() {
+        let mesh = outcome.exact().solid().mesh();
+        let options = output::write_options(&writing(Vec::new()), &session.limits);
+        let picture = || trisect::render::mesh(mesh, &output::view(&arguments.drawing, None), None);
+        let product = Product { mesh, options, picture: &picture, documents: &[] };
+        output::write_all(&exact_targets, &product, &session.limits)?;
+    }
+    session.took("write", start);
+    say(outcome.report(), seconds, session);
+    Ok(Exit::Fine)
+}
+
+fn combine(
+    arguments: &FreeFormVerb,
+    read: &[Read],
+    session: &mut Session<'_>,
+) -> Result<FreeFormOutcome, Fault> {
+    let mut settings = FreeForm::new()
+        .refine(arguments.refine)
+        .attempts(arguments.attempts)
+        .rings(arguments.rings as usize)
+        .allow_tangent(arguments.allow_tangent)
+        .control(session.control());
+    if let Some(tolerance) = arguments.tolerance {
+        settings = settings.tolerance(tolerance);
+    }
+    let operation = arguments.operation.operation();
+    let mut steps = Vec::new();
+    let mut outcome: Option<FreeFormOutcome> = None;
+    for (index, next) in read.iter().enumerate().skip(1) {
+        let first = outcome.as_ref().map_or(&read[0].cage, FreeFormOutcome::surface);
+        let done = settings.run(operation, first, &next.cage)?;
+        for warning in &done.report().warnings {
+            session.warn(format!("after operand {} ({}): {warning}", index + 1, next.name));
+        }
+        steps.push(described(done.report()));
+        outcome = Some(done);
+    }
+    session.note("steps", steps);
+    outcome.ok_or_else(|| Fault::usage("at least two cages are needed"))
+}
+
+fn write(
+    arguments: &FreeFormVerb,
+    cage: &ControlMesh,
+    cage_paths: &[std::path::PathBuf],
+    targets: &[output::Target],
+    session: &mut Session<'_>,
+) -> Result<(), Fault> {
+    let documents: Vec<_> = cage_paths.iter().map(|path| cages::document(path, cage)).collect();
+    let mesh = if targets.is_empty() {
+        trisect::Mesh::default()
+    } else {
+        let tolerance = arguments.tolerance.unwrap_or_else(|| 1e-3 * diagonal(cage));
+        if cage.faces().is_empty() { cage.mesh() } else { cage.limit_mesh(tolerance)?.mesh().clone() }
+    };
+    let picture = || {
+        cages::picture(cage, &arguments.drawing)
+            .unwrap_or_else(|_| trisect::render::mesh(&mesh, &output::view(&arguments.drawing, None), None))
+    };
+    let empty =
+        Writing { output: Vec::new(), output_format: None, ascii: false, single: false, recenter: false };
+    let options = output::write_options(&empty, &session.limits);
+    let product = Product { mesh: &mesh, options, picture: &picture, documents: &documents };
+    let (written, warnings) = output::write_all(targets, &product, &session.limits)?;
+    session.note("outputs", written);
+    for warning in warnings {
+        session.warn(warning);
+    }
+    Ok(())
+}
+
+fn diagonal(cage: &ControlMesh) -> f64 {
+    cage.mesh()
+        .bounds()
+        .map_or(1.0, |bounds| (0..3).map(|k| (bounds.high[k] - bounds.low[k]).powi(2)).sum::<f64>().sqrt())
+}
+
+/// What the JSON report says of one operation.
+fn described(found: &FreeFormReport) -> Value {
+    let seconds: serde_json::Map<String, Value> =
+        found.seconds.iter().map(|&(step, seconds)| (step.to_owned(), seconds.into())).collect();
+    json!({
+        "asked": found.asked,
+        "reached": found.reached,
+        "errors": {
+            "forward": found.errors.forward,
+            "backward": found.errors.backward,
+            "mean": found.errors.mean,
+            "curve": found.errors.curve,
+            "band": found.errors.band,
+            "outside": found.errors.outside,
+            "allowance": found.errors.allowance,
+            "volume": found.errors.volume,
+        },
+        "vertices": found.vertices,
+        "faces": found.faces,
+        "added": found.added,
+        "fitted": found.fitted,
+        "unchanged": found.unchanged,
+        "chains": found.chains,
+        "features": found.features,
+        "crossing_degrees": found.crossing,
+        "largest_valence": found.valence,
+        "refined": found.refined,
+        "exact_triangles": found.exact_triangles,
+        "seconds": seconds,
+    })
+}
+
+fn say(found: &FreeFormReport, seconds: f64, session: &mut Session<'_>) {
+    session.console.say(&format!(
+        "cage: {}, {} ({} added, {} moved, {} as they were), within {} of the exact result ({})",
+        report::counted(found.vertices, "control point"),
+        report::counted(found.faces, "face"),
+        found.added,
+        found.fitted,
+        found.unchanged,
+        report::short(found.errors.largest()),
+        report::time(seconds)
+    ));
+    session.note("result", described(found));
+}

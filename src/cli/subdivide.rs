@@ -1,0 +1,104 @@
+//! `subdivide`: a cage refined, or its limit surface as a mesh.
+
+use std::time::Instant;
+
+use clap::ArgMatches;
+use serde_json::json;
+use trisect::subdivision::ControlMesh;
+use trisect::{Error, Mesh};
+
+use super::argument_groups::Writing;
+use super::cage_arguments::Subdivide;
+use super::cages;
+use super::fault::{Exit, Fault};
+use super::output::{self, Product};
+use super::report::{self, Measures};
+use super::session::Session;
+
+/// What subdivision gave.
+enum Made {
+    Cage(ControlMesh),
+    Mesh(Mesh),
+}
+
+/// Subdivides one cage.
+pub(crate) fn run(
+    arguments: &Subdivide,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let outputs = &arguments.results.writing.output;
+    let drawing = &arguments.results.drawing;
+    let keeps_cage = arguments.tolerance.is_none() && !arguments.limit;
+    // 1. Where to: files that hold cages, and meshes.
+    let (cage_paths, mesh_paths) =
+        if keeps_cage { cages::sorted(outputs)? } else { (Vec::new(), outputs.clone()) };
+    let writing = Writing { output: mesh_paths, ..arguments.results.writing };
+    let targets = output::targets(&writing, drawing, session.common)?;
+    super::documents::check(
+        cage_paths.iter().map(std::path::PathBuf::as_path),
+        session.common,
+        &session.limits,
+    )?;
+    if targets.is_empty() && cage_paths.is_empty() && !session.common.json && session.common.report.is_none()
+    {
+        return Err(Fault::usage(
+            "nowhere to put the result: add -o FILE, --png FILE, --json or --report FILE",
+        ));
+    }
+    output::probe(&targets, &session.limits)?;
+    // 2. The cage, subdivided.
+    let start = Instant::now();
+    let mut read = cages::read(matches, arguments.cages, session)?;
+    let Some(input) = read.pop() else { return Err(Fault::usage("a cage is needed")) };
+    session.took("read", start);
+    let start = Instant::now();
+    let made = make(arguments, &input.cage).map_err(|error| error.of_operand(0, input.name.clone()))?;
+    let seconds = session.took("run", start);
+    // 3. The outputs.
+    let start = Instant::now();
+    let (mesh, drawn_cage) = match &made {
+        Made::Cage(cage) => (cage.mesh(), Some(cage)),
+        Made::Mesh(mesh) => (mesh.clone(), None),
+    };
+    let documents: Vec<_> = drawn_cage
+        .iter()
+        .flat_map(|cage| cage_paths.iter().map(|path| cages::document(path, cage)))
+        .collect();
+    let picture = || match drawn_cage.map(|cage| cages::picture(cage, drawing)) {
+        Some(Ok(picture)) => picture,
+        _ => trisect::render::mesh(&mesh, &output::view(drawing, None), None),
+    };
+    let options = output::write_options(&writing, &session.limits);
+    let product = Product { mesh: &mesh, options, picture: &picture, documents: &documents };
+    let (written, warnings) = output::write_all(&targets, &product, &session.limits)?;
+    for warning in warnings {
+        session.warn(warning);
+    }
+    session.took("write", start);
+    let measures = Measures::of_mesh(&mesh);
+    session.note("result", measures.to_json());
+    session.note("outputs", written);
+    session.note(
+        "cage",
+        json!({ "vertices": input.cage.positions().len(), "faces": input.cage.faces().len(),
+                "creases": input.cage.tags().creases.len(), "rules": input.cage.rules().name() }),
+    );
+    session.console.say(&format!(
+        "{}: {} -> {} ({})",
+        input.name,
+        report::counted(input.cage.faces().len(), "face"),
+        report::counted(mesh.triangles.len(), "triangle"),
+        report::time(seconds)
+    ));
+    Ok(Exit::Fine)
+}
+
+fn make(arguments: &Subdivide, cage: &ControlMesh) -> Result<Made, Error> {
+    let levels = arguments.levels.unwrap_or(1) as usize;
+    Ok(match arguments.tolerance {
+        Some(tolerance) => Made::Mesh(cage.limit_mesh(tolerance)?.mesh().clone()),
+        None if arguments.limit => Made::Mesh(cage.limit_mesh_of_steps(levels)?.mesh().clone()),
+        None => Made::Cage(cage.subdivided(levels)?),
+    })
+}

@@ -1,0 +1,374 @@
+//! `ControlMesh`: a cage, plain and checked.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+
+use super::error::CageError;
+use super::evaluate::Surface;
+use super::level::{Kind, Level};
+use super::limit_mesh::{LimitMesh, most_steps};
+use super::refine::{CONCAVE_FROM, apply};
+use super::rules::Rules;
+use super::tags::{Crease, Sector, Tags};
+use crate::{Error, Mesh};
+
+/// A piecewise-smooth subdivision surface, given by its control mesh: what a modeller calls a cage.
+///
+/// ```
+/// use trisect::subdivision::{ControlMesh, Rules, Tags};
+///
+/// let cube = trisect::primitives::cuboid([-1.0; 3], [1.0; 3])?;
+/// let cage = ControlMesh::new(cube.positions, cube.triangles, Tags::default(), Rules::Loop)?;
+/// let smooth = cage.limit_mesh(0.01)?;
+/// assert!(smooth.solid().volume() < 8.0);
+/// # Ok::<(), trisect::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct ControlMesh {
+    positions: Vec<[f64; 3]>,
+    level: Level,
+    tags: Tags,
+}
+
+/// Where on a cage: weights of the corners of a control face, which sum to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// The control face.
+    pub face: u32,
+    /// The weights of its corners.
+    pub weights: [f64; 3],
+}
+
+/// A point of the limit surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimitPoint {
+    /// Where it is.
+    pub position: [f64; 3],
+    /// The derivative along the weight of the face's second corner, taken from the first one's.
+    pub du: [f64; 3],
+    /// The same for the third corner.
+    pub dv: [f64; 3],
+    /// The normal, outwards; zero where there is no tangent plane.
+    pub normal: [f64; 3],
+}
+
+impl ControlMesh {
+    /// A cage, once found to be an oriented surface with tags that name edges and vertices of it. It may have borders, which
+    /// are creases. Sectors of corners that open by more than a half turn and an eighth are noted as concave (three quarters of
+    /// a turn, flatness 1/2), unless `tags` say otherwise. O(n).
+    ///
+    /// # Errors
+    /// [`Error::Cage`] with the first place at fault.
+    pub fn new(
+        positions: Vec<[f64; 3]>,
+        faces: Vec<[u32; 3]>,
+        tags: Tags,
+        rules: Rules,
+    ) -> Result<Self, Error> {
+        check(&positions, &faces, &tags)?;
+        let tags = tags.normalised();
+        let mut level = Level::new(rules, positions.len(), faces, &tags)?;
+        note_concave(&mut level, &positions);
+        let tags = level.tags();
+        Ok(Self { positions, level, tags })
+    }
+
+    /// The control points.
+    #[must_use]
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// The faces, counter-clockwise seen from outside.
+    #[must_use]
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.level.faces
+    }
+
+    /// What is sharp.
+    #[must_use]
+    pub fn tags(&self) -> &Tags {
+        &self.tags
+    }
+
+    /// The weights in use.
+    #[must_use]
+    pub fn rules(&self) -> Rules {
+        self.level.rules
+    }
+
+    /// The same cage under other rules.
+    #[must_use]
+    pub fn with_rules(mut self, rules: Rules) -> Self {
+        self.level.rules = rules;
+        self
+    }
+
+    /// Whether every edge has two faces.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.level.border().is_none()
+    }
+
+    /// Fails with the first border edge, if there is one.
+    pub(crate) fn check_closed(&self) -> Result<(), CageError> {
+        self.level.border().map_or(Ok(()), |edge| Err(CageError::NotClosed { edge }))
+    }
+
+    /// The cage as a mesh.
+    #[must_use]
+    pub fn mesh(&self) -> Mesh {
+        Mesh::new(self.positions.clone(), self.level.faces.clone())
+    }
+
+    /// The cage after `steps` subdivisions: the same surface over 4^steps times as many faces. Face f becomes 4f to 4f + 3, its
+    /// corners in their order and then the middle; the first vertices are the old ones. O(4^steps n).
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] beyond what 32-bit indices can name.
+    pub fn subdivided(&self, steps: usize) -> Result<Self, Error> {
+        let mut level = self.level.clone();
+        let mut positions = self.points();
+        for _ in 0..steps {
+            if level.faces.len() > most_faces() / 4 {
+                return Err(Error::TooLarge {
+                    what: format!("{} faces, four times as many", level.faces.len()),
+                });
+            }
+            let (next, rows) = level.refined();
+            positions = rows.iter().map(|row| apply(row, &positions)).collect();
+            level = next;
+        }
+        let tags = level.tags();
+        Ok(Self { positions: positions.iter().map(DVec3::to_array).collect(), level, tags })
+    }
+
+    /// The positions to which the control points move under endless subdivision. O(n).
+    #[must_use]
+    pub fn limit_positions(&self) -> Vec<[f64; 3]> {
+        let surface = self.surface();
+        (0..self.positions.len() as u32).map(|v| surface.vertex(v).to_array()).collect()
+    }
+
+    /// The limit surface as triangles that are at most `tolerance` away from it, vertices on it, more where it bends more.
+    /// Watertight where the cage is closed.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] for a tolerance that is not positive; [`Error::TooLarge`] where more than
+    /// 2^16 triangles for one face would be needed; [`Error::Cage`] if the cage has borders.
+    pub fn limit_mesh(&self, tolerance: f64) -> Result<LimitMesh, Error> {
+        if !(tolerance > 0.0) {
+            return Err(Error::InvalidArgument(format!("a tolerance must be positive, not {tolerance}")));
+        }
+        let surface = self.surface();
+        LimitMesh::new(&surface, &most_steps(&surface, tolerance)?)
+    }
+
+    /// The limit surface over every face split `steps` times.
+    ///
+    /// # Errors
+    /// As [`limit_mesh`](Self::limit_mesh).
+    pub fn limit_mesh_of_steps(&self, steps: usize) -> Result<LimitMesh, Error> {
+        if self.level.faces.len().saturating_mul(4usize.saturating_pow(steps as u32)) > most_faces() {
+            return Err(Error::TooLarge {
+                what: format!("{} faces, split {steps} times", self.level.faces.len()),
+            });
+        }
+        LimitMesh::new(&self.surface(), &vec![steps as u32; self.level.faces.len()])
+    }
+
+    /// The limit surface at a place; nothing for a face that is not there. For many places, [`evaluator`](Self::evaluator) keeps
+    /// what it finds.
+    #[must_use]
+    pub fn at(&self, place: Place) -> Option<LimitPoint> {
+        self.evaluator().at(place)
+    }
+
+    /// What evaluates the limit surface at any number of places.
+    #[must_use]
+    pub fn evaluator(&self) -> Evaluator {
+        Evaluator(self.surface())
+    }
+
+    /// Reads a cage from the bytes of an OBJ file, and tells what was left out of it. Lines `t crease 2/1/0 A B SHARPNESS` and
+    /// `t corner 1/1/0 V SHARPNESS` are tags, as in OpenSubdiv's shapes; vertices in them count from 0.
+    ///
+    /// # Errors
+    /// [`Error::Cage`] with the line.
+    pub fn from_obj(bytes: &[u8], rules: Rules) -> Result<(Self, Vec<String>), Error> {
+        super::obj::read(bytes, rules)
+    }
+
+    /// The cage as an OBJ file with tag lines; reading it gives the same bits.
+    #[must_use]
+    pub fn to_obj(&self) -> String {
+        super::obj::write(self)
+    }
+
+    /// Reads a cage from a JSON object with `positions`, `faces`, and if need be `creases`, `corners`, `sectors`, `rules`.
+    ///
+    /// # Errors
+    /// [`Error::Cage`] with the key.
+    #[cfg(feature = "formats")]
+    pub fn from_json(bytes: &[u8]) -> Result<Self, Error> {
+        super::json::read(bytes)
+    }
+
+    /// The cage as a JSON object; reading it gives the same bits.
+    #[cfg(feature = "formats")]
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        super::json::to_value(self).to_string()
+    }
+
+    pub(crate) fn surface(&self) -> Surface {
+        Surface::new(self.level.clone(), self.points())
+    }
+
+    /// The same cage with other control points.
+    pub(crate) fn with_points(&self, points: &[DVec3]) -> Self {
+        let positions = points.iter().map(DVec3::to_array).collect();
+        Self { positions, level: self.level.clone(), tags: self.tags.clone() }
+    }
+
+    pub(crate) fn level(&self) -> &Level {
+        &self.level
+    }
+
+    pub(crate) fn points(&self) -> Vec<DVec3> {
+        self.positions.iter().map(|&p| DVec3::from(p)).collect()
+    }
+
+    /// The same cage with creases at all edges where its faces meet at more than `degrees`.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] if the angle is not between 0 and 180.
+    pub fn with_creases_from_angle(&self, degrees: f64) -> Result<Self, Error> {
+        if !(0.0..=180.0).contains(&degrees) {
+            return Err(Error::InvalidArgument(format!(
+                "an angle between faces is 0 to 180 degrees, not {degrees}"
+            )));
+        }
+        let normal = |f: u32| {
+            let [a, b, c] = self.level.faces[f as usize].map(|v| DVec3::from(self.positions[v as usize]));
+            (b - a).cross(c - a).normalize_or_zero()
+        };
+        let limit = degrees.to_radians().cos();
+        let mut tags = self.tags.clone();
+        for &h in &self.level.edges {
+            let twin = self.level.twins[h as usize];
+            if twin != u32::MAX && normal(h / 3).dot(normal(twin / 3)) < limit {
+                let edge = [self.level.from(h), self.level.to(h)];
+                tags.creases.push(Crease { edge, sharpness: f64::INFINITY });
+            }
+        }
+        Self::new(self.positions.clone(), self.level.faces.clone(), tags, self.level.rules)
+    }
+}
+
+/// Evaluates a limit surface; see [`ControlMesh::evaluator`].
+#[derive(Debug)]
+pub struct Evaluator(Surface);
+
+impl Evaluator {
+    /// The limit surface at a place; nothing for a face that is not there.
+    #[must_use]
+    pub fn at(&self, place: Place) -> Option<LimitPoint> {
+        if place.face as usize >= self.0.level.faces.len() || !place.weights.iter().all(|w| w.is_finite()) {
+            return None;
+        }
+        let sample = self.0.at(place.face, place.weights);
+        Some(LimitPoint {
+            position: sample.position.to_array(),
+            du: sample.du.to_array(),
+            dv: sample.dv.to_array(),
+            normal: sample.normal.to_array(),
+        })
+    }
+}
+
+/// How many faces a level may have: half-edges are numbered with 32 bits, the largest number standing for none.
+fn most_faces() -> usize {
+    u32::MAX as usize / 3
+}
+
+fn check(positions: &[[f64; 3]], faces: &[[u32; 3]], tags: &Tags) -> Result<(), CageError> {
+    let count = positions.len();
+    if let Some(vertex) = positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+        return Err(CageError::NotFinite { vertex });
+    }
+    let known = |what: &dyn Fn() -> String, vertex: u32| {
+        if (vertex as usize) < count {
+            return Ok(());
+        }
+        Err(CageError::NoSuchVertex { what: what(), vertex: u64::from(vertex), count })
+    };
+    for (f, face) in faces.iter().enumerate() {
+        for k in 0..3 {
+            known(&|| format!("face {f}"), face[k])?;
+            if face[k] == face[(k + 1) % 3] {
+                return Err(CageError::RepeatedVertex { face: f, vertex: face[k] });
+            }
+        }
+    }
+    let sharp = |what: &str, sharpness: f64| {
+        if sharpness >= 0.0 {
+            return Ok(());
+        }
+        Err(CageError::Tag(format!("{what} has sharpness {sharpness}; it must be 0 or more")))
+    };
+    for crease in &tags.creases {
+        let what = || format!("crease {}-{}", crease.edge[0], crease.edge[1]);
+        known(&what, crease.edge[0])?;
+        known(&what, crease.edge[1])?;
+        sharp(&what(), crease.sharpness)?;
+    }
+    for corner in &tags.corners {
+        known(&|| "a corner".into(), corner.vertex)?;
+        sharp(&format!("corner {}", corner.vertex), corner.sharpness)?;
+    }
+    for sector in &tags.sectors {
+        known(&|| "a sector".into(), sector.vertex)?;
+        known(&|| "a sector".into(), sector.first)?;
+        let turns = sector.angle > 0.0 && sector.angle < 2.0 * PI && (sector.angle - PI).abs() > 1e-3;
+        if !turns || !(0.0..=1.0).contains(&sector.flatness) {
+            return Err(CageError::Tag(format!(
+                "the sector at {} from {} has angle {} and flatness {}; angles are between 0 and 2 pi, but not pi, and flatness \
+                 is 0 to 1",
+                sector.vertex, sector.first, sector.angle, sector.flatness
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Notes which sectors at corners are concave, where nothing is said of them.
+fn note_concave(level: &mut Level, positions: &[[f64; 3]]) {
+    let mut found = Vec::new();
+    for v in 0..level.vertex_count as u32 {
+        let ring = level.ring(v);
+        if ring.vertices.is_empty() || level.kind(v, &ring) != Kind::Corner {
+            continue;
+        }
+        let count = ring.vertices.len();
+        for place in 0..ring.face_count() {
+            let span = level.span(v, &ring, Kind::Corner, place);
+            let sharp = level.sharpness[ring.edges[span.start] as usize].is_infinite();
+            let key = (v, ring.vertices[span.start]);
+            if span.start != place || !sharp || span.faces < 2 || level.openings.contains_key(&key) {
+                continue;
+            }
+            let at = |i: usize| {
+                DVec3::from(positions[ring.vertices[i % count] as usize]) - DVec3::from(positions[v as usize])
+            };
+            let opening: f64 = (0..span.faces).map(|i| at(place + i).angle_between(at(place + i + 1))).sum();
+            if opening > CONCAVE_FROM {
+                found.push(Sector { vertex: v, first: key.1, angle: 1.5 * PI, flatness: 0.5 });
+            }
+        }
+    }
+    for Sector { vertex, first, angle, flatness } in found {
+        level.openings.insert((vertex, first), super::level::Opening { angle, flatness });
+    }
+}

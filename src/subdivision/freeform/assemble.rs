@@ -1,0 +1,196 @@
+//! The result's cage: what is kept of the operands' cages in its order, then what is new.
+
+use glam::DVec3;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::VertexOrigin;
+use super::operand::Operand;
+use super::work::{Sharp, Work, key};
+use crate::Error;
+use crate::subdivision::control_mesh::ControlMesh;
+use crate::subdivision::tags::{Corner, Crease, Sector, Tags};
+
+/// The result's cage before the fit.
+pub(super) struct Draft {
+    pub(super) cage: ControlMesh,
+    /// For each vertex where it comes from.
+    pub(super) origins: Vec<VertexOrigin>,
+    /// For each face its operand.
+    pub(super) operand_of: Vec<u8>,
+    /// For each face the operand and its control face that it is.
+    pub(super) sources: Vec<Option<(usize, u32)>>,
+    /// For each face whether it is one.
+    pub(super) whole: Vec<bool>,
+    /// For each vertex whether it is new, or its faces are not all the old ones.
+    pub(super) changed: Vec<bool>,
+    /// For each vertex where it is on the exact result.
+    pub(super) targets: Vec<DVec3>,
+    /// For each vertex on the curve its chain and length.
+    pub(super) on_curve: Vec<Option<(u32, f64)>>,
+    /// Vertices that must be met: ends and turns of curves, corners.
+    pub(super) fixed: Vec<bool>,
+    /// Tagged edges, ends in order.
+    pub(super) sharp: FxHashMap<(u32, u32), Sharp>,
+}
+
+/// A face with its lowest corner first.
+fn turned(face: [u32; 3]) -> [u32; 3] {
+    let k = (0..3).min_by_key(|&k| face[k]).unwrap_or(0);
+    [face[k], face[(k + 1) % 3], face[(k + 2) % 3]]
+}
+
+/// Puts the cage together.
+pub(super) fn assemble(work: &Work, operands: [&Operand; 2], reversed: [bool; 2]) -> Result<Draft, Error> {
+    // 1. Faces: whole ones by their number in the operand, with its corners, then the others.
+    let mut faces: Vec<(usize, u32, [u32; 3])> = Vec::new();
+    let known = operands.map(|operand| {
+        let all = operand.cage.faces().iter().enumerate();
+        all.map(|(f, &corners)| (turned(corners), f as u32)).collect::<FxHashMap<[u32; 3], u32>>()
+    });
+    let rest = usize::MAX;
+    for (i, face) in work.faces.iter().enumerate().filter(|(_, face)| face.alive) {
+        let o = usize::from(face.operand);
+        let mut corners = face.corners;
+        if reversed[o] {
+            corners.swap(1, 2);
+        }
+        let control = corners.map(|v| match work.vertices[v as usize].control {
+            Some((owner, w)) if usize::from(owner) == o => w,
+            _ => u32::MAX,
+        });
+        match known[o].get(&turned(control)).filter(|_| !control.contains(&u32::MAX)) {
+            Some(&f) => {
+                let original = operands[o].cage.faces()[f as usize];
+                let mut own = original.map(|w| corners[control.iter().position(|&c| c == w).unwrap_or(0)]);
+                if reversed[o] {
+                    own.swap(1, 2);
+                }
+                faces.push((o, f, own));
+            }
+            None => faces.push((rest, i as u32, face.corners)),
+        }
+    }
+    faces.sort_by_key(|&(o, f, _)| (o, f));
+    // 2. Vertices: control vertices of A, of B, then new ones.
+    let mut used: Vec<u32> = faces.iter().flat_map(|&(_, _, corners)| corners).collect();
+    used.sort_unstable();
+    used.dedup();
+    used.sort_by_key(|&v| (work.vertices[v as usize].control.unwrap_or((u8::MAX, v)), v));
+    let numbers: FxHashMap<u32, u32> = used.iter().enumerate().map(|(i, &v)| (v, i as u32)).collect();
+    let corners: Vec<[u32; 3]> = faces.iter().map(|&(_, _, corners)| corners.map(|v| numbers[&v])).collect();
+    let sources: Vec<_> = faces.iter().map(|&(o, f, _)| (o != rest).then_some((o, f))).collect();
+    let whole: Vec<bool> = sources.iter().map(Option::is_some).collect();
+    let operand_of = faces
+        .iter()
+        .map(|&(o, f, _)| if o == rest { work.faces[f as usize].operand } else { o as u8 })
+        .collect();
+
+    let origins: Vec<VertexOrigin> = used
+        .iter()
+        .map(|&v| match work.vertices[v as usize].control {
+            Some((operand, vertex)) => VertexOrigin::Kept { operand: usize::from(operand), vertex },
+            None => VertexOrigin::New,
+        })
+        .collect();
+    let changed = changed(operands, &origins, &corners, &whole);
+    let targets: Vec<DVec3> = used.iter().map(|&v| work.position(v)).collect();
+    let positions: Vec<[f64; 3]> = origins
+        .iter()
+        .zip(&targets)
+        .map(|(origin, target)| match *origin {
+            VertexOrigin::Kept { operand, vertex } | VertexOrigin::Fitted { operand, vertex } => {
+                operands[operand].cage.positions()[vertex as usize]
+            }
+            VertexOrigin::New => target.to_array(),
+        })
+        .collect();
+    // 3. Tags.
+    let mut sharp = FxHashMap::default();
+    for (&(u, v), &tag) in &work.sharp {
+        if let (Some(&u), Some(&v)) = (numbers.get(&u), numbers.get(&v)) {
+            sharp.insert(key(u, v), tag);
+        }
+    }
+    let fixed: Vec<bool> = used.iter().map(|&v| work.vertices[v as usize].fixed).collect();
+    let tags = tags(operands, reversed, &origins, &fixed, &sharp, &corners);
+    let rules = operands[0].cage.rules();
+    let cage = ControlMesh::new(positions, corners, tags, rules)?;
+    let on_curve = used.iter().map(|&v| work.vertices[v as usize].on_curve).collect();
+    Ok(Draft { cage, origins, operand_of, sources, whole, changed, targets, on_curve, fixed, sharp })
+}
+
+/// Which vertices are new, or have other faces than before.
+fn changed(
+    operands: [&Operand; 2],
+    origins: &[VertexOrigin],
+    faces: &[[u32; 3]],
+    whole: &[bool],
+) -> Vec<bool> {
+    let mut count = vec![0usize; origins.len()];
+    let mut changed = vec![false; origins.len()];
+    for (corners, &whole) in faces.iter().zip(whole) {
+        for &v in corners {
+            count[v as usize] += 1;
+            changed[v as usize] |= !whole;
+        }
+    }
+    for (v, origin) in origins.iter().enumerate() {
+        changed[v] |= match *origin {
+            VertexOrigin::Kept { operand, vertex } | VertexOrigin::Fitted { operand, vertex } => {
+                operands[operand].surface.level.ring(vertex).face_count() != count[v]
+            }
+            VertexOrigin::New => true,
+        };
+    }
+    changed
+}
+
+fn tags(
+    operands: [&Operand; 2],
+    reversed: [bool; 2],
+    origins: &[VertexOrigin],
+    fixed: &[bool],
+    sharp: &FxHashMap<(u32, u32), Sharp>,
+    faces: &[[u32; 3]],
+) -> Tags {
+    let mut tags = Tags::default();
+    let mut degree = vec![0usize; origins.len()];
+    let infinite = f64::INFINITY;
+    for &(u, v) in sharp.keys() {
+        tags.creases.push(Crease { edge: [u, v], sharpness: infinite });
+        degree[u as usize] += 1;
+        degree[v as usize] += 1;
+    }
+    let mut number: [FxHashMap<u32, u32>; 2] = Default::default();
+    for (v, origin) in origins.iter().enumerate() {
+        let kept_corner = match *origin {
+            VertexOrigin::Kept { operand, vertex } | VertexOrigin::Fitted { operand, vertex } => {
+                number[operand].insert(vertex, v as u32);
+                operands[operand].cage.tags().corners.iter().any(|corner| corner.vertex == vertex)
+            }
+            VertexOrigin::New => false,
+        };
+        // Where a curve turns there are two creases only: the turn has to be said.
+        if kept_corner || (fixed[v] && degree[v] == 2) {
+            tags.corners.push(Corner { vertex: v as u32, sharpness: infinite });
+        }
+    }
+    // Concave sectors of corners that are still there, with the crease they begin with. Turned over, a sector begins with
+    // the crease it ended with; what is not found is seen from the faces again.
+    let edges: FxHashSet<(u32, u32)> =
+        faces.iter().flat_map(|f| [key(f[0], f[1]), key(f[1], f[2]), key(f[2], f[0])]).collect();
+    for o in 0..2 {
+        if reversed[o] {
+            continue;
+        }
+        for sector in &operands[o].cage.tags().sectors {
+            if let (Some(&vertex), Some(&first)) =
+                (number[o].get(&sector.vertex), number[o].get(&sector.first))
+                && edges.contains(&key(vertex, first))
+            {
+                tags.sectors.push(Sector { vertex, first, ..*sector });
+            }
+        }
+    }
+    tags
+}

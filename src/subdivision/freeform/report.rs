@@ -1,0 +1,45 @@
+//! What is told of a boolean of cages.
+
+use super::measure::Errors;
+
+/// What was asked for and what came of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct FreeFormReport {
+    /// The distance asked for.
+    pub asked: f64,
+    /// The distances of the cage that is returned.
+    pub errors: Errors,
+    /// Whether the largest of both directions is within what was asked for.
+    pub reached: bool,
+    /// Control points of the result.
+    pub vertices: usize,
+    /// Faces of the result.
+    pub faces: usize,
+    /// Control points that no operand had.
+    pub added: usize,
+    /// Control points of the operands that moved.
+    pub fitted: usize,
+    /// Control points of the operands that are there bit for bit.
+    pub unchanged: usize,
+    /// Chains of the intersection curve.
+    pub chains: usize,
+    /// Its ends, turns, and meetings with creases.
+    pub features: usize,
+    /// The smallest angle between both surfaces along the curve, in degrees; 90 without a curve.
+    pub crossing: f64,
+    /// The most faces around a vertex that an operand did not have so.
+    pub valence: usize,
+    /// How often faces beside the curve were halved in size for the cage that is returned.
+    pub refined: u32,
+    /// Levels of details of the result.
+    pub levels: usize,
+    /// Vertices in the working mesh that could not be taken out.
+    pub left_over: usize,
+    /// Triangles of the exact result.
+    pub exact_triangles: usize,
+    /// Seconds by step: limit meshes, exact boolean, curve, cage, fit, measure.
+    pub seconds: Vec<(&'static str, f64)>,
+    /// What a user should know: tolerance not reached, and where; surfaces nearly tangential.
+    pub warnings: Vec<String>,
+}
