@@ -110,6 +110,9 @@ fn run_task(
         let measures = Measures::of_solid(outcome.solid());
         let mut result = measures.to_json();
         result.insert("certificate".into(), report::certificate(outcome.certificate()));
+        if let Some(warning) = report::nearly_flush(outcome.certificate()) {
+            session.warn(warning);
+        }
         results.push(Value::from(result));
         outputs.extend(write(arguments, targets, outcome, format, session)?);
         let names: Vec<String> = targets.iter().map(Target::name).collect();

@@ -228,6 +228,29 @@ pub(crate) fn certificate(certificate: &Certificate) -> Value {
     object.into()
 }
 
+/// What there is to say about films and gaps too thin for single precision.
+pub(crate) fn nearly_flush(certificate: &Certificate) -> Option<String> {
+    let near = &certificate.nearly_flush;
+    let places: Vec<String> = near
+        .places
+        .iter()
+        .take(3)
+        .map(|found| {
+            let [x, y, z] = found.place.map(short);
+            format!("{:.1e} at ({x}, {y}, {z})", found.distance)
+        })
+        .collect();
+    (near.count > 0).then(|| {
+        format!(
+            "{} nearly flush with a face of another operand, apart by {}{}: films or gaps that thin are \
+             lost in single precision (STL, GLB); give coordinates that are flush, or let the tool reach further",
+            if near.count == 1 { "1 corner of the result is".into() } else { format!("{} corners of the result are", near.count) },
+            places.join(", "),
+            if near.count > places.len() { ", ..." } else { "" },
+        )
+    })
+}
+
 /// The keys of a JSON object.
 pub(crate) fn into_map(object: Value) -> Map<String, Value> {
     match object {

@@ -26,7 +26,8 @@ pub struct SelfCrossings {
     pub count: usize,
     /// Pairs that cross no deeper than rounding; every computed mesh may have some. They are tolerated.
     pub tolerated: usize,
-    /// The depth that counts as rounding, in units of the coordinates.
+    /// The depth that counts as rounding at the largest coordinates, in units of these; where all coordinates are smaller than a
+    /// sixteenth of the largest, less in proportion.
     pub tolerance: f64,
     /// The deepest few of the `count` pairs.
     pub places: Vec<SelfCrossing>,
