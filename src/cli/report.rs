@@ -166,6 +166,10 @@ pub(crate) fn operand_line(operand: &Operand, measures: &Measures) -> String {
                 operand.request.rule
             ));
         }
+        Some(crossings) if crossings.touching > 0 => {
+            let count = counted(crossings.touching, "pair");
+            line.push_str(&format!(", {count} of triangles that lie on each other resolved"));
+        }
         Some(crossings) if crossings.tolerated > 0 => {
             let count = counted(crossings.tolerated, "self-crossing");
             line.push_str(&format!(", {count} no deeper than rounding"));

@@ -11,6 +11,7 @@ use smallvec::SmallVec;
 use super::apart::{are_apart, meet_in_corner_alone};
 use super::self_pairs::self_pairs;
 use crate::boolean::complex::ids::VertexId;
+use crate::boolean::complex::planes;
 use crate::boolean::complex::predicates::Predicates;
 use crate::boolean::complex::rays::{Ray, coordinate_past, signed_crossing};
 use crate::boolean::complex::{Complex, Corner, Operand};
@@ -57,14 +58,19 @@ fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     let surface = Surface::new(&complex, &bounds, largest);
     let pairs = self_pairs(mesh, &surface.tree, &surface.frame, runner, |[s, t]| {
         let (a, b) = (mesh.triangles[s as usize], mesh.triangles[t as usize]);
-        // Two triangles with a common edge meet in that edge alone; on all three corners they are one triangle twice.
-        !matches!(a.iter().filter(|v| b.contains(v)).count(), 2)
+        // Two triangles with a common edge meet in that edge alone, unless they are folded back on each other; on all three
+        // corners they are one triangle twice.
+        a.iter().filter(|v| b.contains(v)).count() != 2 || surface.lie_on_each_other([s, t])
     })?;
     let found = runner.pieces(pairs.len(), 4096, |range| {
         pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
     })?;
     let mut result = SelfCrossings { tolerance: surface.part * largest, ..SelfCrossings::default() };
     for found in found.into_iter().flatten() {
+        let Found::Crossing(found) = found else {
+            result.touching += 1;
+            continue;
+        };
         if found.real {
             result.count += 1;
             result.places.push(found.crossing);
@@ -84,7 +90,13 @@ fn tolerance_of_one(positions: &[[f64; 3]]) -> f64 {
     TOLERATED_ULPS * epsilon
 }
 
-struct Found {
+enum Found {
+    Crossing(Crossing),
+    /// They lie on each other in one plane.
+    Touching,
+}
+
+struct Crossing {
     crossing: SelfCrossing,
     real: bool,
 }
@@ -125,7 +137,20 @@ impl<'a> Surface<'a> {
     /// The crossing of a pair of triangles, if they cross.
     fn examine(&self, pair: [u32; 2]) -> Option<Found> {
         let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t));
-        if self.are_plainly_apart(&a, &b) { None } else { self.examine_closely(pair, &a, &b) }
+        if self.are_plainly_apart(&a, &b) {
+            return None;
+        }
+        if let Some(crossing) = self.examine_closely(pair, &a, &b) {
+            return Some(Found::Crossing(crossing));
+        }
+        self.lie_on_each_other(pair).then_some(Found::Touching)
+    }
+
+    /// Whether two triangles lie in one plane and overlap.
+    fn lie_on_each_other(&self, pair: [u32; 2]) -> bool {
+        let Operand { positions, triangles } = self.complex.operands[0];
+        let [a, b] = pair.map(|t| triangles[t as usize].map(|v| positions[v as usize]));
+        planes::lie_on_each_other(&a, &b)
     }
 
     /// Whether two triangles plainly have nothing in common but a corner. Nearly all pairs are apart, and most ties are of faces
@@ -142,15 +167,16 @@ impl<'a> Surface<'a> {
         }
     }
 
-    fn examine_closely(&self, pair: [u32; 2], a: &[Corner; 3], b: &[Corner; 3]) -> Option<Found> {
+    fn examine_closely(&self, pair: [u32; 2], a: &[Corner; 3], b: &[Corner; 3]) -> Option<Crossing> {
         let segment = match common_corners(a, b).as_slice() {
             [] => self.crossing(a, b)?,
             &[corners] => self.crossing_at_common_corner(a, b, corners)?,
+            corners if corners.len() == 2 => return None,
             _ => {
                 // The same triangle twice. (Opposite copies are left out of every solid.)
                 let place = a[0].position;
                 let crossing = SelfCrossing { triangles: pair, place, depth: 0.0 };
-                return Some(Found { crossing, real: true });
+                return Some(Crossing { crossing, real: true });
             }
         };
         let depth = depth(a, b).min(depth(b, a)).min(distance(&segment[0], &segment[1]));
@@ -158,7 +184,7 @@ impl<'a> Surface<'a> {
         let own = largest_coordinate(&segment[0]).max(largest_coordinate(&segment[1]));
         let tolerance = self.part * size_at_hand(self.largest, own);
         let real = depth > tolerance || self.leaves_wrong_winding(&place, a, b, tolerance);
-        Some(Found { crossing: SelfCrossing { triangles: pair, place, depth }, real })
+        Some(Crossing { crossing: SelfCrossing { triangles: pair, place, depth }, real })
     }
 
     /// The ends of the segment in which two triangles without common corners meet, roughly.
@@ -337,7 +363,7 @@ pub(super) fn count_by_all_pairs(solid: &Solid) -> (usize, usize) {
         let [a, b] = pair.map(|t| surface.complex.corners_of_triangle(0, t));
         surface.examine_closely(pair, &a, &b)
     };
-    let found: Vec<Found> = pairs.filter(|&pair| common(pair) != 2).filter_map(examine).collect();
+    let found: Vec<Crossing> = pairs.filter(|&pair| common(pair) != 2).filter_map(examine).collect();
     let real = found.iter().filter(|found| found.real).count();
     (real, found.len() - real)
 }
