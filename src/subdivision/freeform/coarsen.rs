@@ -6,12 +6,12 @@ use smallvec::SmallVec;
 
 use super::work::{Work, key, quality};
 
-/// Triangles must look the way the surface does: within 72 degrees, and 84 in the second half of the rounds.
-const UPRIGHT: [f64; 2] = [0.3, 0.1];
+/// Triangles must look the way the surface does, where they did: within 72 degrees at first, then 84, at last a right angle.
+const UPRIGHT: [f64; 3] = [0.3, 0.1, 0.0];
 /// Triangles of a worse shape than this are made only where the old ones were worse.
-const SHAPE: [f64; 2] = [0.12, 0.03];
-/// Rounds of coarsening at most; each takes all it can.
-const ROUNDS: usize = 12;
+const SHAPE: [f64; 3] = [0.12, 0.03, 0.001];
+/// Rounds of coarsening at most for each of these; each takes all it can.
+const ROUNDS: usize = 5;
 
 /// Takes out all vertices that are not to stay, as far as the surface allows. Returns how many are left of them.
 pub(super) fn coarsen(work: &mut Work) -> usize {
@@ -20,13 +20,17 @@ pub(super) fn coarsen(work: &mut Work) -> usize {
     order.sort_by_key(|&v| (std::cmp::Reverse(work.vertices[v as usize].step), v));
     let mut left = order;
     left.retain(|&v| !work.vertices[v as usize].keep && !work.around[v as usize].is_empty());
-    for round in 0..ROUNDS {
-        let strict = usize::from(round >= ROUNDS / 2);
-        let before = left.len();
-        left.retain(|&v| !take_out(work, v, strict));
-        turn_edges(work);
-        if left.is_empty() || (left.len() == before && strict == 1) {
-            break;
+    for strict in 0..UPRIGHT.len() {
+        for _ in 0..ROUNDS {
+            let before = left.len();
+            left.retain(|&v| !take_out(work, v, strict));
+            turn_edges(work);
+            if left.is_empty() {
+                return 0;
+            }
+            if left.len() == before {
+                break;
+            }
         }
     }
     left.len()
@@ -82,8 +86,11 @@ fn worth(work: &Work, v: u32, u: u32, strict: usize) -> Option<f64> {
             continue;
         }
         let corners = face.corners.map(|w| if w == v { u } else { w });
-        if !work.is_upright(corners, face.operand, UPRIGHT[strict])
-            || !turns_little(work, face.corners, corners, UPRIGHT[strict])
+        let least = UPRIGHT[strict];
+        let was_upright = work.is_upright(face.corners, face.operand, least);
+        if was_upright
+            && (!work.is_upright(corners, face.operand, least)
+                || !turns_little(work, face.corners, corners, least))
         {
             return None;
         }

@@ -23,6 +23,8 @@ mod report;
 mod sizes;
 mod solve;
 mod start;
+#[cfg(test)]
+mod tests;
 mod work;
 
 use std::time::Instant;
