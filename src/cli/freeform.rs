@@ -51,7 +51,8 @@ pub(crate) fn run(
     let seconds = session.took("run", start);
     // 3. The outputs.
     let start = Instant::now();
-    let cage = outcome.surface();
+    let flat = arguments.flatten.then(|| outcome.surface().subdivided(0)).transpose()?;
+    let cage = flat.as_ref().unwrap_or_else(|| outcome.surface());
     write(arguments, cage, &cage_paths, &targets, session)?;
     if !exact_targets.is_empty() {
         let mesh = outcome.exact().solid().mesh();
@@ -72,7 +73,8 @@ fn combine(
 ) -> Result<FreeFormOutcome, Fault> {
     let mut settings = FreeForm::new()
         .refine(arguments.refine)
-        .attempts(arguments.attempts)
+        .attempts(arguments.attempts.unwrap_or(if arguments.details > 0 { 0 } else { 2 }))
+        .details(arguments.details as usize)
         .rings(arguments.rings as usize)
         .allow_tangent(arguments.allow_tangent)
         .control(session.control());
@@ -102,7 +104,8 @@ fn write(
     targets: &[output::Target],
     session: &mut Session<'_>,
 ) -> Result<(), Fault> {
-    let documents: Vec<_> = cage_paths.iter().map(|path| cages::document(path, cage)).collect();
+    let documents: Vec<_> =
+        cage_paths.iter().map(|path| cages::document(path, cage)).collect::<Result<_, Fault>>()?;
     let mesh = if targets.is_empty() {
         trisect::Mesh::default()
     } else {
@@ -157,6 +160,8 @@ fn described(found: &FreeFormReport) -> Value {
         "crossing_degrees": found.crossing,
         "largest_valence": found.valence,
         "refined": found.refined,
+        "levels": found.levels,
+        "details": found.details,
         "exact_triangles": found.exact_triangles,
         "seconds": seconds,
     })

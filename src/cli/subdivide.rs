@@ -61,10 +61,10 @@ pub(crate) fn run(
         Made::Cage(cage) => (cage.mesh(), Some(cage)),
         Made::Mesh(mesh) => (mesh.clone(), None),
     };
-    let documents: Vec<_> = drawn_cage
+    let documents = drawn_cage
         .iter()
         .flat_map(|cage| cage_paths.iter().map(|path| cages::document(path, cage)))
-        .collect();
+        .collect::<Result<Vec<_>, Fault>>()?;
     let picture = || match drawn_cage.map(|cage| cages::picture(cage, drawing)) {
         Some(Ok(picture)) => picture,
         _ => trisect::render::mesh(&mesh, &output::view(drawing, None), None),

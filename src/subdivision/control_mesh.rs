@@ -1,14 +1,16 @@
 //! `ControlMesh`: a cage, plain and checked.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use glam::DVec3;
 
+use super::details::{Details, MOST_LEVELS, synthesised};
 use super::error::CageError;
 use super::evaluate::Surface;
 use super::level::{Kind, Level};
 use super::limit_mesh::{LimitMesh, most_steps};
-use super::refine::{CONCAVE_FROM, apply};
+use super::refine::CONCAVE_FROM;
 use super::rules::Rules;
 use super::tags::{Crease, Sector, Tags};
 use crate::{Error, Mesh};
@@ -29,6 +31,7 @@ pub struct ControlMesh {
     positions: Vec<[f64; 3]>,
     level: Level,
     tags: Tags,
+    details: Vec<Details>,
 }
 
 /// Where on a cage: weights of the corners of a control face, which sum to 1.
@@ -71,7 +74,7 @@ impl ControlMesh {
         let mut level = Level::new(rules, positions.len(), faces, &tags)?;
         note_concave(&mut level, &positions);
         let tags = level.tags();
-        Ok(Self { positions, level, tags })
+        Ok(Self { positions, level, tags, details: Vec::new() })
     }
 
     /// The control points.
@@ -122,29 +125,60 @@ impl ControlMesh {
         Mesh::new(self.positions.clone(), self.level.faces.clone())
     }
 
+    /// The displacements of vertices after one, two, ... subdivisions. Most cages have none.
+    #[must_use]
+    pub fn details(&self) -> &[Details] {
+        &self.details
+    }
+
+    /// The same cage with details in place of its own.
+    ///
+    /// # Errors
+    /// [`Error::Cage`] for a detail at no vertex of its level, one that is not finite, and too many levels.
+    pub fn with_details(mut self, details: Vec<Details>) -> Result<Self, Error> {
+        if details.len() > MOST_LEVELS {
+            let what = format!("{} levels of details; there may be {MOST_LEVELS}", details.len());
+            return Err(CageError::Tag(what).into());
+        }
+        if details.iter().flat_map(|level| &level.at).any(|(_, detail)| !detail.iter().all(|x| x.is_finite()))
+        {
+            return Err(CageError::Tag("a detail is not finite".into()).into());
+        }
+        self.details = details;
+        self.subdivided(0)?;
+        Ok(self)
+    }
+
     /// The cage after `steps` subdivisions: the same surface over 4^steps times as many faces. Face f becomes 4f to 4f + 3, its
-    /// corners in their order and then the middle; the first vertices are the old ones. O(4^steps n).
+    /// corners in their order and then the middle; the first vertices are the old ones. A cage with details is subdivided at
+    /// least as often as it has levels of them, and the result has none. O(4^steps n).
     ///
     /// # Errors
     /// [`Error::TooLarge`] beyond what 32-bit indices can name.
     pub fn subdivided(&self, steps: usize) -> Result<Self, Error> {
         let mut level = self.level.clone();
         let mut positions = self.points();
-        for _ in 0..steps {
+        let none = Details::default();
+        for step in 0..steps.max(self.details.len()) {
             if level.faces.len() > most_faces() / 4 {
                 return Err(Error::TooLarge {
                     what: format!("{} faces, four times as many", level.faces.len()),
                 });
             }
-            let (next, rows) = level.refined();
-            positions = rows.iter().map(|row| apply(row, &positions)).collect();
-            level = next;
+            let details = self.details.get(step).unwrap_or(&none);
+            (level, positions) = synthesised(&level, &positions, details, step + 1)?;
         }
         let tags = level.tags();
-        Ok(Self { positions: positions.iter().map(DVec3::to_array).collect(), level, tags })
+        let positions = positions.iter().map(DVec3::to_array).collect();
+        Ok(Self { positions, level, tags, details: Vec::new() })
     }
 
-    /// The positions to which the control points move under endless subdivision. O(n).
+    /// The cage without details: itself, or subdivided as often as it has levels of them.
+    pub(crate) fn flattened(&self) -> Result<Cow<'_, Self>, Error> {
+        if self.details.is_empty() { Ok(Cow::Borrowed(self)) } else { self.subdivided(0).map(Cow::Owned) }
+    }
+
+    /// The positions to which the control points move under endless subdivision, without details. O(n).
     #[must_use]
     pub fn limit_positions(&self) -> Vec<[f64; 3]> {
         let surface = self.surface();
@@ -161,7 +195,7 @@ impl ControlMesh {
         if !(tolerance > 0.0) {
             return Err(Error::InvalidArgument(format!("a tolerance must be positive, not {tolerance}")));
         }
-        let surface = self.surface();
+        let surface = self.flattened()?.surface();
         LimitMesh::new(&surface, &most_steps(&surface, tolerance)?)
     }
 
@@ -175,17 +209,20 @@ impl ControlMesh {
                 what: format!("{} faces, split {steps} times", self.level.faces.len()),
             });
         }
-        LimitMesh::new(&self.surface(), &vec![steps as u32; self.level.faces.len()])
+        let flat = self.flattened()?;
+        let steps = steps.saturating_sub(self.details.len()) as u32;
+        LimitMesh::new(&flat.surface(), &vec![steps; flat.level.faces.len()])
     }
 
-    /// The limit surface at a place; nothing for a face that is not there. For many places, [`evaluator`](Self::evaluator) keeps
+    /// The limit surface at a place, without details; nothing for a face that is not there. For many places, [`evaluator`](Self::evaluator) keeps
     /// what it finds.
     #[must_use]
     pub fn at(&self, place: Place) -> Option<LimitPoint> {
         self.evaluator().at(place)
     }
 
-    /// What evaluates the limit surface at any number of places.
+    /// What evaluates the limit surface at any number of places; without details, for which [`subdivided`](Self::subdivided)
+    /// makes a cage that has them in its control points.
     #[must_use]
     pub fn evaluator(&self) -> Evaluator {
         Evaluator(self.surface())
@@ -200,7 +237,8 @@ impl ControlMesh {
         super::obj::read(bytes, rules)
     }
 
-    /// The cage as an OBJ file with tag lines; reading it gives the same bits.
+    /// The cage as an OBJ file with tag lines; reading it gives the same bits. OBJ has no details: what is written is the cage
+    /// without them, so write [`subdivided(0)`](Self::subdivided) to have their surface.
     #[must_use]
     pub fn to_obj(&self) -> String {
         super::obj::write(self)
@@ -229,7 +267,7 @@ impl ControlMesh {
     /// The same cage with other control points.
     pub(crate) fn with_points(&self, points: &[DVec3]) -> Self {
         let positions = points.iter().map(DVec3::to_array).collect();
-        Self { positions, level: self.level.clone(), tags: self.tags.clone() }
+        Self { positions, level: self.level.clone(), tags: self.tags.clone(), details: Vec::new() }
     }
 
     pub(crate) fn level(&self) -> &Level {

@@ -10,6 +10,7 @@
 //! has the words, the weights and what was measured.
 
 mod control_mesh;
+mod details;
 mod error;
 mod evaluate;
 mod freeform;
@@ -26,6 +27,7 @@ mod rules;
 mod tags;
 
 pub use control_mesh::{ControlMesh, Evaluator, LimitPoint, Place};
+pub use details::{Details, DomainVertex};
 pub use error::CageError;
 pub use freeform::{Errors, FreeForm, FreeFormOutcome, FreeFormReport, VertexOrigin};
 pub use limit_mesh::LimitMesh;

@@ -4,6 +4,7 @@ use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::VertexOrigin;
+use super::curve::Chain;
 use super::operand::Operand;
 use super::work::{Sharp, Work, key};
 use crate::Error;
@@ -31,6 +32,53 @@ pub(super) struct Draft {
     pub(super) fixed: Vec<bool>,
     /// Tagged edges, ends in order.
     pub(super) sharp: FxHashMap<(u32, u32), Sharp>,
+}
+
+impl Draft {
+    /// The draft after one subdivision: for details. Every face is one of the band, every new vertex new.
+    pub(super) fn refined(&self, chains: &[Chain]) -> Result<Self, Error> {
+        let level = self.cage.level();
+        let cage = self.cage.subdivided(1)?;
+        let before = level.vertex_count as u32;
+        let count = cage.positions().len();
+        let mut sharp = FxHashMap::default();
+        let mut on_curve = self.on_curve.clone();
+        on_curve.resize(count, None);
+        for (e, &h) in level.edges.iter().enumerate() {
+            let (u, v, middle) = (level.from(h), level.to(h), before + e as u32);
+            let Some(&tag) = self.sharp.get(&key(u, v)) else { continue };
+            sharp.insert(key(u, middle), tag);
+            sharp.insert(key(middle, v), tag);
+            if tag == Sharp::Curve {
+                let x = DVec3::from(cage.positions()[middle as usize]);
+                let near =
+                    chains.iter().enumerate().map(|(c, chain)| (c, chain.nearest(x, 0.0, f64::INFINITY)));
+                let nearest = near.min_by(|a, b| a.1.1.distance(x).total_cmp(&b.1.1.distance(x)));
+                on_curve[middle as usize] = nearest.map(|(c, found)| (c as u32, found.0));
+            }
+        }
+        let resized = |of: &[bool]| -> Vec<bool> {
+            of.iter().copied().chain((of.len()..count).map(|_| false)).collect()
+        };
+        let four = |of: &[bool]| -> Vec<bool> { of.iter().flat_map(|&value| [value; 4]).collect() };
+        Ok(Self {
+            origins: Vec::new(),
+            operand_of: self.operand_of.iter().flat_map(|&o| [o; 4]).collect(),
+            sources: vec![None; cage.faces().len()],
+            whole: four(&self.whole),
+            changed: vec![false; count],
+            targets: self
+                .targets
+                .iter()
+                .copied()
+                .chain((self.targets.len()..count).map(|_| DVec3::ZERO))
+                .collect(),
+            on_curve,
+            fixed: resized(&self.fixed),
+            sharp,
+            cage,
+        })
+    }
 }
 
 /// A face with its lowest corner first.

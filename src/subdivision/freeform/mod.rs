@@ -15,6 +15,7 @@
 mod assemble;
 mod coarsen;
 mod curve;
+mod details;
 mod fit;
 mod measure;
 mod operand;
@@ -39,7 +40,7 @@ use assemble::{Draft, assemble};
 use curve::Chain;
 use fit::Fit;
 pub use measure::Errors;
-use measure::Measure;
+use measure::{Measure, Region};
 use operand::Operand;
 pub use report::FreeFormReport;
 use sizes::Sizes;
@@ -88,6 +89,7 @@ pub struct FreeForm {
     refine: u32,
     attempts: u32,
     rings: usize,
+    details: usize,
     allow_tangent: bool,
     control: Control,
 }
@@ -99,6 +101,7 @@ impl Default for FreeForm {
             refine: 0,
             attempts: 2,
             rings: 2,
+            details: 0,
             allow_tangent: false,
             control: Control::new(),
         }
@@ -152,6 +155,8 @@ const FINENESS: f64 = 0.5;
 const MOST_TRIANGLES: usize = 150_000;
 /// ... and no face more often than this.
 const MOST_STEPS: u32 = 5;
+/// The cage's surface is measured at the vertices of 4^3 triangles a face.
+const MEASURED_STEPS: u32 = 3;
 /// Tolerance without one given, over the diagonal of the operands.
 const USUAL_TOLERANCE: f64 = 1e-3;
 /// Surfaces that cross at less than this angle, in degrees, are refused: their curve is not known.
@@ -189,6 +194,15 @@ impl FreeForm {
     #[must_use]
     pub fn rings(mut self, rings: usize) -> Self {
         self.rings = rings.max(1);
+        self
+    }
+
+    /// Up to how many levels of details are added while the tolerance is not reached: displacements after one, two, ...
+    /// subdivisions, which make every level three to five times as near. Default 0: a plain cage, which every program reads. At
+    /// most 4.
+    #[must_use]
+    pub fn details(mut self, levels: usize) -> Self {
+        self.details = levels.min(4);
         self
     }
 
@@ -254,6 +268,9 @@ struct Run<'s> {
 struct Attempt {
     draft: Draft,
     errors: Errors,
+    /// The largest distance over each face.
+    of_face: Vec<f64>,
+    region: Region,
     refined: u32,
     left_over: usize,
 }
@@ -290,6 +307,15 @@ impl Run<'_> {
         control.report("limit surfaces", 0.0)?;
         let operands = [self.operand(0, a)?, self.operand(1, b)?];
         let operands = [&operands[0], &operands[1]];
+        for (index, cage) in [a, b].into_iter().enumerate() {
+            if operands[index].cage.faces().len() != cage.faces().len() {
+                self.report.warnings.push(format!(
+                    "operand {} is subdivided first, since it has details or creases that are sharp for a while only: the same \
+                     surface, with more control points",
+                    index + 1
+                ));
+            }
+        }
         self.took("limit");
         let exact = BooleanOptions::new()
             .control(control.clone())
@@ -334,7 +360,22 @@ impl Run<'_> {
                 break;
             }
         }
-        let Some(best) = best else { return Err(CageError::Operation("no cage was made".into()).into()) };
+        let Some(mut best) = best else { return Err(CageError::Operation("no cage was made".into()).into()) };
+        if self.settings.details > 0 && best.errors.largest() > self.tolerance {
+            let measure = Measure {
+                operands,
+                start: &start,
+                exact: &exact,
+                chains: &chains,
+                fineness: self.tolerance * FINENESS,
+            };
+            let levels =
+                details::add(&mut best, &measure, start.reversed, self.settings.details, self.tolerance)?;
+            self.report.levels = levels.len();
+            self.report.details = levels.iter().map(|level| level.at.len()).sum();
+            best.draft.cage = best.draft.cage.with_details(levels)?;
+            self.took("details");
+        }
         self.describe(&best, operands);
         Ok(FreeFormOutcome {
             surface: best.draft.cage,
@@ -384,7 +425,7 @@ impl Run<'_> {
         let mut draft = assemble(&work, operands, start.reversed)?;
         self.took("cage");
         // 2. Its control points.
-        let mut fit = Fit::new(&draft, operands, start.reversed, chains, self.settings.rings);
+        let mut fit = Fit::new(&draft, operands, start.reversed, chains, self.settings.rings, 2);
         let mut positions = draft.cage.points();
         if !fit.unknown.is_empty() {
             fit.run(&mut positions, 0.01 * self.tolerance);
@@ -399,9 +440,10 @@ impl Run<'_> {
         // 3. The distance.
         let fineness = self.tolerance * FINENESS;
         let measure = Measure { operands, start, exact, chains, fineness };
-        let errors = measure.errors(&draft, &fit.unknown);
+        let region = measure.region(&draft, &fit.unknown);
+        let (errors, of_face) = measure.errors(&draft, &region, MEASURED_STEPS);
         self.took("measure");
-        Ok(Attempt { draft, errors, refined, left_over })
+        Ok(Attempt { draft, errors, of_face, region, refined, left_over })
     }
 
     fn describe(&mut self, best: &Attempt, operands: [&Operand; 2]) {

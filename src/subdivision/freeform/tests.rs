@@ -129,6 +129,29 @@ fn a_bored_ball_is_as_near_as_it_was_seen_to_be() {
     assert_eq!(again.surface().to_obj(), native.surface().to_obj());
 }
 
+/// Each level of details makes the surface at least three times as near.
+#[test]
+fn details_come_nearer_level_by_level() {
+    let ball = ball(1);
+    let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.3);
+    let bore = moved(&cylinder(8, 4, 0.5, -1.6, 1.6), |p| turn * p);
+    let mut before = f64::INFINITY;
+    for levels in 0..=2 {
+        let settings = FreeForm::new().tolerance(1e-4).attempts(0).details(levels);
+        let outcome = settings.run(Operation::Difference, &ball, &bore).expect("a cage");
+        let report = outcome.report();
+        assert_eq!((report.levels, outcome.surface().details().len()), (levels, levels));
+        assert!(report.errors.forward * 3.0 < before, "level {levels}: {report:?}");
+        before = report.errors.forward;
+        // The details are the surface's, not the report's alone.
+        let fine = outcome.surface().limit_mesh_of_steps(4).expect("not too fine");
+        let tree = TriangleTree::new(outcome.exact().solid().mesh());
+        let far = |p: &[f64; 3]| tree.closest(*p).expect("not empty").squared_distance.sqrt();
+        let far = fine.mesh().positions.iter().map(far).fold(0.0, f64::max);
+        assert!(far <= report.errors.largest() + report.errors.allowance, "{far} {report:?}");
+    }
+}
+
 #[test]
 fn where_nothing_is_cut_all_bits_stay() {
     let (one, far) = (ball(1), moved(&ball(1), |p| p + DVec3::new(5.0, 0.0, 0.0)));
