@@ -143,8 +143,8 @@ fn collapse(work: &mut Work, v: u32, u: u32) {
     work.around[u as usize].sort_unstable();
 }
 
-/// Turns edges while that makes triangles better or vertices more regular. Edges of curves and creases, and between control
-/// faces that stay whole, are left. Returns how many were turned.
+/// Turns edges while that makes triangles better or vertices more regular. Edges of curves and creases are left, and
+/// those of control faces that are whole, if no vertex is crowded. Returns how many were turned.
 pub(super) fn turn_edges(work: &mut Work) -> usize {
     let mut turned = 0;
     // The energy falls with each turn, so it ends; the bound is for rounding.
@@ -153,7 +153,7 @@ pub(super) fn turn_edges(work: &mut Work) -> usize {
         for face in work.faces.iter().filter(|face| face.alive) {
             for k in 0..3 {
                 let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
-                if face.whole.is_none() {
+                if face.whole.is_none() || is_crowded(work, u, v) {
                     edges.push(key(u, v));
                 }
             }
@@ -178,7 +178,8 @@ fn turn_edge(work: &mut Work, u: u32, v: u32) -> bool {
     }
     let Some([(f, a), (g, b)]) = work.sides(u, v) else { return false };
     let (one, other) = (work.faces[f as usize], work.faces[g as usize]);
-    if one.whole.is_some() || other.whole.is_some() || a == b || work.neighbours(a).contains(&b) {
+    let kept = (one.whole.is_some() || other.whole.is_some()) && !is_crowded(work, u, v);
+    if kept || a == b || work.neighbours(a).contains(&b) {
         return false;
     }
     if [u, v].iter().any(|&w| work.around[w as usize].len() <= 3) {
@@ -218,6 +219,17 @@ fn turn_edge(work: &mut Work, u: u32, v: u32) -> bool {
     true
 }
 
+/// More faces than this at a vertex are worth turning an edge of an operand's faces.
+const CROWDED: usize = 9;
+
+/// Whether an end of an edge has too many faces, of which some are new.
+fn is_crowded(work: &Work, u: u32, v: u32) -> bool {
+    [u, v].into_iter().any(|w| {
+        let around = &work.around[w as usize];
+        around.len() > CROWDED && around.iter().any(|&f| work.faces[f as usize].whole.is_none())
+    })
+}
+
 /// What one face too many, squared, weighs against the inverse shapes of two triangles.
 const CROWD: f64 = 0.35;
 
@@ -239,6 +251,7 @@ fn replace(work: &mut Work, f: u32, corners: [u32; 3]) {
         work.around[w as usize].retain(|g| *g != f);
     }
     work.faces[f as usize].corners = corners;
+    work.faces[f as usize].whole = None;
     for w in corners {
         work.around[w as usize].push(f);
         work.around[w as usize].sort_unstable();
