@@ -186,7 +186,8 @@ impl ControlMesh {
     }
 
     /// The limit surface as triangles that are at most `tolerance` away from it, vertices on it, more where it bends more.
-    /// Watertight where the cage is closed.
+    /// Watertight where the cage is closed. (The distance is bounded over regular faces; at extraordinary vertices it is measured
+    /// at middles of edges, and doubled.)
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] for a tolerance that is not positive; [`Error::TooLarge`] where more than

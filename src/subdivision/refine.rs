@@ -214,6 +214,7 @@ impl Level {
             edges,
             sharpness,
             first: Vec::new(),
+            has_sharp: Vec::new(),
             corners: self.corners.iter().map(|(&v, &s)| (v, after(s))).filter(|&(_, s)| s > 0.0).collect(),
             openings: FxHashMap::default(),
         };
@@ -223,6 +224,7 @@ impl Level {
             }
         }
         level.find_first();
+        level.find_sharp();
         level
     }
 }

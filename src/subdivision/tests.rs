@@ -199,8 +199,6 @@ fn a_concave_sector_is_smooth() {
         sectors: vec![Sector { vertex: 0, first: 2, angle: 1.5 * std::f64::consts::PI, flatness: 0.5 }],
     };
     let cage = ControlMesh::new(positions, faces, tags, Rules::Loop).expect("valid");
-    let fine = cage.subdivided(4).expect("small").subdivided(4).map(|_| ()).is_ok();
-    assert!(fine);
     let surface = cage.surface();
     let mut normals = Vec::new();
     for i in 0..6u32 {
