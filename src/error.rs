@@ -9,7 +9,7 @@ use crate::control::Limit;
 use crate::field::{FieldError, FormulaError};
 #[cfg(feature = "formats")]
 use crate::io::FormatError;
-use crate::mesh::MeshError;
+use crate::mesh::{MeshError, Refusal};
 
 /// What was tried with a file. The text is the verb.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,12 +125,20 @@ pub enum Failure {
     Limit,
 }
 
+impl From<Box<Refusal>> for Error {
+    fn from(refusal: Box<Refusal>) -> Self {
+        refusal.error.into()
+    }
+}
+
 impl Error {
     /// Which kind of failure this is.
     #[must_use]
     pub fn failure(&self) -> Failure {
         match self {
             Self::File { .. } => Failure::Unreadable,
+            #[cfg(feature = "formats")]
+            Self::Format(FormatError::NoSuchPart { .. }) => Failure::Unusable,
             #[cfg(feature = "formats")]
             Self::Format(_) => Failure::Unreadable,
             Self::InvalidArgument(_)

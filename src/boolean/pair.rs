@@ -11,17 +11,15 @@ use crate::boolean::classify::body::Body;
 use crate::boolean::classify::multiplicity::{self, Part};
 use crate::boolean::classify::winding::Windings;
 use crate::boolean::complex::operation::Operation;
+use crate::boolean::complex::predicates::Perturbed;
 use crate::boolean::complex::{Complex, Motion, Operand};
 use crate::boolean::cut::{cut, plane_sums};
 use crate::boolean::result::assemble::{Assembled, assemble};
-use crate::boolean::tidy::{self, tidy};
+use crate::boolean::rounding::Rounding;
+use crate::boolean::tidy::{self, Ground, tidy};
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::{Error, Solid};
-
-/// Edges and heights of new triangles up to this are rounding, in units in the last place of the largest coordinate: each of
-/// two points is off by less than one in every direction, and their distance by less than twice that.
-const ROUNDING_ULPS: f64 = 4.0;
 
 /// The most vertices of both operands together; the other half of all 32-bit numbers is left for crossings.
 const MOST_VERTICES: usize = 1 << 31;
@@ -99,7 +97,7 @@ fn build(
     settings: Settings<'_>,
     runner: Runner<'_>,
 ) -> Result<Assembled, Error> {
-    let rounding = ROUNDING_ULPS * f64::EPSILON * arrangement.curve.complex.largest_coordinate();
+    let rounding = Rounding::up_to(arrangement.curve.complex.largest_coordinate());
     // 7. Cutting: sheets first, then all other faces.
     let sums = plane_sums::add_up(Body { arrangement, windings, parts }, runner)?;
     arrangement
@@ -117,18 +115,22 @@ fn build(
         contacts,
         always: cut.has_slivers || !sums.done.is_empty(),
     };
-    let tidied = tidy(body, &pieces, &tidy_settings, runner)?;
+    let tidied = tidy(Ground::Body(body), &pieces, &tidy_settings, runner)?;
     runner.control.check()?;
     // 9. The result: untouched triangles in their order, then the pieces.
-    let (assembled, clean_up_stopped) = match tidied {
-        None => (assemble(body, &pieces, None, runner)?, 0),
+    let (pieces, replaced, clean_up_stopped) = match tidied {
+        None => (pieces, None, 0),
         Some(tidied) => {
             arrangement.points.add(tidied.copies.into_iter().map(AddedPoint::Copy));
-            let body = Body { arrangement, windings, parts };
-            (assemble(body, &tidied.new, Some(&tidied.replaced), runner)?, tidied.stopped)
+            (tidied.new, Some(tidied.replaced), tidied.stopped)
         }
     };
-    Ok(Assembled { has_inverted: cut.has_inverted, clean_up_stopped, ..assembled })
+    let body = Body { arrangement, windings, parts };
+    let assembled = assemble(body, &pieces, replaced.as_ref(), runner)?;
+    let has_inverted = cut.has_inverted;
+    let may_cross =
+        has_inverted || rounding.has_low(&pieces, |point| body.arrangement.points.position(point));
+    Ok(Assembled { has_inverted, may_cross, clean_up_stopped, ..assembled })
 }
 
 /// The parts that are summed up together. The halves of a symmetric difference share no inside and touch in the curve, so

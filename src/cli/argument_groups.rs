@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, ColorChoice, ValueEnum};
 use trisect::io::Format;
+use trisect::mesh::Welding;
 
 use super::values;
 
@@ -108,25 +109,43 @@ pub(crate) struct Placing {
     matrix: Vec<[[f64; 4]; 4]>,
 }
 
-/// What is mended in inputs, where it is asked for.
-#[derive(Clone, Copy, Debug, Args)]
+/// What is mended in inputs where it is asked for. Each applies to the input just before it, or to all inputs if it stands
+/// before the first. The values are taken from the matches together with their positions, not from these fields.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Mending, of the input just before them, or of all inputs before the first")]
 pub(crate) struct Repair {
-    /// Turn inputs whose faces point inwards
-    #[arg(long, help_heading = "Inputs")]
-    pub(crate) orient: bool,
-    /// Join vertices on open edges that are no further apart than this
-    #[arg(
-        long, value_name = "DISTANCE", value_parser = values::distance, help_heading = "Inputs",
-        allow_hyphen_values = true
-    )]
-    pub(crate) weld: Option<f64>,
+    /// Turn an input whose faces point inwards, or disagree
+    #[arg(long, num_args = 0, default_missing_value = "true", action = clap::ArgAction::Append)]
+    orient: Vec<bool>,
+    /// Join vertices on open edges that are no further apart than this; auto: than the least distance that closes the
+    /// surface
+    #[arg(long, value_name = "DISTANCE|auto", value_parser = values::welding, allow_hyphen_values = true)]
+    weld: Vec<Welding>,
+}
+
+/// What is mended in operands.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Mending, of the input just before them, or of all inputs before the first")]
+pub(crate) struct Admitting {
+    /// Leave out the parts of an input that are not closed
+    #[arg(long, num_args = 0, default_missing_value = "true", action = clap::ArgAction::Append)]
+    closed_parts: Vec<bool>,
+    /// Mend nothing: refuse an input that is not closed as it is
+    #[arg(long, num_args = 0, default_missing_value = "true", action = clap::ArgAction::Append)]
+    as_is: Vec<bool>,
 }
 
 /// What makes an input an operand.
-#[derive(Clone, Copy, Debug, Args)]
+#[derive(Debug, Args)]
 pub(crate) struct Using {
     #[command(flatten)]
-    pub(crate) repair: Repair,
+    repair: Repair,
+    #[command(flatten)]
+    admitting: Admitting,
+    /// What is inside an input that crosses itself: where its surface winds around more often outwards than inwards
+    /// (positive), at all (nonzero), or an odd number of times (even-odd) [default: positive]
+    #[arg(long, value_name = "RULE", value_parser = values::rule, help_heading = "Inputs")]
+    rule: Vec<trisect::Rule>,
     /// Do not look for places where an input crosses itself
     #[arg(long, help_heading = "Inputs")]
     pub(crate) assume_clean: bool,
@@ -148,6 +167,9 @@ pub(crate) struct Writing {
     /// Round coordinates to single precision
     #[arg(long)]
     pub(crate) single: bool,
+    /// Move the outputs so that the middle of their bounds is near the origin
+    #[arg(long)]
+    pub(crate) recenter: bool,
 }
 
 /// Pictures.
@@ -163,7 +185,7 @@ pub(crate) struct Drawing {
     /// Where to look from: x,y,z or front, back, left, right, top, bottom [default: 1,-1.2,0.8]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::direction, allow_hyphen_values = true)]
     pub(crate) view: Option<[f64; 3]>,
-    /// Which axis points upwards in the picture [default: y if the first input is glTF, else z]
+    /// Which axis points upwards in the picture [default: y if the first input is glTF or OBJ, else z]
     #[arg(long, value_enum)]
     pub(crate) png_up: Option<Up>,
     /// What the colours show [default: operand for a boolean, material otherwise]
@@ -177,7 +199,7 @@ pub(crate) struct Drawing {
 /// The upward axis of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Up {
-    /// The y axis, as in glTF
+    /// The y axis, as in glTF and most OBJ files
     Y,
     /// The z axis, as in most CAD and printing files
     Z,

@@ -56,6 +56,20 @@ pub(crate) enum Verb {
     /// What is in an odd number of the inputs (of two: in exactly one)
     #[command(after_help = "Example:\n  trisect xor old.stl new.stl -o changes.glb")]
     Xor(Combine),
+    /// An expression of the inputs, what is in at least so many of them, or all results of two
+    #[command(
+        after_help = "Examples:\n  trisect combine --expr 'a - (b + c)' body.stl pin.stl slot.stl -o part.stl\n  trisect \
+                            combine --expr 'body & box - pin' body=a.stl box=b.obj pin=c.glb -o part.glb\n  trisect \
+                            combine --at-least 2 a.stl b.stl c.stl -o common.stl\n  trisect combine --all a.stl b.stl \
+                            -o parts.stl"
+    )]
+    Combine(Combination),
+    /// What an input's surface winds around, as a surface that does not cross itself
+    #[command(
+        after_help = "Examples:\n  trisect resolve scan.stl -o clean.stl\n  trisect resolve logo.obj --rule even-odd -o \
+                            logo.glb"
+    )]
+    Resolve(Combine),
     /// Say whether files can be used as operands, and if not, why and where
     #[command(
         after_help = "Exit code 0: all usable; 3: at least one is not; 2: at least one cannot be read."
@@ -111,6 +125,8 @@ impl Verb {
             Self::Difference(_) => Operation::Difference.name(),
             Self::Intersection(_) => Operation::Intersection.name(),
             Self::Xor(_) => Operation::SymmetricDifference.name(),
+            Self::Combine(_) => "combine",
+            Self::Resolve(_) => "resolve",
             Self::Check(_) => "check",
             Self::Info(_) => "info",
             Self::Convert(_) => "convert",
@@ -137,6 +153,28 @@ pub(crate) struct Combine {
     /// Read and check the inputs, say what would be done, write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,
+}
+
+/// Expressions of several inputs.
+#[derive(Debug, Args)]
+#[command(group = clap::ArgGroup::new("wanted").required(true).args(["expr", "at_least", "all"]))]
+pub(crate) struct Combination {
+    /// An expression: + union, - difference, & intersection, ^ symmetric difference, parentheses, atleast(2, a, b, c). Inputs
+    /// are called a, b, c and so on, or as in name=FILE
+    #[arg(long, value_name = "EXPRESSION", help_heading = "Results", allow_hyphen_values = true)]
+    pub(crate) expr: Option<String>,
+    /// What is in at least so many inputs
+    #[arg(
+        long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..), help_heading = "Results",
+        allow_hyphen_values = true
+    )]
+    pub(crate) at_least: Option<u16>,
+    /// Of two inputs their union, intersection and both differences, with the same vertices where they meet; the names of
+    /// outputs get -union, -intersection, -difference and -reverse
+    #[arg(long, help_heading = "Results")]
+    pub(crate) all: bool,
+    #[command(flatten)]
+    pub(crate) combine: Combine,
 }
 
 /// Checking files.
@@ -172,7 +210,7 @@ pub(crate) struct Convert {
     #[command(flatten)]
     pub(crate) placing: Placing,
     #[command(flatten)]
-    pub(crate) repair: Repair,
+    repair: Repair,
     #[command(flatten)]
     pub(crate) results: Results,
     /// Read the input, say what would be done, write nothing

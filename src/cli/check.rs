@@ -8,9 +8,11 @@ use trisect::{Error, MeshError};
 use super::arguments::Check;
 use super::fault::{self, Exit, Fault};
 use super::json::json_of;
-use super::operands::{self, Input, Usable};
+use super::operands::{self, Crossings, Input, Unusable, Usable};
+use super::repairs::Remedy;
 use super::report::{self, Measures, into_map};
 use super::requests::{self, Request};
+use super::selection;
 use super::session::Session;
 use super::stream;
 use trisect::mesh::diagnose;
@@ -26,6 +28,7 @@ struct Verdict {
 /// Checks every input; the worst answer decides the exit code, an unreadable file before an unusable one.
 pub(crate) fn run(arguments: &Check, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
     let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = selection::each(requests, &session.limits, &session.control())?;
     let (mut unreadable, mut unusable) = (false, false);
     let mut objects = Vec::new();
     for request in &requests {
@@ -56,7 +59,7 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     let name = request.name();
     let input = match operands::read(request, &session.limits, &control) {
         Ok(input) => input,
-        Err(error) => return refused(&name, error, None),
+        Err(error) => return refused(&name, error, None, None),
     };
     let Input { mesh, format, mut warnings, reserved: _reserved } = input;
     let mut diagnosis = diagnose(&mesh);
@@ -64,51 +67,75 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     object.insert("format".into(), format.extension().into());
     object.insert("warnings".into(), json!(warnings));
     object.insert("diagnosis".into(), json_of(&diagnosis));
-    let Usable { solid, turned, welded, crossings } =
-        match operands::usable(mesh, arguments.inputs.using, &control) {
-            Ok(usable) => usable,
-            Err(error) => {
-                if let Error::Mesh(MeshError::SelfCrossing(found)) = &error {
-                    diagnosis.self_crossings = Some((&**found).into());
-                    object.insert("diagnosis".into(), json_of(&diagnosis));
-                }
-                let mut verdict = refused(&name, error, Some(&diagnosis))?;
-                object.extend(into_map(verdict.object));
-                verdict.object = object.into();
-                return Ok(Verdict { warnings, ..verdict });
-            }
-        };
-    if let Some(warning) = operands::nothing_left(&solid) {
-        warnings.push(warning);
-        object.insert("warnings".into(), json!(warnings));
-    }
+    let usable = operands::usable(mesh, request.repairs, arguments.inputs.using.assume_clean, &control);
+    let Usable { solid, crossings } = match usable {
+        Ok(usable) => usable,
+        Err(unusable) => {
+            let Unusable { error, remedy } = *unusable;
+            let mut verdict = refused(&name, error, remedy, Some(&diagnosis))?;
+            object.extend(into_map(verdict.object));
+            verdict.object = object.into();
+            return Ok(Verdict { warnings, ..verdict });
+        }
+    };
+    warnings.extend(operands::left_out(solid.mending()));
+    warnings.extend(operands::nothing_left(&solid));
+    object.insert("warnings".into(), json!(warnings));
+    let mending = solid.mending();
     let measures = Measures::of_solid(&solid);
     let (cleaning, cleaned) = report::cleaning(&solid);
     object.extend(measures.to_json());
     object.extend(into_map(json!({
         "file": name,
         "usable": true,
-        "turned": turned,
-        "welded": welded,
+        "turned": mending.turned > 0,
+        "welded": report::welded_vertices(mending),
         "cleaning": cleaned,
+        "mending": json_of(mending),
         "self_crossings": crossings.as_ref().map(|crossings| &crossings.object),
     })));
-    let mut text = format!("{name}: usable: {}{}\n", measures.line(), report::welded(welded));
-    if turned {
-        text.push_str("  faces pointed inwards; --orient turns them\n");
-    }
-    if let Some(count) = crossings.map(|crossings| crossings.tolerated).filter(|&count| count > 0) {
-        text.push_str(&format!("  {count} self-crossings no deeper than rounding, which are tolerated\n"));
+    let mut text = format!("{name}: usable: {}{}\n", measures.line(), report::mending_in_line(mending));
+    text.push_str(&indented(&report::mended(mending).join("\n")));
+    if let Some(crossings) = &crossings {
+        text.push_str(&indented(&crossing_lines(crossings)));
+        if crossings.count > 0 {
+            diagnosis.self_crossings = Some((&crossings.found).into());
+            object.insert("diagnosis".into(), json_of(&diagnosis));
+        }
     }
     text.push_str(&cleaning.map(|cleaning| format!("  {cleaning}\n")).unwrap_or_default());
-    if diagnosis.to_string() != Diagnosis::default().to_string() {
-        text.push_str(&indented(&listed(&diagnosis)));
+    if mending.is_none() {
+        text.push_str(&indented(&diagnosis.listed(PLACES).join("\n")));
     }
     Ok(Verdict { exit: Exit::Fine, text, object: object.into(), warnings })
 }
 
+/// What is said of an operand's crossings with itself.
+fn crossing_lines(crossings: &Crossings) -> String {
+    let mut text = String::new();
+    if crossings.count > 0 {
+        text.push_str(
+            "it crosses itself: as an operand it is what its surface winds around (--rule), and `trisect resolve` makes a \
+             clean file of it\n",
+        );
+    }
+    if crossings.tolerated > 0 {
+        let count = crossings.tolerated;
+        text.push_str(&format!("{count} self-crossings no deeper than rounding, which are tolerated\n"));
+    }
+    text
+}
+
+/// Places listed of each kind of fault: all that are kept.
+const PLACES: usize = usize::MAX;
+
 /// The verdict for a file that cannot be used.
-fn refused(name: &str, error: Error, diagnosis: Option<&Diagnosis>) -> Result<Verdict, Fault> {
+fn refused(
+    name: &str,
+    error: Error,
+    remedy: Option<Remedy>,
+    diagnosis: Option<&Diagnosis>,
+) -> Result<Verdict, Fault> {
     let exit = fault::exit_of(&error);
     if matches!(exit, Exit::Limit | Exit::Internal) {
         return Err(error.into());
@@ -119,29 +146,25 @@ fn refused(name: &str, error: Error, diagnosis: Option<&Diagnosis>) -> Result<Ve
         Error::Mesh(MeshError::NotClosed(found)) => {
             ("the mesh is not a closed surface".into(), Some(&**found))
         }
-        Error::Mesh(MeshError::SelfCrossing(_)) => {
-            ("the surface crosses itself; unite its parts one by one, or repair it".into(), diagnosis)
-        }
         Error::Mesh(MeshError::InsideOutShells(found)) => {
             let shells = match found.count {
                 1 => "one of its shells faces".to_owned(),
                 count => format!("{count} of its shells face"),
             };
-            let reason = "the wrong way (outwards inside another, or inwards by themselves); turn them (--orient does \
-                          it), or unite bodies that lie inside others one by one";
+            let reason = "the wrong way (outwards inside another, or inwards by themselves); turn them, or unite bodies \
+                          that lie inside others one by one";
             (format!("{shells} {reason}"), diagnosis)
         }
         other => (fault::text_of(other), diagnosis),
     };
     let mut text = format!("{name}: {answer}: {reason}\n");
-    text.push_str(&diagnosis.map(|found| indented(&listed(found))).unwrap_or_default());
-    let object = json!({ "file": name, "usable": false, "error": Fault::from(error).to_json() });
+    if let Some(way_out) = fault::way_out(&error, remedy.as_ref()) {
+        text.push_str(&indented(&way_out));
+    }
+    text.push_str(&diagnosis.map(|found| indented(&found.listed(PLACES).join("\n"))).unwrap_or_default());
+    let error = Fault::of_unusable(error, remedy).to_json();
+    let object = json!({ "file": name, "usable": false, "error": error });
     Ok(Verdict { exit, text, object, warnings: Vec::new() })
-}
-
-/// A line for each kind of fault, and which option mends them.
-fn listed(diagnosis: &Diagnosis) -> String {
-    format!("{diagnosis:#}{}", fault::option_for(diagnosis))
 }
 
 fn indented(text: &str) -> String {

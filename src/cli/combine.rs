@@ -1,20 +1,23 @@
-//! `union`, `difference`, `intersection`, `xor`.
+//! `union`, `difference`, `intersection`, `xor`, `combine`, `resolve`.
 
 use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::Value;
 use trisect::io::Format;
-use trisect::{BooleanOptions, Operation, Outcome};
+use trisect::{BooleanOptions, Operation, Outcome, Solid};
 
 use super::argument_groups::Colours;
-use super::arguments::Combine;
+use super::arguments::{Combination, Combine};
 use super::fault::{Exit, Fault};
 use super::operands::{self, Operand};
 use super::output::{self, Product, Target};
+use super::recenter;
 use super::report::{self, Measures};
-use super::requests;
+use super::requests::{self, Request};
+use super::selection;
 use super::session::Session;
+use super::task::Task;
 
 /// Runs a boolean of the inputs.
 pub(crate) fn run(
@@ -24,55 +27,141 @@ pub(crate) fn run(
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
     let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    run_task(&Task::Operation(operation), requests, arguments, session)
+}
+
+/// Evaluates expressions of the inputs.
+pub(crate) fn run_combination(
+    arguments: &Combination,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let combine = &arguments.combine;
+    let mut requests = requests::requests(matches, combine.inputs.reading.format)?;
+    let task = Task::of(arguments, &mut requests)?;
+    run_task(&task, requests, combine, session)
+}
+
+/// Resolves one input.
+pub(crate) fn run_resolve(
+    arguments: &Combine,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    if requests.len() > 1 {
+        return Err(Fault::usage("resolve takes one input; union unites several, each resolved first"));
+    }
+    run_task(&Task::resolve(), requests, arguments, session)
+}
+
+fn run_task(
+    task: &Task,
+    requests: Vec<Request>,
+    arguments: &Combine,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
     let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
-    refuse_pointless(operation, arguments, requests.len(), &targets, session)?;
+    refuse_pointless(arguments, &targets, session)?;
+    let requests = parts(task, requests, session)?;
+    if requests.len() < task.least_inputs() {
+        return Err(Fault::usage("at least two inputs are needed: FILE1 FILE2 ... -o OUTPUT"));
+    }
+    let suffixes = task.suffixes();
+    let targets: Vec<Vec<Target>> = suffixes
+        .iter()
+        .map(|suffix| targets.iter().map(|target| target.with_suffix(suffix)).collect())
+        .collect::<Result<_, _>>()?;
     if !arguments.dry_run {
-        output::probe(&targets, &session.limits)?;
+        targets.iter().try_for_each(|targets| output::probe(targets, &session.limits))?;
     }
 
     let control = session.control();
     let start = Instant::now();
-    let operands =
-        operands::operands(requests, arguments.inputs.using, &session.limits, &control, &session.console)?;
+    let operands = operands::operands(
+        requests,
+        arguments.inputs.using.assume_clean,
+        &session.limits,
+        &control,
+        &session.console,
+    )?;
     session.took("read", start);
     describe(&operands, session);
     if arguments.dry_run {
-        announce(operation, &operands, &targets, session);
+        announce(task, &operands, &targets.concat(), session);
         return Ok(Exit::Fine);
     }
 
     let start = Instant::now();
-    let mut options = BooleanOptions::new().control(control);
+    let rules = operands.iter().map(|operand| operand.request.rule);
+    let mut options =
+        BooleanOptions::new().control(control).rules(rules).assume_clean(arguments.inputs.using.assume_clean);
     if let Some(threads) = session.common.threads {
         options = options.threads(usize::from(threads));
     }
-    let outcome = options.run(operation, operands.iter().map(|operand| &operand.solid))?;
+    let solids: Vec<&Solid> = operands.iter().map(|operand| &operand.solid).collect();
+    let outcomes = task.run(&options, &solids)?;
     let seconds = session.took("run", start);
 
-    let measures = Measures::of_solid(outcome.solid());
-    let mut result = measures.to_json();
-    result.insert("certificate".into(), report::certificate(outcome.certificate()));
-    session.note("result", result);
     let format = operands.first().map(|operand| operand.format);
-    write(arguments, &targets, &outcome, format, session)?;
-    let names: Vec<String> = targets.iter().map(Target::name).collect();
-    let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
-    session.console.say(&format!("result: {} ({}){arrow}", measures.line(), report::time(seconds)));
-    session.console.detail(&outcome.certificate().to_string());
+    let mut results = Vec::new();
+    let mut outputs = Vec::new();
+    for ((outcome, targets), suffix) in outcomes.iter().zip(&targets).zip(suffixes) {
+        let measures = Measures::of_solid(outcome.solid());
+        let mut result = measures.to_json();
+        result.insert("certificate".into(), report::certificate(outcome.certificate()));
+        results.push(Value::from(result));
+        outputs.extend(write(arguments, targets, outcome, format, session)?);
+        let names: Vec<String> = targets.iter().map(Target::name).collect();
+        let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
+        let name = if suffix.is_empty() { "result" } else { &suffix[1..] };
+        session.console.say(&format!("{name}: {} ({}){arrow}", measures.line(), report::time(seconds)));
+        session.console.detail(&outcome.certificate().to_string());
+    }
+    session.note("result", results[0].clone());
+    if results.len() > 1 {
+        session.note("results", results);
+    }
+    session.note("outputs", outputs);
     Ok(Exit::Fine)
 }
 
-/// Command lines that are well formed but cannot be meant.
-fn refuse_pointless(
-    operation: Operation,
-    arguments: &Combine,
-    inputs: usize,
-    targets: &[Target],
-    session: &Session<'_>,
-) -> Result<(), Fault> {
-    if inputs < 2 && operation != Operation::Union {
-        return Err(Fault::usage("at least two inputs are needed: FILE1 FILE2 ... -o OUTPUT"));
+/// The inputs, one for each part of a file that is asked for; in expressions, whose operands are numbered, one for all parts
+/// that one input means.
+fn parts(task: &Task, mut requests: Vec<Request>, session: &Session<'_>) -> Result<Vec<Request>, Fault> {
+    if requests.iter().all(|request| request.part.is_none()) {
+        return Ok(requests);
     }
+    let control = session.control();
+    if let Task::Expressions(_) = task {
+        let together = |(index, request): (usize, Request)| {
+            let name = request.name();
+            selection::together(request, &session.limits, &control)
+                .map_err(|error| Fault::from(error.of_operand(index, name)))
+        };
+        return requests.into_iter().enumerate().map(together).collect();
+    }
+    if task.is_difference() && !requests.is_empty() {
+        let others = requests.split_off(1);
+        let name = requests.first().map(Request::name).unwrap_or_default();
+        requests = selection::each(requests, &session.limits, &control)?;
+        if requests.len() > 1 {
+            let names: Vec<String> = requests.iter().take(4).map(Request::name).collect();
+            return Err(Fault::unusable(format!(
+                "operand 1 ({name}): that are {} parts ({}{}), and a difference takes all others from one; unite them first, \
+                 or name the one",
+                requests.len(),
+                names.join(", "),
+                if requests.len() > names.len() { ", ..." } else { "" },
+            )));
+        }
+        requests.extend(others);
+    }
+    Ok(selection::each(requests, &session.limits, &control)?)
+}
+
+/// Command lines that are well formed but cannot be meant.
+fn refuse_pointless(arguments: &Combine, targets: &[Target], session: &Session<'_>) -> Result<(), Fault> {
     let common = session.common;
     if targets.is_empty() && !common.json && common.report.is_none() && !arguments.dry_run {
         return Err(Fault::usage(
@@ -92,6 +181,9 @@ fn describe(operands: &[Operand], session: &mut Session<'_>) {
         if let (Some(cleaning), _) = report::cleaning(&operand.solid) {
             session.console.detail(&format!("  {cleaning}"));
         }
+        for line in report::mended(operand.solid.mending()) {
+            session.console.detail(&format!("  {line}"));
+        }
         for transform in &operand.request.transforms {
             session.console.detail(&format!("  {transform}"));
         }
@@ -109,10 +201,11 @@ fn write(
     outcome: &Outcome,
     format: Option<Format>,
     session: &mut Session<'_>,
-) -> Result<(), Fault> {
+) -> Result<Vec<Value>, Fault> {
     let start = Instant::now();
     session.console.stage("writing", 1.0);
-    let mesh = outcome.solid().mesh();
+    let mesh = recenter::placed(outcome.solid().mesh(), &arguments.results.writing, session);
+    let mesh = mesh.as_ref();
     let drawing = &arguments.results.drawing;
     let picture = || {
         let operands = outcome.origins().iter().map(|origin| origin.operand as usize);
@@ -122,22 +215,22 @@ fn write(
     let options = output::write_options(&arguments.results.writing, &session.limits);
     let product = Product { mesh, options, picture: &picture, documents: &[] };
     let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
-    session.note("outputs", outputs);
     for warning in warnings {
         session.warn(warning);
     }
     session.took("write", start);
-    Ok(())
+    Ok(outputs)
 }
 
 /// What `--dry-run` says.
-fn announce(operation: Operation, operands: &[Operand], targets: &[Target], session: &mut Session<'_>) {
+fn announce(task: &Task, operands: &[Operand], targets: &[Target], session: &mut Session<'_>) {
     let triangles = operands.iter().map(|operand| operand.solid.mesh().triangles.len()).sum();
     let names: Vec<String> =
         targets.iter().map(|target| format!("{} ({})", target.name(), target.format())).collect();
     let writing = if names.is_empty() { "nothing".into() } else { names.join(", ") };
     session.console.say(&format!(
-        "dry run: would take the {operation} of {} with {} and write {writing}",
+        "dry run: would take {} of {} with {} and write {writing}",
+        task.words(),
         report::counted(operands.len(), "operand"),
         report::counted(triangles, "triangle"),
     ));

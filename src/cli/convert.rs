@@ -14,8 +14,10 @@ use super::arguments::Convert;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Input};
 use super::output::{self, Product, Target};
+use super::recenter;
 use super::report::{self, Measures};
 use super::requests::{self, Request};
+use super::selection;
 use super::session::Session;
 
 /// Converts one input.
@@ -34,7 +36,7 @@ pub(crate) fn run(
         output::probe(&targets, &session.limits)?;
     }
 
-    let read = read(arguments, &request, session)?;
+    let read = read(&request, session)?;
     let names: Vec<String> = targets.iter().map(Target::name).collect();
     if arguments.dry_run {
         session.console.say(&format!("dry run: {}; would write {}", read.line, names.join(", ")));
@@ -56,15 +58,16 @@ struct Read {
     _reserved: Reservation,
 }
 
-fn read(arguments: &Convert, request: &Request, session: &mut Session<'_>) -> Result<Read, Fault> {
+fn read(request: &Request, session: &mut Session<'_>) -> Result<Read, Fault> {
     let control = session.control();
     let of_input = |error: Error| error.of_operand(0, request.name());
     let start = Instant::now();
     session.console.stage(&format!("reading {}", request.name()), 0.0);
+    let request = &selection::together(request.clone(), &session.limits, &control).map_err(of_input)?;
     let Input { mesh, format, warnings, reserved } =
         operands::read(request, &session.limits, &control).map_err(of_input)?;
-    let (mesh, welded) = operands::welded(mesh, arguments.repair.weld).map_err(of_input)?;
-    let (mesh, turned) = if arguments.repair.orient { operands::oriented(mesh) } else { (mesh, false) };
+    let (mesh, welded) = operands::welded(mesh, request.repairs.weld).map_err(of_input)?;
+    let (mesh, turned) = if request.repairs.orient { operands::oriented(mesh) } else { (mesh, false) };
     let seconds = session.took("read", start);
     for warning in &warnings {
         session.warn(format!("{}: {warning}", request.name()));
@@ -99,6 +102,8 @@ fn write(
 ) -> Result<(), Fault> {
     let start = Instant::now();
     session.console.stage("writing", 1.0);
+    let mesh = recenter::placed(mesh, writing, session);
+    let mesh = mesh.as_ref();
     let drawing = &arguments.results.drawing;
     let picture = || {
         let operands = mesh.triangles.iter().map(|_| 0);
@@ -136,10 +141,14 @@ fn input_and_output(arguments: &Convert, matches: &ArgMatches) -> Result<(Reques
     }
     let mut requests = requests::placed_requests(matches)?.into_iter();
     let input = requests.next().ok_or_else(|| Fault::usage("an input is needed"))?;
-    if requests.next().is_some_and(|second| !second.transforms.is_empty()) {
+    let second = requests.next();
+    // There is one input only, so what is to be mended is mended in it.
+    let for_output = second.as_ref().map(|second| second.repairs).unwrap_or_default();
+    if second.is_some_and(|second| !second.transforms.is_empty()) {
         return Err(Fault::usage("a transform stands after the output; put it right after the input"));
     }
     let mut input = [input];
+    input[0].repairs = input[0].repairs.with(for_output);
     requests::name_formats(&mut input, arguments.reading.format)?;
     let [input] = input;
     Ok((input, output))

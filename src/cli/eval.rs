@@ -14,6 +14,7 @@ use super::fault::{Exit, Fault};
 use super::field_arguments::Eval;
 use super::operands;
 use super::output::{self, Product, Target};
+use super::recenter;
 use super::report::{self, Measures};
 use super::requests::STANDARD;
 use super::session::Session;
@@ -145,7 +146,8 @@ fn write(
     let start = Instant::now();
     session.console.stage("writing", 1.0);
     let outputs = if let Some(solid) = solid {
-        let mesh = solid.mesh();
+        let mesh = recenter::placed(solid.mesh(), &arguments.results.writing, session);
+        let mesh = mesh.as_ref();
         let drawing = &arguments.results.drawing;
         let picture = || {
             let operands = mesh.triangles.iter().map(|_| 0);

@@ -4,10 +4,10 @@ use std::io;
 
 use serde_json::{Map, Value, json};
 use trisect::io::FormatError;
-use trisect::mesh::Diagnosis;
 use trisect::{Error, Failure, FileAction, MeshError};
 
 use super::json::json_of;
+use super::repairs::Remedy;
 
 /// The version of the JSON objects' layout. It rises when a key changes its meaning or goes; new keys may come
 /// without.
@@ -60,22 +60,33 @@ pub(crate) struct Fault {
     pub(crate) message: String,
     /// What the library said, if it was the library.
     error: Option<Box<Error>>,
+    /// Options that have been tried and would do.
+    remedy: Option<String>,
 }
 
 impl Fault {
     /// A command line that makes no sense.
     pub(crate) fn usage(message: impl Into<String>) -> Self {
-        Self { exit: Exit::Usage, message: message.into(), error: None }
+        Self { exit: Exit::Usage, message: message.into(), error: None, remedy: None }
+    }
+
+    /// An input that cannot be used, and the options that would make it usable.
+    pub(crate) fn of_unusable(error: Error, remedy: Option<Remedy>) -> Self {
+        let way_out = way_out(&error, remedy.as_ref());
+        let mut fault = Self::from(error);
+        fault.message.extend(way_out.map(|text| format!("; {text}")));
+        fault.remedy = remedy.map(|remedy| remedy.options);
+        fault
     }
 
     /// Inputs that cannot be used as asked.
     pub(crate) fn unusable(message: impl Into<String>) -> Self {
-        Self { exit: Exit::Unusable, message: message.into(), error: None }
+        Self { exit: Exit::Unusable, message: message.into(), error: None, remedy: None }
     }
 
     /// A fault of the program itself.
     pub(crate) fn internal(message: impl Into<String>) -> Self {
-        Self { exit: Exit::Internal, message: message.into(), error: None }
+        Self { exit: Exit::Internal, message: message.into(), error: None, remedy: None }
     }
 
     /// An output that cannot be written.
@@ -100,6 +111,7 @@ impl Fault {
         let mut object = Map::new();
         object.insert("kind".into(), self.exit.name().into());
         object.insert("message".into(), self.message.as_str().into());
+        object.extend(self.remedy.iter().map(|options| ("remedy".to_owned(), options.as_str().into())));
         let mut error = self.error.as_deref();
         while let Some(current) = error {
             error = None;
@@ -140,34 +152,43 @@ impl Fault {
 
 impl From<Error> for Fault {
     fn from(error: Error) -> Self {
-        Self { exit: exit_of(&error), message: text_of(&error), error: Some(Box::new(error)) }
+        Self { exit: exit_of(&error), message: text_of(&error), error: Some(Box::new(error)), remedy: None }
     }
 }
 
-/// What is printed of a library error: its text in one line, and which option of the program does what it advises.
+/// What is printed of a library error: its text in one line.
 pub(crate) fn text_of(error: &Error) -> String {
+    match error {
+        Error::Operand { operand, name, source } => {
+            format!("operand {} ({name}): {}", operand + 1, text_of(source))
+        }
+        Error::Mesh(MeshError::NotClosed(diagnosis)) => {
+            format!("the mesh is not a closed surface: {}", diagnosis.listed(2).join("; "))
+        }
+        other => one_line(&other.to_string()),
+    }
+}
+
+/// What can be done about an input that cannot be used: the options that were found, or why there are none. `None` where
+/// the error itself says it.
+pub(crate) fn way_out(error: &Error, remedy: Option<&Remedy>) -> Option<String> {
     let mut cause = error;
-    while let Error::Operand { source, .. } | Error::InNode { source, .. } = cause {
+    while let Error::Operand { source, .. } = cause {
         cause = source;
     }
-    let option = match cause {
-        Error::Mesh(MeshError::NotClosed(diagnosis)) => option_for(diagnosis),
-        Error::Mesh(MeshError::InsideOut { .. }) => " (--orient does it)".into(),
-        Error::Mesh(MeshError::InsideOutShells(_)) => " (--orient turns them)".into(),
-        _ => String::new(),
-    };
-    one_line(&error.to_string()) + &option
-}
-
-/// Which option does what a diagnosis advises at its end.
-pub(crate) fn option_for(diagnosis: &Diagnosis) -> String {
-    let turned = !diagnosis.misoriented_edges.is_none();
-    match diagnosis.closing_distance {
-        Some(distance) => format!(" (--weld {distance:e})"),
-        None if turned && diagnosis.open_edges.is_none() && diagnosis.unbalanced_edges.is_none() => {
-            " (--orient turns them)".into()
-        }
-        None => String::new(),
+    match (remedy, cause) {
+        (Some(remedy), _) => Some(remedy.text()),
+        (None, Error::Mesh(MeshError::NotClosed(diagnosis))) => Some(
+            if diagnosis.open_edges.is_none() {
+                "no option closes it: its faces cannot be turned to agree (a surface with one side, or sheets that meet in \
+                 an edge); repair it in a mesh editor"
+            } else {
+                "no option closes it: its open edges are rims of holes, which must be filled in a mesh editor (or it is a \
+                 sheet, which must be given a thickness)"
+            }
+            .into(),
+        ),
+        _ => None,
     }
 }
 

@@ -65,7 +65,7 @@ pub(crate) struct Source {
 /// How inside and outside of a mesh are distinguished.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Rule {
-    /// By pseudonormals on clean surfaces, else by winding
+    /// By pseudonormals on clean surfaces, by winding where one crosses itself, by the fast winding number where it is open
     Automatic,
     /// By the side of the nearest point's pseudonormal
     Pseudonormal,
@@ -86,6 +86,17 @@ impl Rule {
             Self::Winding => SignRule::Winding,
             Self::FastWinding => SignRule::FastWinding,
         }
+    }
+}
+
+/// The name of a rule, as on the command line.
+pub(crate) fn rule_name(rule: SignRule) -> &'static str {
+    match rule {
+        SignRule::Automatic => "automatic",
+        SignRule::PseudoNormal => "pseudonormal",
+        SignRule::Parity => "parity",
+        SignRule::Winding => "winding",
+        SignRule::FastWinding => "fast-winding",
     }
 }
 

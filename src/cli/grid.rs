@@ -49,7 +49,8 @@ pub(crate) fn run(
     session.took("write", start);
     session.note(
         "grid",
-        json!({ "of": field.name, "origin": grid.origin, "spacing": grid.spacing, "shape": grid.shape }),
+        json!({ "of": field.name, "sign": field.sign(), "origin": grid.origin, "spacing": grid.spacing,
+                "shape": grid.shape }),
     );
     session.note("outputs", outputs);
     let [nx, ny, nz] = grid.shape;

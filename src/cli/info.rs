@@ -1,17 +1,25 @@
 //! `info`: what is in files, and which formats there are.
 
+use std::collections::HashSet;
+
 use clap::ArgMatches;
 use serde_json::{Value, json};
-use trisect::io::Format;
+use trisect::io::{Format, PartName};
+use trisect::mesh::Mending;
 use trisect::{Error, Mesh};
 
 use super::arguments::Info;
 use super::fault::{Exit, Fault};
+use super::json::json_of;
 use super::operands::{self, Input};
 use super::report::{Measures, counted};
 use super::requests::{self, Request};
+use super::selection;
 use super::session::Session;
 use super::stream;
+
+/// Names deeper than this are not indented further.
+const DEEPEST: usize = 20;
 
 /// Describes every input, or the formats.
 pub(crate) fn run(arguments: &Info, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
@@ -20,17 +28,21 @@ pub(crate) fn run(arguments: &Info, matches: &ArgMatches, session: &mut Session<
     }
     let control = session.control();
     let mut objects = Vec::new();
-    for (index, request) in requests::requests(matches, arguments.reading.format)?.iter().enumerate() {
-        let of_this = |error: Error| error.of_operand(index, request.name());
-        session.console.stage(&format!("reading {}", request.name()), 0.0);
+    let requests = requests::requests(matches, arguments.reading.format)?;
+    let requests = selection::each(requests, &session.limits, &control)?;
+    for (index, request) in requests.into_iter().enumerate() {
+        let name = request.name();
+        let of_this = |error: Error| error.of_operand(index, name.clone());
+        session.console.stage(&format!("reading {name}"), 0.0);
+        let (request, parts) = selection::whole(request, &session.limits, &control).map_err(of_this)?;
         let Input { mesh, format, warnings, reserved: _reserved } =
-            operands::read(request, &session.limits, &control).map_err(of_this)?;
-        let (text, object) = describe(request, &mesh, format, &warnings);
+            operands::read(&request, &session.limits, &control).map_err(of_this)?;
+        let (text, object) = describe(&request, &mesh, format, &warnings, &parts);
         if !session.common.json {
             session.console.pause(|| stream::print(&text))?;
         }
         for warning in warnings {
-            session.warn(format!("{}: {warning}", request.name()));
+            session.warn(format!("{name}: {warning}"));
         }
         objects.push(object);
     }
@@ -53,12 +65,24 @@ fn formats(session: &mut Session<'_>) -> Result<Exit, Fault> {
     Ok(Exit::Fine)
 }
 
-fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String]) -> (String, Value) {
-    let (measures, state) = match trisect::Solid::try_from(mesh.clone()) {
-        Ok(solid) => (Measures::of_solid(&solid), None),
-        Err(error) => (Measures::of_mesh(mesh), Some(super::fault::one_line(&error.to_string()))),
+fn describe(
+    request: &Request,
+    mesh: &Mesh,
+    format: Format,
+    warnings: &[String],
+    parts: &[PartName],
+) -> (String, Value) {
+    let (measures, state, mending) = match trisect::Solid::try_from(mesh.clone()) {
+        Ok(solid) => (Measures::of_solid(&solid), None, solid.mending().clone()),
+        Err(error) => {
+            let state = super::fault::one_line(&error.to_string());
+            (Measures::of_mesh(mesh), Some(state), Mending::default())
+        }
     };
     let mut rows = measures.table();
+    if !mending.is_none() {
+        rows.push(("mended", mending.to_string()));
+    }
     if let Some(state) = &state {
         rows.push(("closed", state.clone()));
     }
@@ -72,13 +96,31 @@ fn describe(request: &Request, mesh: &Mesh, format: Format, warnings: &[String])
         text.push_str(&format!("    {}\n", group.line()));
     }
 
+    text.push_str(&listed(parts, &groups));
+
     let mut object = measures.to_json();
+    object.insert("parts".into(), json_of(&parts));
     object.insert("file".into(), request.name().into());
     object.insert("format".into(), format.extension().into());
     object.insert("state".into(), json!(state));
+    object.insert("mending".into(), json_of(&mending));
     object.insert("groups".into(), groups.iter().map(Group::to_json).collect::<Vec<_>>().into());
     object.insert("warnings".into(), json!(warnings));
     (text, object.into())
+}
+
+/// The names that can stand after `#`, where they are more than the groups.
+fn listed(parts: &[PartName], groups: &[Group<'_>]) -> String {
+    let told: HashSet<&str> = groups.iter().map(|group| group.name).collect();
+    if parts.iter().all(|part| told.contains(part.name.as_str())) {
+        return String::new();
+    }
+    let mut text = format!("  {:10} {}\n", "parts", parts.len());
+    for part in parts {
+        let indent = "  ".repeat(2 + part.depth.min(DEEPEST));
+        text.push_str(&format!("{indent}{}: {}\n", part.name, counted(part.triangles, "triangle")));
+    }
+    text
 }
 
 /// A group of faces with its size.

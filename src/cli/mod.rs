@@ -10,6 +10,7 @@ mod check;
 mod color;
 mod combine;
 mod convert;
+mod crossings;
 #[cfg(feature = "parametric")]
 mod curve;
 #[cfg(feature = "parametric")]
@@ -27,8 +28,11 @@ mod limits;
 mod operands;
 mod output;
 mod progress;
+mod recenter;
+mod repairs;
 mod report;
 mod requests;
+mod selection;
 mod session;
 mod slice;
 mod source;
@@ -36,6 +40,7 @@ mod stage;
 mod stream;
 #[cfg(feature = "subdivision")]
 mod subdivide;
+mod task;
 mod values;
 mod verbs;
 
@@ -119,6 +124,8 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Xor(combine) => {
                 combine::run(Operation::SymmetricDifference, combine, matches, &mut session)
             }
+            Verb::Combine(combination) => combine::run_combination(combination, matches, &mut session),
+            Verb::Resolve(resolve) => combine::run_resolve(resolve, matches, &mut session),
             Verb::Check(check) => check::run(check, matches, &mut session),
             Verb::Info(info) => info::run(info, matches, &mut session),
             Verb::Convert(convert) => convert::run(convert, matches, &mut session),

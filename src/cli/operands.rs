@@ -9,12 +9,15 @@ use rayon::prelude::*;
 use serde_json::Value;
 use trisect::control::Reservation;
 use trisect::io::Format;
+use trisect::mesh::{Gate, Mending, SelfCrossings, Welding};
 use trisect::{Control, Error, Mesh, MeshError, Solid};
 
-use super::argument_groups::Using;
+use super::fault::Fault;
 use super::json::json_of;
 use super::limits::Limits;
 use super::progress::Console;
+use super::repairs::{self, Remedy, Repairs};
+use super::report::{counted, short};
 use super::requests::Request;
 use trisect::io;
 
@@ -33,8 +36,6 @@ pub(crate) struct Operand {
     pub(crate) solid: Solid,
     pub(crate) format: Format,
     pub(crate) warnings: Vec<String>,
-    pub(crate) turned: bool,
-    pub(crate) welded: usize,
     pub(crate) crossings: Option<Crossings>,
     pub(crate) seconds: f64,
     _reserved: Reservation,
@@ -42,24 +43,21 @@ pub(crate) struct Operand {
 
 /// Reads one input and moves it to its place.
 pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Result<Input, Error> {
-    let mut options = io::ReadOptions::new().control(control.clone());
-    if let Some(times) = request.expansion {
-        options = options.expansion(times);
-    }
-    let io::Loaded { mut mesh, format, warnings, .. } = match request.format {
-        Some(format) => {
-            let (bytes, options) = if request.is_standard() {
-                (limits.while_waiting(standard_input)?, options)
-            } else {
-                let folder = request.path.parent().unwrap_or(Path::new(""));
-                let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-                (file(&request.path, limits)?, options.folder(folder))
+    let (mut mesh, format, warnings) = match &request.chosen {
+        Some(chosen) => (chosen.mesh.clone(), chosen.format, chosen.warnings.clone()),
+        None => {
+            let options = options(request, control);
+            let loaded = match request.format {
+                Some(format) => {
+                    let (bytes, options) = bytes(request, options, limits)?;
+                    io::read(&bytes, format, &options)
+                }
+                None => io::load(&request.path, &options),
             };
-            io::read(&bytes, format, &options)
+            let io::Loaded { mesh, format, warnings, .. } = loaded.map_err(name_option)?;
+            (mesh, format, warnings)
         }
-        None => io::load(&request.path, &options),
-    }
-    .map_err(name_option)?;
+    };
     control.check()?;
     for transform in &request.transforms {
         mesh = transform.apply(mesh)?;
@@ -75,8 +73,31 @@ pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Res
     Ok(Input { mesh, format, warnings, reserved })
 }
 
+/// How an input is read.
+pub(crate) fn options(request: &Request, control: &Control) -> io::ReadOptions {
+    let options = io::ReadOptions::new().control(control.clone());
+    match request.expansion {
+        Some(times) => options.expansion(times),
+        None => options,
+    }
+}
+
+/// The bytes of an input of a given format, and where files named in it are looked for.
+pub(crate) fn bytes(
+    request: &Request,
+    options: io::ReadOptions,
+    limits: &Limits,
+) -> Result<(Vec<u8>, io::ReadOptions), Error> {
+    if request.is_standard() {
+        return Ok((limits.while_waiting(standard_input)?, options));
+    }
+    let folder = request.path.parent().unwrap_or(Path::new(""));
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    Ok((file(&request.path, limits)?, options.folder(folder)))
+}
+
 /// The error of a glTF scene that takes too much, with the option that allows more.
-fn name_option(error: Error) -> Error {
+pub(crate) fn name_option(error: Error) -> Error {
     match error {
         Error::TooLarge { what } if what.starts_with("the flattened scene") => {
             Error::TooLarge { what: format!("{what} (--expansion TIMES allows more)") }
@@ -119,53 +140,113 @@ fn standard_input() -> Result<Vec<u8>, Error> {
 /// A solid that can be an operand, and what its checks found.
 pub(crate) struct Usable {
     pub(crate) solid: Solid,
-    /// Whether `--orient` had to turn it.
-    pub(crate) turned: bool,
-    /// How many vertices `--weld` made one with others.
-    pub(crate) welded: usize,
     /// The answer of the self-crossing check; `None` under `--assume-clean`.
     pub(crate) crossings: Option<Crossings>,
 }
 
-/// Self-crossings of an operand that was not refused for them.
+/// Self-crossings of an operand.
 pub(crate) struct Crossings {
+    /// How many pairs of triangles cross each other.
+    pub(crate) count: usize,
     /// How many are no deeper than rounding.
     pub(crate) tolerated: usize,
     /// All that is known about them.
     pub(crate) object: Value,
+    /// The same, with the triangles' numbers in the file.
+    pub(crate) found: SelfCrossings,
 }
 
-/// Makes a mesh an operand, or says why it cannot be one, with the triangles' numbers in the file.
-pub(crate) fn usable(mesh: Mesh, using: Using, control: &Control) -> Result<Usable, Error> {
-    let (mesh, welded) = welded(mesh, using.repair.weld)?;
-    let (mesh, turned) = if using.repair.orient { oriented(mesh) } else { (mesh, false) };
-    let solid = Solid::try_from(mesh)?;
-    let crossings = match using.assume_clean {
-        true => None,
-        false => {
-            let found = solid.self_crossings(control)?;
-            let mut found = found.clone();
-            for place in &mut found.places {
-                place.triangles = place.triangles.map(|triangle| solid.source_triangle(triangle));
-            }
-            if !found.is_clean() {
-                return Err(MeshError::SelfCrossing(Box::new(found)).into());
-            }
-            let mut misplaced = solid.inside_out_shells();
-            for place in &mut misplaced.places {
-                for triangle in &mut place.triangles {
-                    *triangle = solid.source_triangle(*triangle);
-                }
-                // Vertices may have been joined since the file was read: their numbers are no longer its own.
-                place.vertices.clear();
-            }
-            if !misplaced.is_none() {
-                return Err(MeshError::InsideOutShells(Box::new(misplaced)).into());
-            }
-            Some(Crossings { tolerated: found.tolerated, object: json_of(&found) })
-        }
+/// Why a mesh cannot be an operand.
+pub(crate) struct Unusable {
+    pub(crate) error: Error,
+    /// Options that would make it one.
+    pub(crate) remedy: Option<Remedy>,
+}
+
+/// Makes a mesh an operand, or says why it cannot be one and what would make it one, with the triangles' numbers in the
+/// file.
+pub(crate) fn usable(
+    mesh: Mesh,
+    repairs: Repairs,
+    assume_clean: bool,
+    control: &Control,
+) -> Result<Usable, Box<Unusable>> {
+    tried(mesh, repairs, assume_clean, control).map_err(|failed| {
+        let (error, mesh) = *failed;
+        let remedy = mesh.and_then(|mesh| repairs::remedy(&mesh, &error, repairs, assume_clean, control));
+        Box::new(Unusable { error, remedy })
+    })
+}
+
+/// The same without a look for what would make it one. With the error comes the mesh, if anything might.
+pub(crate) fn tried(
+    mesh: Mesh,
+    repairs: Repairs,
+    assume_clean: bool,
+    control: &Control,
+) -> Result<Usable, Box<(Error, Option<Mesh>)>> {
+    let solid = match repairs.gate().solid(mesh) {
+        Ok(solid) => solid,
+        Err(refusal) => return Err(Box::new((refusal.error.into(), Some(refusal.mesh)))),
     };
-    Ok(Usable { solid, turned, welded, crossings })
+    if assume_clean {
+        return Ok(Usable { solid, crossings: None });
+    }
+    let mut found = match solid.self_crossings(control) {
+        Ok(found) => found.clone(),
+        Err(error) => return Err(Box::new((error, None))),
+    };
+    for place in &mut found.places {
+        place.triangles = place.triangles.map(|triangle| solid.source_triangle(triangle));
+    }
+    // What a surface that crosses itself is inside and outside of, winding numbers tell.
+    if found.is_clean() {
+        let mut misplaced = solid.inside_out_shells();
+        for place in &mut misplaced.places {
+            for triangle in &mut place.triangles {
+                *triangle = solid.source_triangle(*triangle);
+            }
+            // Vertices may have been joined since the file was read: their numbers are no longer its own.
+            place.vertices.clear();
+        }
+        if !misplaced.is_none() {
+            let error = MeshError::InsideOutShells(Box::new(misplaced)).into();
+            return Err(Box::new((error, Some(solid.into_mesh()))));
+        }
+    }
+    let crossings =
+        Crossings { count: found.count, tolerated: found.tolerated, object: json_of(&found), found };
+    Ok(Usable { solid, crossings: Some(crossings) })
+}
+
+/// Warnings of what mending left out: pieces of surface that the file has and the operand has not. (What was joined, split
+/// or stored twice is no warning: the surface is the file's but for rounding.)
+pub(crate) fn left_out(mending: &Mending) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (one, several, fault) in mending.left_out() {
+        let mut text = fault.text(one, several, 2);
+        if one.contains("open part") {
+            text.push_str(&format!(" ({}, area {})", parts(mending), short(mending.open_area)));
+        }
+        warnings.push(text);
+    }
+    warnings
+}
+
+fn parts(mending: &Mending) -> String {
+    counted(mending.open_part_count, "part")
+}
+
+/// What mending does, in a few words.
+pub(crate) fn effect(mending: &Mending) -> String {
+    let mut text = mending.to_string();
+    if let Some(distance) = mending.distance {
+        text.push_str(&format!(", by a distance of {distance:.3e}"));
+    }
+    if mending.open_part_count > 0 {
+        text.push_str(&format!(", {} of area {}", parts(mending), short(mending.open_area)));
+    }
+    text
 }
 
 /// A warning if a mesh had triangles, but none that enclose anything.
@@ -180,11 +261,30 @@ pub(crate) fn nothing_left(solid: &Solid) -> Option<String> {
     })
 }
 
-/// The mesh with its open edges welded within a distance, and how many vertices that removed.
-pub(crate) fn welded(mesh: Mesh, distance: Option<f64>) -> Result<(Mesh, usize), Error> {
-    let Some(distance) = distance else { return Ok((mesh, 0)) };
-    let before = mesh.positions.len();
-    let mesh = mesh.welded(distance)?;
+/// The mesh mended by joining vertices as asked for, and how many were joined. Where that does not close it, they are joined
+/// all the same, if a distance is given.
+pub(crate) fn welded(mesh: Mesh, weld: Welding) -> Result<(Mesh, usize), Error> {
+    if weld == Welding::Rounding {
+        return Ok((mesh, 0));
+    }
+    let refusal = match Gate::new().weld(weld).solid(mesh) {
+        Ok(solid) => {
+            let joined = solid.mending().seams.count;
+            return Ok((solid.into_mesh(), joined));
+        }
+        Err(refusal) => refusal,
+    };
+    let (Welding::Within(distance), MeshError::NotClosed(_) | MeshError::InsideOut { .. }) =
+        (weld, &refusal.error)
+    else {
+        return if matches!(refusal.error, MeshError::NotClosed(_) | MeshError::InsideOut { .. }) {
+            Ok((refusal.mesh, 0))
+        } else {
+            Err(refusal.error.into())
+        };
+    };
+    let before = refusal.mesh.positions.len();
+    let mesh = refusal.mesh.welded(distance)?;
     let removed = before - mesh.positions.len();
     Ok((mesh, removed))
 }
@@ -200,30 +300,40 @@ pub(crate) fn oriented(mesh: Mesh) -> (Mesh, bool) {
 /// Reads all inputs and makes them operands; the first fault in the order of the command line counts.
 pub(crate) fn operands(
     requests: Vec<Request>,
-    using: Using,
+    assume_clean: bool,
     limits: &Limits,
     control: &Control,
     console: &Console,
-) -> Result<Vec<Operand>, Error> {
+) -> Result<Vec<Operand>, Fault> {
     let one = |(index, request): (usize, Request)| {
         console.stage(&format!("reading {}", request.name()), 0.0);
         let name = request.name();
-        operand(request, using, limits, control).map_err(|error| error.of_operand(index, name))
+        operand(request, assume_clean, limits, control).map_err(|unusable| {
+            let Unusable { error, remedy } = *unusable;
+            Fault::of_unusable(error.of_operand(index, name), remedy)
+        })
     };
     #[cfg(feature = "parallel")]
-    let operands: Vec<Result<Operand, Error>> = requests.into_par_iter().enumerate().map(one).collect();
+    let operands: Vec<Result<Operand, Fault>> = requests.into_par_iter().enumerate().map(one).collect();
     #[cfg(not(feature = "parallel"))]
-    let operands: Vec<Result<Operand, Error>> = requests.into_iter().enumerate().map(one).collect();
+    let operands: Vec<Result<Operand, Fault>> = requests.into_iter().enumerate().map(one).collect();
     operands.into_iter().collect()
 }
 
-fn operand(request: Request, using: Using, limits: &Limits, control: &Control) -> Result<Operand, Error> {
+fn operand(
+    request: Request,
+    assume_clean: bool,
+    limits: &Limits,
+    control: &Control,
+) -> Result<Operand, Box<Unusable>> {
     let start = Instant::now();
-    let Input { mesh, format, mut warnings, reserved } = read(&request, limits, control)?;
-    let Usable { solid, turned, welded, crossings } = usable(mesh, using, control)?;
+    let Input { mesh, format, mut warnings, reserved } =
+        read(&request, limits, control).map_err(|error| Box::new(Unusable { error, remedy: None }))?;
+    let Usable { solid, crossings } = usable(mesh, request.repairs, assume_clean, control)?;
+    warnings.extend(left_out(solid.mending()));
     warnings.extend(nothing_left(&solid));
     // What touches itself in single vertices would do so in the result as well.
     let solid = if solid.is_manifold() { solid } else { solid.separated().0 };
     let seconds = start.elapsed().as_secs_f64();
-    Ok(Operand { request, solid, format, warnings, turned, welded, crossings, seconds, _reserved: reserved })
+    Ok(Operand { request, solid, format, warnings, crossings, seconds, _reserved: reserved })
 }

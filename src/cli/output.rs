@@ -5,13 +5,15 @@ use std::io::{IsTerminal as _, Write, stdout};
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
-use trisect::io::{self, Format};
+use trisect::io::{self, Format, Written};
 use trisect::render::{self, Picture};
 use trisect::{Error, Failure, Mesh};
 
 use super::argument_groups::{Colours, Common, Drawing, Up, Writing};
+use super::crossings;
 use super::documents::{self, Document};
 use super::fault::Fault;
+use super::json::json_of;
 use super::limits::Limits;
 use super::requests::STANDARD;
 use super::stage::{self, Stage};
@@ -42,6 +44,23 @@ impl Target {
         } else {
             self.path.display().to_string()
         }
+    }
+
+    /// The same with the file's name ending otherwise, before its extension.
+    pub(crate) fn with_suffix(&self, suffix: &str) -> Result<Self, Fault> {
+        if suffix.is_empty() {
+            return Ok(self.clone());
+        }
+        if self.path == Path::new(STANDARD) {
+            return Err(Fault::usage("several results cannot go to standard output; name a file with -o"));
+        }
+        let mut name = self.path.file_stem().unwrap_or_default().to_os_string();
+        name.push(suffix);
+        if let Some(extension) = self.path.extension() {
+            name.push(".");
+            name.push(extension);
+        }
+        Ok(Self { path: self.path.with_file_name(name), kind: self.kind })
     }
 
     /// The format in lower case, as in JSON.
@@ -167,6 +186,7 @@ pub(crate) fn write_all(
     let mut staged = Vec::new();
     let mut warnings = Vec::new();
     let mut sizes = vec![None; targets.len()];
+    let mut roundings: Vec<Option<io::Rounding>> = vec![None; targets.len()];
     let (mut streams, mut files) = (Vec::new(), Vec::new());
     for (index, target) in targets.iter().enumerate() {
         let stream = matches!(target.kind, Kind::Standard(_)) || is_device(&target.path);
@@ -175,17 +195,23 @@ pub(crate) fn write_all(
     for (index, target) in files {
         let stage = Stage::new(&target.path, limits).map_err(|error| Fault::output(&target.path, error))?;
         let said = write_file(target, &stage.path(), product).map_err(|error| failed(target, error))?;
-        warnings.extend(said.into_iter().map(|warning| format!("{}: {warning}", target.name())));
+        warnings.extend(said_of(target, &said));
+        if let Some(rounding) = &said.rounding {
+            let crossing = crossings::in_file(&stage.path(), rounding, limits)?;
+            warnings.extend(crossing.map(|warning| format!("{}: {warning}", target.name())));
+        }
+        roundings[index] = said.rounding;
         stages.push(stage);
         staged.push(index);
     }
     for document in product.documents {
         stages.extend(documents::staged(document, limits)?);
     }
-    for (_, target) in streams {
+    for (index, target) in streams {
         match write_stream(target, product).map_err(|error| failed(target, error)) {
             Ok(said) => {
-                warnings.extend(said.into_iter().map(|warning| format!("{}: {warning}", target.name())));
+                warnings.extend(said_of(target, &said));
+                roundings[index] = said.rounding;
             }
             Err(fault) if fault.is_broken_pipe() => {}
             Err(fault) => return Err(fault),
@@ -194,43 +220,60 @@ pub(crate) fn write_all(
     for (index, bytes) in staged.iter().zip(stage::commit(&stages, limits)?) {
         sizes[*index] = Some(bytes);
     }
-    let described = targets.iter().zip(sizes).map(|(target, bytes)| {
-        json!({ "file": target.path.display().to_string(), "format": target.format(), "bytes": bytes })
+    let described = targets.iter().zip(sizes).zip(roundings).map(|((target, bytes), rounding)| {
+        json!({
+            "file": target.path.display().to_string(),
+            "format": target.format(),
+            "bytes": bytes,
+            "rounding": rounding.as_ref().map(json_of),
+        })
     });
     let described = described.chain(product.documents.iter().map(documents::described));
     Ok((described.collect(), warnings))
 }
 
+/// The warnings of an output, with the option that does what the last one advises.
+fn said_of(target: &Target, said: &Written) -> Vec<String> {
+    let mut warnings: Vec<String> =
+        said.warnings.iter().map(|warning| format!("{}: {warning}", target.name())).collect();
+    let told = |rounding: &io::Rounding| rounding.finer_at_origin && rounding.differs();
+    let finer = said.rounding.as_ref().is_some_and(told);
+    if let (Some(last), true) = (warnings.last_mut(), finer) {
+        last.push_str(" (--recenter moves it)");
+    }
+    warnings
+}
+
 /// Writes a file in its hidden folder.
-fn write_file(target: &Target, path: &Path, product: &Product<'_>) -> Result<Vec<String>, Error> {
+fn write_file(target: &Target, path: &Path, product: &Product<'_>) -> Result<Written, Error> {
     match target.kind {
-        Kind::Mesh(_) => io::save(product.mesh, path, &product.options),
+        Kind::Mesh(_) => io::save_report(product.mesh, path, &product.options),
         Kind::Forced(format) | Kind::Standard(format) => {
             let mut file = File::create(path).map_err(|source| file_error(path, source))?;
-            io::write(product.mesh, format, &mut file, &product.options)
+            io::write_report(product.mesh, format, &mut file, &product.options)
         }
-        Kind::Picture => (product.picture)().save_png(path).map(|()| Vec::new()),
+        Kind::Picture => (product.picture)().save_png(path).map(|()| Written::default()),
     }
 }
 
 /// Writes to standard output or to a device, which cannot be replaced by a finished file.
-fn write_stream(target: &Target, product: &Product<'_>) -> Result<Vec<String>, Error> {
+fn write_stream(target: &Target, product: &Product<'_>) -> Result<Written, Error> {
     let failed = |source| file_error(&target.path, source);
     let mut out: Box<dyn Write> = match target.kind {
         Kind::Standard(_) => Box::new(stdout().lock()),
         _ => Box::new(File::options().write(true).open(&target.path).map_err(failed)?),
     };
-    let warnings = match target.kind {
+    let written = match target.kind {
         Kind::Mesh(format) | Kind::Forced(format) | Kind::Standard(format) => {
-            io::write(product.mesh, format, &mut out, &product.options)?
+            io::write_report(product.mesh, format, &mut out, &product.options)?
         }
         Kind::Picture => {
             (product.picture)().write_png(&mut out).map_err(failed)?;
-            Vec::new()
+            Written::default()
         }
     };
     out.flush().map_err(failed)?;
-    Ok(warnings)
+    Ok(written)
 }
 
 /// The error, said of the output the user named instead of the file in the hidden folder.
@@ -253,7 +296,9 @@ pub(crate) fn view(drawing: &Drawing, format: Option<Format>) -> render::View {
     let mut view = render::View::default();
     [view.width, view.height] = drawing.png_size;
     view.perspective = !drawing.png_parallel;
-    let usual = if matches!(format, Some(Format::Gltf | Format::Glb)) { Up::Y } else { Up::Z };
+    // glTF says so. OBJ does not, but Blender, three.js and MeshLab write and read it so.
+    let upright = matches!(format, Some(Format::Gltf | Format::Glb | Format::Obj));
+    let usual = if upright { Up::Y } else { Up::Z };
     if drawing.png_up.unwrap_or(usual) == Up::Y {
         let [x, y, z] = view.direction;
         (view.direction, view.up) = ([x, z, -y], [0.0, 1.0, 0.0]);

@@ -4,8 +4,8 @@ use serde_json::{Map, Value, json};
 use trisect::{Certificate, Mesh, OperandState, Solid};
 
 use super::json::json_of;
-use super::operands::Operand;
-use trisect::mesh::Bounds;
+use super::operands::{self, Operand};
+use trisect::mesh::{Bounds, Fault, Mending};
 
 /// Measures of a mesh. Those that only a closed surface has are absent for the others.
 #[derive(Clone, Debug)]
@@ -141,10 +141,12 @@ pub(crate) fn operand_json(operand: &Operand, index: usize, measures: &Measures)
         "file": operand.request.name(),
         "format": operand.format.extension(),
         "transforms": transforms,
-        "turned": operand.turned,
-        "welded": operand.welded,
+        "turned": operand.solid.mending().turned > 0,
+        "welded": welded_vertices(operand.solid.mending()),
         "cleaning": cleaning(&operand.solid).1,
+        "mending": json_of(operand.solid.mending()),
         "self_crossings": operand.crossings.as_ref().map(|crossings| &crossings.object),
+        "rule": operand.request.rule.name(),
         "warnings": operand.warnings,
         "seconds": operand.seconds,
     })));
@@ -154,21 +156,52 @@ pub(crate) fn operand_json(operand: &Operand, index: usize, measures: &Measures)
 /// The summary line of an operand.
 pub(crate) fn operand_line(operand: &Operand, measures: &Measures) -> String {
     let mut line = format!("{}: {}", operand.request.name(), measures.line());
-    line.push_str(&welded(operand.welded));
-    if operand.turned {
-        line.push_str(", turned outwards");
-    }
-    match operand.crossings.as_ref().map(|crossings| crossings.tolerated) {
+    line.push_str(&mending_in_line(operand.solid.mending()));
+    match &operand.crossings {
         None => line.push_str(", not checked for self-crossings"),
-        Some(0) => {}
-        Some(count) => {
-            line.push_str(&format!(", {} no deeper than rounding", counted(count, "self-crossing")));
+        Some(crossings) if crossings.count > 0 => {
+            line.push_str(&format!(
+                ", {} resolved by winding number ({})",
+                counted(crossings.count, "self-crossing"),
+                operand.request.rule
+            ));
         }
+        Some(crossings) if crossings.tolerated > 0 => {
+            let count = counted(crossings.tolerated, "self-crossing");
+            line.push_str(&format!(", {count} no deeper than rounding"));
+        }
+        Some(_) => {}
     }
     format!("{line} ({})", time(operand.seconds))
 }
 
-/// What a summary line says of `--weld`.
+/// How many vertices `--weld` joined.
+pub(crate) fn welded_vertices(mending: &Mending) -> usize {
+    if mending.distance.is_some() { mending.seams.count } else { 0 }
+}
+
+/// What a summary line says of mending.
+pub(crate) fn mending_in_line(mending: &Mending) -> String {
+    let mut line = String::new();
+    let mut done = mending.clone();
+    done.turned = 0;
+    if !done.is_none() {
+        line.push_str(&format!(", mended: {}", operands::effect(&done)));
+    }
+    if mending.turned > 0 {
+        line.push_str(", turned outwards");
+    }
+    line
+}
+
+/// A line for each kind of what was mended, with its first places.
+pub(crate) fn mended(mending: &Mending) -> Vec<String> {
+    let kinds = mending.sewn().into_iter().chain(mending.left_out());
+    let line = |(one, several, fault): (&str, &str, &Fault)| fault.text(one, several, usize::MAX);
+    kinds.map(line).collect()
+}
+
+/// What a summary line says of `--weld` where nothing else is mended.
 pub(crate) fn welded(vertices: usize) -> String {
     match vertices {
         0 => String::new(),
@@ -182,6 +215,12 @@ pub(crate) fn certificate(certificate: &Certificate) -> Value {
     let operands = certificate.operands.iter().map(|state| match state {
         OperandState::Clean { tolerated } => json!({ "self_crossings": 0, "tolerated": tolerated }),
         OperandState::Crossing { count } => json!({ "self_crossings": count }),
+        OperandState::Resolved { crossings, touching, winding_volume } => json!({
+            "resolved": true,
+            "self_crossings": crossings,
+            "self_touching": touching,
+            "winding_volume": winding_volume,
+        }),
         _ => json!({ "self_crossings": null }),
     });
     let mut object = into_map(json_of(certificate));

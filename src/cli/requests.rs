@@ -2,12 +2,15 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::ArgMatches;
 use trisect::io::Format;
-use trisect::{Mesh, MeshError};
+use trisect::{Mesh, MeshError, Rule};
 
 use super::fault::Fault;
+use super::repairs::Repairs;
+use super::selection::{self, Chosen};
 
 /// The name that stands for standard input and output.
 pub(crate) const STANDARD: &str = "-";
@@ -54,16 +57,28 @@ impl fmt::Display for Transform {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Request {
     pub(crate) path: PathBuf,
+    /// The name or pattern of parts of the file.
+    pub(crate) part: Option<String>,
+    /// What was read of the file already.
+    pub(crate) chosen: Option<Arc<Chosen>>,
     pub(crate) format: Option<Format>,
     /// How many times the bytes of its file a scene may take; `None` for what the library allows.
     pub(crate) expansion: Option<u64>,
     pub(crate) transforms: Vec<Transform>,
+    pub(crate) repairs: Repairs,
+    /// What is inside, where the surface crosses itself.
+    pub(crate) rule: Rule,
 }
 
 impl Request {
     /// The name in messages.
     pub(crate) fn name(&self) -> String {
-        if self.is_standard() { "standard input".into() } else { self.path.display().to_string() }
+        let file = if self.is_standard() { "standard input".into() } else { self.path.display().to_string() };
+        let chosen = self.chosen.as_ref().and_then(|chosen| chosen.name.as_ref());
+        match chosen.or(self.part.as_ref()) {
+            Some(part) => format!("{file}#{part}"),
+            None => file,
+        }
     }
 
     /// Whether this is standard input.
@@ -87,6 +102,8 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     enum Item {
         File(PathBuf),
         Transform(&'static str, Transform),
+        Repair(Repairs),
+        Rule(Rule),
     }
     let mut items: Vec<(usize, Item)> =
         placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(path))).collect();
@@ -100,16 +117,28 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     transforms("--rotate", placed(matches, "rotate").map(|(at, v)| (at, Transform::Rotate(v))).collect());
     transforms("--scale", placed(matches, "scale").map(|(at, v)| (at, Transform::Scale(v))).collect());
     transforms("--matrix", placed(matches, "matrix").map(|(at, v)| (at, Transform::Matrix(v))).collect());
+    items.extend(placed_repairs(matches).into_iter().map(|(at, repairs)| (at, Item::Repair(repairs))));
+    if matches.try_contains_id("rule").is_ok() {
+        items.extend(placed(matches, "rule").map(|(at, rule)| (at, Item::Rule(rule))));
+    }
     items.sort_by_key(|&(at, _)| at);
 
     let expansion = matches.try_get_one::<u64>("expansion").ok().flatten().copied();
     let mut requests: Vec<Request> = Vec::new();
+    let (mut for_all, mut rule_for_all) = (Repairs::default(), Rule::default());
     for (_, item) in items {
         match (item, requests.last_mut()) {
             (Item::File(path), _) => {
-                requests.push(Request { path, format: None, expansion, transforms: Vec::new() });
+                let (path, part) = selection::split(path);
+                let (format, chosen, transforms) = (None, None, Vec::new());
+                let (repairs, rule) = (Repairs::default(), rule_for_all);
+                requests.push(Request { path, part, chosen, format, expansion, transforms, repairs, rule });
             }
+            (Item::Rule(rule), Some(request)) => request.rule = rule,
+            (Item::Rule(rule), None) => rule_for_all = rule,
             (Item::Transform(_, transform), Some(request)) => request.transforms.push(transform),
+            (Item::Repair(repairs), Some(request)) => request.repairs = repairs.with(request.repairs),
+            (Item::Repair(repairs), None) => for_all = repairs.with(for_all),
             (Item::Transform(name, _), None) => {
                 return Err(Fault::usage(format!(
                     "{name} stands before the first input; a transform applies to the input just before it"
@@ -117,7 +146,37 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
             }
         }
     }
+    for request in &mut requests {
+        request.repairs = request.repairs.with(for_all);
+        if let Some(other) = request.repairs.contradiction() {
+            return Err(Fault::usage(format!(
+                "{}: --as-is and {other} contradict each other",
+                request.name()
+            )));
+        }
+    }
     Ok(requests)
+}
+
+/// What is asked to be mended, each with its place on the command line. Not every verb takes such options.
+fn placed_repairs(matches: &ArgMatches) -> Vec<(usize, Repairs)> {
+    let none = Repairs::default();
+    let mut repairs = Vec::new();
+    let takes = |id| matches.try_contains_id(id).is_ok();
+    let flags = [
+        ("orient", Repairs { orient: true, ..none }),
+        ("closed_parts", Repairs { closed_parts: true, ..none }),
+        ("as_is", Repairs { as_is: true, ..none }),
+    ];
+    for (id, asked) in flags {
+        if takes(id) {
+            repairs.extend(placed::<bool>(matches, id).map(|(at, _)| (at, asked)));
+        }
+    }
+    if takes("weld") {
+        repairs.extend(placed(matches, "weld").map(|(at, weld)| (at, Repairs { weld, ..none })));
+    }
+    repairs
 }
 
 /// The values of an argument, each with its place on the command line.
@@ -152,6 +211,7 @@ pub(crate) fn name_formats(requests: &mut [Request], format: Option<Format>) -> 
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory as _;
+    use trisect::mesh::Welding;
 
     use super::*;
     use crate::cli::arguments::Arguments;
@@ -198,5 +258,20 @@ mod tests {
         assert_eq!(formats("trisect union a b --format off").expect("valid"), [Some(Format::Off); 2]);
         assert!(formats("trisect union - b.obj").is_err());
         assert!(formats("trisect union - - --format stl").is_err());
+    }
+
+    #[test]
+    fn repairs_belong_to_the_input_before_them_or_to_all() {
+        let requests = parse(
+            "trisect union --closed-parts --weld 1 a.obj --orient b.obj --weld auto --weld 2 c.obj -o x.obj --orient",
+        )
+        .expect("valid");
+        let repairs: Vec<Repairs> = requests.iter().map(|request| request.repairs).collect();
+        assert!(repairs.iter().all(|repairs| repairs.closed_parts && !repairs.as_is));
+        assert_eq!(repairs.iter().map(|repairs| repairs.orient).collect::<Vec<_>>(), [true, false, true]);
+        let welds: Vec<Welding> = repairs.iter().map(|repairs| repairs.weld).collect();
+        assert_eq!(welds, [Welding::Within(1.0), Welding::Within(2.0), Welding::Within(1.0)]);
+        let fault = parse("trisect union --as-is a.obj b.obj --weld auto").expect_err("a contradiction");
+        assert!(fault.message.contains("b.obj: --as-is and --weld"), "{}", fault.message);
     }
 }

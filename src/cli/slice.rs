@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &Slice, matches: &ArgMatches, session: &mut Session
     let name = ["x", "y", "z"][axis];
     session.note(
         "section",
-        json!({ "of": field.name, "axis": name, "at": position, "bounds": field.bounds,
+        json!({ "of": field.name, "sign": field.sign(), "axis": name, "at": position, "bounds": field.bounds,
                 "size": [picture.width(), picture.height()] }),
     );
     session.note("outputs", outputs);

@@ -3,14 +3,16 @@
 use std::sync::Arc;
 
 use clap::ArgMatches;
-use trisect::Control;
-use trisect::field::{Expression, Formula, Graph, SignedDistance, System};
+use trisect::field::{Expression, Formula, Graph, SignRule, SignedDistance, System};
+use trisect::mesh::Gate;
 use trisect::model::{Evaluation, Model};
+use trisect::{Control, Solid};
 
 use super::fault::Fault;
-use super::field_arguments::Source;
+use super::field_arguments::{self, Rule, Source};
 use super::operands;
 use super::requests;
+use super::selection;
 use super::session::Session;
 
 /// A function of space and where to look at it.
@@ -21,6 +23,13 @@ pub(crate) struct Field {
     pub(crate) bounds: [[f64; 3]; 2],
     /// What it is the function of, for messages.
     pub(crate) name: String,
+}
+
+impl Field {
+    /// The rule by which a mesh's inside was told.
+    pub(crate) fn sign(&self) -> Option<&'static str> {
+        self.distance.as_ref().map(|distance| field_arguments::rule_name(distance.decided_by()))
+    }
 }
 
 /// Reads what the command line names.
@@ -48,12 +57,20 @@ pub(crate) fn field(
     } else {
         let mut requests = requests::requests(matches, source.reading.format)?;
         let request = requests.pop().ok_or_else(|| Fault::usage("a file or --formula is needed"))?;
+        let of_input = |error: trisect::Error| error.of_operand(0, request.name());
+        let request = selection::together(request.clone(), &session.limits, control).map_err(of_input)?;
         let input = operands::read(&request, &session.limits, control)
             .map_err(|error| error.of_operand(0, request.name()))?;
         for warning in &input.warnings {
             session.warn(format!("{}: {warning}", request.name()));
         }
-        let found = Arc::new(SignedDistance::of_mesh(&input.mesh, source.sign.rule()));
+        // Seams and the like are mended as for an operand; what cannot be one is taken as it is.
+        let mended = Gate::new().solid(input.mesh).map_or_else(|refusal| refusal.mesh, Solid::into_mesh);
+        let found = Arc::new(SignedDistance::of_mesh_within(&mended, source.sign.rule(), control));
+        control.check().map_err(trisect::Error::from)?;
+        if source.sign == Rule::Automatic && found.decided_by() == SignRule::FastWinding {
+            session.warn(open_surface(&request.name()));
+        }
         let mut graph = Graph::new();
         let root = graph.leaf(Arc::<SignedDistance>::clone(&found));
         let own = found.tree().bounds();
@@ -71,6 +88,14 @@ pub(crate) fn field(
         }
     };
     Ok(Field { expression, distance, bounds, name })
+}
+
+/// What is said of a mesh that encloses nothing for certain.
+fn open_surface(name: &str) -> String {
+    format!(
+        "{name}: it is not closed (`trisect check` says where), so its inside is a guess: where the generalised winding \
+         number is above one half (--sign fast-winding asks for that)"
+    )
 }
 
 fn is_json(path: &std::path::Path) -> bool {

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use trisect::io::Format;
+use trisect::mesh::Welding;
 
 /// `count` finite numbers separated by commas or blanks.
 fn numbers<const COUNT: usize>(text: &str) -> Result<[f64; COUNT], String> {
@@ -32,6 +33,14 @@ pub(crate) fn distance(text: &str) -> Result<f64, String> {
         Ok([distance]) if distance >= 0.0 => Ok(distance),
         Ok(_) => Err("a distance is not negative".into()),
         Err(error) => Err(error.replace("1 numbers separated by commas", "one number")),
+    }
+}
+
+/// `auto`, or a length that is not negative.
+pub(crate) fn welding(text: &str) -> Result<Welding, String> {
+    match text {
+        "auto" => Ok(Welding::Closing),
+        _ => distance(text).map(Welding::Within).map_err(|error| format!("{error} (or auto)")),
     }
 }
 
@@ -152,6 +161,11 @@ pub(crate) fn picture_size(text: &str) -> Result<[u32; 2], String> {
     text.split_once(['x', 'X'])
         .and_then(|(width, height)| Some([side(width)?, side(height)?]))
         .ok_or_else(|| format!("expected WIDTHxHEIGHT such as 1024x768, each from 1 to {MAX_PICTURE}"))
+}
+
+/// A rule by its name.
+pub(crate) fn rule(text: &str) -> Result<trisect::Rule, String> {
+    text.parse().map_err(|error: trisect::UnknownName| error.to_string())
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@
 //! demand that a determinant exceed, besides the usual relative bound, an absolute floor far above anything that underflow
 //! can have lost; on overflow they compare infinities or NaN and fail; either way the exact stage decides.
 
+pub(crate) mod at_hand;
 mod double_double;
 mod filter;
 mod integer;
@@ -18,10 +19,11 @@ mod lattice;
 pub(crate) mod order;
 mod orient;
 pub(crate) mod perturbed;
+pub(crate) mod planes;
 pub(crate) mod position;
 mod projection;
 
-pub(crate) use filter::{FILTER_RANGE, PlaneFilter, orient3d_filter};
+pub(crate) use filter::{FILTER_RANGE, PlaneFilter, orient2d_filter, orient3d_filter};
 pub use orient::{Sign, collinear, orient2d, orient3d};
 pub use perturbed::orient3d_perturbed;
 pub(crate) use projection::Projection;

@@ -1,10 +1,10 @@
 //! `orient3d` of symbolically perturbed points: a sign that is never zero (Vyatkin 2019, step 1: perturbation).
 //!
-//! Every point moves along `p(eps) = p + eps r + eps^8 h`, where `eps` is a positive infinitesimal. The determinant is
+//! Every point moves along `p(eps) = p + eps r + eps^16 h`, where `eps` is a positive infinitesimal. The determinant is
 //! then a polynomial in `eps`, and its sign is that of its lowest non-zero coefficient. The first direction `r` expresses
 //! what a tie *should* mean (it is chosen by the boolean operation: see [`crate::boolean`](mod@crate::boolean)); the second direction `h` is a
-//! hash of the point's identity and breaks whatever ties the first leaves. The exponent 8 keeps the two apart: no product
-//! of two determinants mixes powers of `r` with powers of `h`, so every coefficient is homogeneous in both, and the
+//! hash of the point's identity and breaks whatever ties the first leaves. The exponent 16 keeps the two apart: no predicate
+//! (the highest has degree 9: four planes, see `planes`) mixes powers of `r` with powers of `h`, so every coefficient is homogeneous in both, and the
 //! decisions do not depend on the unit the coordinates are measured in.
 //!
 //! Coefficients are computed one after the other, exactly; the lowest has an `f64` filter of its own, since it decides
@@ -19,18 +19,18 @@ use super::lattice::Lattice;
 use super::orient::orient3d_exact;
 
 /// Powers of `eps` in a coordinate: the position itself, the first direction, the second.
-const POWERS: [usize; 3] = [0, 1, 8];
+pub(super) const POWERS: [usize; 3] = [0, 1, 16];
 /// Number of coefficients of a perturbed `orient3d` that can be non-zero.
 pub(super) const COEFFICIENTS: usize = EXPONENTS.len();
-/// Their powers of `eps`: three factors of powers 0, 1 or 8.
-pub(super) const EXPONENTS: [usize; 10] = [0, 1, 2, 3, 8, 9, 10, 16, 17, 24];
+/// Their powers of `eps`: three factors of powers 0, 1 or 16.
+pub(super) const EXPONENTS: [usize; 10] = [0, 1, 2, 3, 16, 17, 18, 32, 33, 48];
 
-/// A point that moves infinitesimally: `position + eps first + eps^8 second`.
+/// A point that moves infinitesimally: `position + eps first + eps^16 second`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PerturbedPoint {
     /// Where the point is; finite.
     pub(crate) position: [f64; 3],
-    /// The first direction; components of at most 10 bits and a sign.
+    /// The first direction; components of at most 16 bits and a sign.
     pub(crate) first: [i32; 3],
     /// The second direction; components of at most 20 bits and a sign.
     pub(crate) second: [i32; 3],
@@ -50,7 +50,7 @@ pub(crate) fn jitter(identity: u64) -> [i32; 3] {
 /// The sign of `orient3d` of four perturbed points (see [`super::orient3d`] for what it means). It is zero only if the
 /// polynomial vanishes identically: for points with different [`jitter`] that has a probability below 2^-55.
 #[must_use]
-pub(super) fn orient3d(points: [&PerturbedPoint; 4]) -> Sign {
+pub(crate) fn orient3d(points: [&PerturbedPoint; 4]) -> Sign {
     let [a, b, c, d] = points;
     let unperturbed = orient3d_exact(&a.position, &b.position, &c.position, &d.position);
     if unperturbed != Sign::Zero { unperturbed } else { orient3d_of_tie(points) }

@@ -12,13 +12,33 @@ use super::integer::Integer;
 use super::lattice::Lattice;
 use super::orient::determinant;
 use super::perturbed::{COEFFICIENTS, PerturbedPoint, Polynomial};
+use super::planes;
 
 /// The crossing point of edge `(p, q)` with the plane of the triangle, if double-double arithmetic can round it with
 /// certainty; the fast path of [`crossing`].
 #[must_use]
 pub(crate) fn crossing_filter(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> Option<[f64; 3]> {
+    round(&near_crossing(p, q, triangle)?)
+}
+
+/// A number known up to an error.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    pub(super) value: DoubleDouble,
+    pub(super) error: f64,
+}
+
+impl Near {
+    fn exactly(value: f64) -> Self {
+        Self { value: DoubleDouble::from(value), error: 0.0 }
+    }
+}
+
+/// A point, each coordinate rounded to nearest, if the errors leave no doubt.
+#[inline]
+pub(super) fn round(near: &[Near; 3]) -> Option<[f64; 3]> {
     let mut position = [0.0; 3];
-    for (rounded, Near { value: x, error }) in position.iter_mut().zip(near_crossing(p, q, triangle)?) {
+    for (rounded, Near { value: x, error }) in position.iter_mut().zip(near) {
         let error = error + x.low.abs() * 4.0 * f64::EPSILON;
         let (from_above, from_below) = (x.high + (x.low + error), x.high + (x.low - error));
         if from_above != from_below {
@@ -27,19 +47,6 @@ pub(crate) fn crossing_filter(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 
         *rounded = from_above + 0.0;
     }
     Some(position)
-}
-
-/// A number known up to an error.
-#[derive(Clone, Copy, Debug)]
-struct Near {
-    value: DoubleDouble,
-    error: f64,
-}
-
-impl Near {
-    fn exactly(value: f64) -> Self {
-        Self { value: DoubleDouble::from(value), error: 0.0 }
-    }
 }
 
 /// The crossing point of edge `(p, q)` with the plane of the triangle up to errors, if double-double arithmetic can tell.
@@ -144,6 +151,8 @@ pub(crate) enum Unrounded {
     Given([f64; 3]),
     /// The crossing point of an edge with the plane of a triangle; see [`crossing`].
     Crossing(Box<([PerturbedPoint; 2], [PerturbedPoint; 3])>),
+    /// The point in which the planes of three triangles meet; see [`planes`](super::planes).
+    Planes(Box<[[PerturbedPoint; 3]; 3]>),
 }
 
 impl Unrounded {
@@ -154,6 +163,27 @@ impl Unrounded {
                 let ([p, q], triangle) = &**of;
                 near_crossing(&p.position, &q.position, triangle.each_ref().map(|corner| &corner.position))
             }
+            Self::Planes(of) => {
+                planes::near_meeting(of.each_ref().map(|face| face.each_ref().map(|corner| &corner.position)))
+            }
+        }
+    }
+
+    /// The given coordinates it is made of.
+    fn coordinates(&self) -> Vec<&[f64; 3]> {
+        match self {
+            Self::Given(position) => vec![position],
+            Self::Crossing(of) => of.0.iter().chain(&of.1).map(|p| &p.position).collect(),
+            Self::Planes(of) => of.iter().flatten().map(|p| &p.position).collect(),
+        }
+    }
+
+    /// Three numerators in units of a lattice, and their denominator.
+    fn homogeneous(&self, lattice: Lattice) -> ([Integer; 3], Integer) {
+        match self {
+            Self::Given(position) => (position.map(|x| lattice.integer(x)), Integer::from(1)),
+            Self::Crossing(of) => homogeneous(&of.0[0], &of.0[1], of.1.each_ref(), lattice),
+            Self::Planes(of) => planes::homogeneous(of.each_ref().map(<[_; 3]>::each_ref), lattice),
         }
     }
 }
@@ -191,15 +221,8 @@ pub(crate) fn on_one_line(points: &[Unrounded; 3]) -> bool {
     if surely_off_line(points) {
         return false;
     }
-    let coordinates = points.iter().flat_map(|point| match point {
-        Unrounded::Given(position) => vec![position],
-        Unrounded::Crossing(of) => of.0.iter().chain(&of.1).map(|p| &p.position).collect(),
-    });
-    let lattice = Lattice::of(coordinates.flatten());
-    let [(x, w), (y, v), (z, u)] = points.each_ref().map(|point| match point {
-        Unrounded::Given(position) => (position.map(|x| lattice.integer(x)), Integer::from(1)),
-        Unrounded::Crossing(of) => homogeneous(&of.0[0], &of.0[1], of.1.each_ref(), lattice),
-    });
+    let lattice = Lattice::of(points.iter().flat_map(Unrounded::coordinates).flatten());
+    let [(x, w), (y, v), (z, u)] = points.each_ref().map(|point| point.homogeneous(lattice));
     let along = |y: &[Integer; 3], v: &Integer| -> [Integer; 3] {
         std::array::from_fn(|k| y[k].times(&w).minus(&x[k].times(v)))
     };
@@ -327,6 +350,7 @@ mod tests {
             let rounded = |point: &Unrounded| match point {
                 Unrounded::Given(position) => *position,
                 Unrounded::Crossing(of) => crossing(&of.0[0], &of.0[1], of.1.each_ref()),
+                Unrounded::Planes(of) => planes::meeting(of.each_ref().map(<[_; 3]>::each_ref)),
             };
             seen_rounded_off |= !crate::exact::collinear(&rounded(&end), &rounded(&x), &rounded(&y));
             let near = Unrounded::Given(rounded(&y).map(|coordinate| coordinate + 1.0));

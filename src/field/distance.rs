@@ -6,14 +6,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::DVec3;
 
 use super::pseudonormal::PseudoNormals;
-use super::work;
+use super::{inside, work};
 use crate::spatial::{Closest, FastWinding, Feature, Side, TriangleTree, coherent_order};
 use crate::{Control, Error, Mesh, Solid};
 
 /// How inside and outside are decided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SignRule {
-    /// Pseudonormals where every edge has exactly two triangles, otherwise the ray's winding number. The default.
+    /// The default: whichever of the following is right for the surface, found out once for each mesh. Pseudonormals on
+    /// closed surfaces that do not cross themselves (and whose shells face as they should), the winding number on other
+    /// closed ones, the fast winding number on open ones. [`SignedDistance::decided_by`] tells.
     #[default]
     Automatic,
     /// The side of the angle-weighted pseudonormal at the nearest point (Baerentzen, Aanaes 2005). The fastest; right
@@ -67,6 +69,8 @@ pub struct SignedDistance {
     normals: PseudoNormals,
     winding: OnceLock<FastWinding>,
     rule: SignRule,
+    /// What `SignRule::Automatic` means here.
+    automatic: OnceLock<SignRule>,
     size: f64,
     /// Tells meshes apart.
     number: u64,
@@ -79,23 +83,55 @@ static COUNT: AtomicU64 = AtomicU64::new(0);
 const RUN: usize = 512;
 
 impl SignedDistance {
-    /// Signed distance of a solid. O(n log n); about 250 bytes a triangle.
+    /// Signed distance of a solid, its inside told by [`SignRule::Automatic`]. O(n log n), a search for crossings among it
+    /// ([`Solid::self_crossings`], done once for each solid); about 250 bytes a triangle.
     #[must_use]
     pub fn new(solid: &Solid) -> Self {
-        Self::of_mesh(solid.mesh(), SignRule::Automatic)
+        let distance = Self::undecided(solid.mesh(), SignRule::Automatic);
+        let rule = inside::of_solid(solid, &distance.normals, &Control::new());
+        Self { automatic: OnceLock::from(rule), ..distance }
     }
 
-    /// Distance of any mesh with the given rule. For a mesh that is not closed only [`SignRule::FastWinding`] gives
-    /// a sign that means anything.
+    /// Distance of any mesh with the given rule. For a mesh that is not closed only [`SignRule::FastWinding`], which
+    /// [`SignRule::Automatic`] then is, gives a sign that means anything.
+    ///
+    /// ```
+    /// use trisect::field::{SignRule, SignedDistance};
+    /// use trisect::{Mesh, primitives};
+    ///
+    /// let boxes = [primitives::cuboid([0.0; 3], [1.0; 3])?, primitives::cuboid([0.5; 3], [1.5; 3])?];
+    /// let overlapping = Mesh::merged(&boxes)?;
+    /// let distance = SignedDistance::of_mesh(&overlapping, SignRule::Automatic);
+    /// assert_eq!(distance.decided_by(), SignRule::Winding);
+    /// assert_eq!(distance.at([0.75, 0.75, 1.25]), 0.25);
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
     #[must_use]
     pub fn of_mesh(mesh: &Mesh, rule: SignRule) -> Self {
+        Self::of_mesh_within(mesh, rule, &Control::new())
+    }
+
+    /// As [`of_mesh`](Self::of_mesh); the search for crossings that [`SignRule::Automatic`] makes stops at the limits of
+    /// `control`, and the winding number, which is right for every closed mesh but slower, then decides.
+    #[must_use]
+    pub fn of_mesh_within(mesh: &Mesh, rule: SignRule, control: &Control) -> Self {
+        let distance = Self::undecided(mesh, rule);
+        if rule == SignRule::Automatic {
+            let decided = inside::automatic(mesh, &distance.normals, control);
+            return Self { automatic: OnceLock::from(decided), ..distance };
+        }
+        distance
+    }
+
+    /// The distance, before it is known what the automatic rule is.
+    fn undecided(mesh: &Mesh, rule: SignRule) -> Self {
         let tree = TriangleTree::new(mesh);
         let normals = PseudoNormals::new(mesh);
         let size = tree.bounds().map_or(0.0, |[low, high]| {
             DVec3::from_array(low).abs().max(DVec3::from_array(high).abs()).max_element()
         });
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        Self { tree, normals, winding: OnceLock::new(), rule, size, number }
+        Self { tree, normals, winding: OnceLock::new(), rule, automatic: OnceLock::new(), size, number }
     }
 
     /// The same surface with another sign rule.
@@ -103,6 +139,26 @@ impl SignedDistance {
     pub fn with_rule(mut self, rule: SignRule) -> Self {
         self.rule = rule;
         self
+    }
+
+    /// The rule that tells inside from outside: the one asked for, or if that is [`SignRule::Automatic`], what it is for
+    /// this surface.
+    #[must_use]
+    pub fn decided_by(&self) -> SignRule {
+        match self.rule {
+            SignRule::Automatic => *self
+                .automatic
+                .get_or_init(|| inside::automatic(&self.surface(), &self.normals, &Control::new())),
+            rule => rule,
+        }
+    }
+
+    /// The triangles as a mesh of their own corners.
+    fn surface(&self) -> Mesh {
+        let corners = (0..self.normals.len() as u32).filter_map(|triangle| self.tree.corners(triangle));
+        let positions: Vec<[f64; 3]> = corners.flatten().map(|corner| corner.to_array()).collect();
+        let triangles = (0..positions.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Mesh::new(positions, triangles)
     }
 
     /// The hierarchy, for other queries.
@@ -188,7 +244,7 @@ impl SignedDistance {
         finish: impl Fn([f64; 3], Option<&Closest>) -> T + Sync,
     ) -> Result<Vec<T>, Error> {
         let order = coherent_order(queries);
-        if self.rule == SignRule::FastWinding {
+        if self.decided_by() == SignRule::FastWinding {
             self.fast_winding();
         }
         let runs = work::pieces(order.len(), RUN, control, "distance", |range| {
@@ -226,10 +282,7 @@ impl SignedDistance {
     }
 
     fn side_from(&self, query: [f64; 3], closest: &Closest, distance: f64) -> Side {
-        match self.rule {
-            SignRule::Automatic if self.normals.is_regular() => {
-                self.by_pseudonormal(query, closest, distance)
-            }
+        match self.decided_by() {
             SignRule::PseudoNormal => self.by_pseudonormal(query, closest, distance),
             SignRule::Automatic | SignRule::Winding => self.by_ray(query, distance, |_, winding| winding > 0),
             SignRule::Parity => self.by_ray(query, distance, |count, _| count % 2 == 1),
@@ -279,6 +332,16 @@ impl SignedDistance {
 
     fn fast_winding(&self) -> &FastWinding {
         self.winding.get_or_init(|| FastWinding::new(&self.tree))
+    }
+
+    /// Whether the distance grows inwards of the nearest face everywhere: not beside a hole, nor at walls inside bodies that
+    /// overlap. Where the caller chose the winding number, overlaps are not looked for.
+    pub(crate) fn follows_normals(&self) -> bool {
+        let found_to_overlap = self.rule == SignRule::Automatic && self.normals.is_regular();
+        match self.decided_by() {
+            SignRule::PseudoNormal => true,
+            _ => self.normals.is_closed() && !found_to_overlap,
+        }
     }
 
     /// Bytes held.

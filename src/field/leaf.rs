@@ -98,6 +98,9 @@ impl Leaf for SignedDistance {
 
     fn gradient_bounds(&self, low: [f64; 3], high: [f64; 3]) -> [Interval; 3] {
         let anything = [Interval::new(-1.0, 1.0); 3];
+        if !self.follows_normals() {
+            return anything;
+        }
         let middle = DVec3::from_array(centre(low, high));
         let Some(found) = self.nearest(middle.to_array()) else { return anything };
         let half = (DVec3::from_array(high) - middle).length();

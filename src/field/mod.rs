@@ -17,6 +17,7 @@ mod extract;
 mod extrude;
 mod formula;
 mod grid;
+mod inside;
 mod interval;
 mod leaf;
 mod number;

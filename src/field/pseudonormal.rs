@@ -20,8 +20,19 @@ pub(crate) struct PseudoNormals {
     /// For every triangle and corner the index in `vertices`.
     corners: Vec<[u32; 3]>,
     vertices: Vec<DVec3>,
-    /// Whether every edge has exactly two triangles of opposite direction.
-    regular: bool,
+    /// What the edges say of the surface.
+    edges: Edges,
+}
+
+/// What the edges of a surface say of it as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Edges {
+    /// Exactly two triangles of opposite direction at each.
+    Regular,
+    /// As many triangles of either direction at each.
+    Balanced,
+    /// More of one direction at some: the surface is open there.
+    Open,
 }
 
 const NONE: u32 = u32::MAX;
@@ -40,7 +51,7 @@ impl PseudoNormals {
             .collect();
         let position = |vertex: u32| mesh.positions.get(vertex as usize).map(|&p| DVec3::from_array(p));
         let faces: Vec<DVec3> = corners.iter().map(|t| face_normal(t.map(position))).collect();
-        let (mates, regular) = mates(&corners);
+        let (mates, edges) = mates(&corners);
         let mut vertices = vec![DVec3::ZERO; mesh.positions.len()];
         let mut unreliable = vec![false; mesh.positions.len()];
         for (corners, &normal) in corners.iter().zip(&faces) {
@@ -60,7 +71,7 @@ impl PseudoNormals {
                 *normal = DVec3::ZERO;
             }
         }
-        Self { faces, mates, corners, vertices, regular }
+        Self { faces, mates, corners, vertices, edges }
     }
 
     /// The pseudonormal of a feature, not normalised; zero where it does not decide the side.
@@ -81,7 +92,17 @@ impl PseudoNormals {
 
     /// Whether every edge has exactly two triangles, of opposite direction.
     pub(crate) fn is_regular(&self) -> bool {
-        self.regular
+        self.edges == Edges::Regular
+    }
+
+    /// Whether every edge has as many triangles of one direction as of the other: the surface has no boundary.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.edges != Edges::Open
+    }
+
+    /// Number of triangles.
+    pub(crate) fn len(&self) -> usize {
+        self.faces.len()
     }
 
     /// Bytes held.
@@ -116,8 +137,8 @@ fn face_normal(corners: [Option<DVec3>; 3]) -> DVec3 {
     if doubled_area > THIN { cross / doubled_area } else { DVec3::ZERO }
 }
 
-/// The neighbour over each edge, and whether there is exactly one everywhere.
-fn mates(corners: &[[u32; 3]]) -> (Vec<[u32; 3]>, bool) {
+/// The neighbour over each edge, where there is exactly one, and what the edges say of the surface.
+fn mates(corners: &[[u32; 3]]) -> (Vec<[u32; 3]>, Edges) {
     let mut edges: Vec<(u32, u32, u32)> = Vec::with_capacity(3 * corners.len());
     for (triangle, corner) in corners.iter().enumerate() {
         for k in 0..3 {
@@ -127,7 +148,7 @@ fn mates(corners: &[[u32; 3]]) -> (Vec<[u32; 3]>, bool) {
     }
     edges.sort_unstable();
     let mut mates = vec![[NONE; 3]; corners.len()];
-    let mut regular = true;
+    let mut surface = Edges::Regular;
     for run in edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
         let slot = |entry: u32| (entry as usize / 3, entry as usize % 3);
         let start = |entry: u32| corners[slot(entry).0][slot(entry).1];
@@ -139,8 +160,11 @@ fn mates(corners: &[[u32; 3]]) -> (Vec<[u32; 3]>, bool) {
             mates[first.0][first.1] = second.0 as u32;
             mates[second.0][second.1] = first.0 as u32;
         } else {
-            regular = false;
+            let (a, b) = (run[0].0, run[0].1);
+            let rising = run.iter().filter(|edge| start(edge.2) == a).count();
+            let balanced = a == b || 2 * rising == run.len();
+            surface = if balanced && surface != Edges::Open { Edges::Balanced } else { Edges::Open };
         }
     }
-    (mates, regular)
+    (mates, surface)
 }

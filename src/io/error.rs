@@ -30,6 +30,32 @@ pub enum FormatError {
         /// What is not supported, and how to convert the file.
         what: String,
     },
+    /// A part of a file was asked for by a name that no part has, or only parts without triangles.
+    #[error("{}", no_such_part(*format, name, *empty, near))]
+    NoSuchPart {
+        /// The format of the file.
+        format: Format,
+        /// The name or pattern asked for.
+        name: String,
+        /// Whether there are such parts, but without triangles.
+        empty: bool,
+        /// The names in the file that are most like it; none if the file has no names.
+        near: Vec<String>,
+    },
+}
+
+fn no_such_part(format: Format, name: &str, empty: bool, near: &[String]) -> String {
+    if empty {
+        return format!("what is named {name:?} has no triangles");
+    }
+    match near {
+        [] => format!("no part is named {name:?}: the {format} file has no names of parts"),
+        [only] => format!("no part is named {name:?}; the nearest is {only:?}"),
+        [first @ .., last] => {
+            let first: Vec<String> = first.iter().map(|name| format!("{name:?}")).collect();
+            format!("no part is named {name:?}; nearest are {} and {last:?}", first.join(", "))
+        }
+    }
 }
 
 /// The extensions of all formats.

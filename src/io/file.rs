@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::{Format, FormatError, Loaded, ReadOptions, WriteOptions, obj, read, write};
+use super::{Format, FormatError, Loaded, ReadOptions, WriteOptions, Written, obj, read, write_report};
 use crate::{Error, FileAction, Mesh};
 
 impl Mesh {
@@ -34,7 +34,16 @@ impl Mesh {
 /// # Errors
 /// [`Error::File`], [`FormatError::Unknown`], and those of [`read`].
 pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Error> {
-    let path = path.as_ref();
+    loaded(path.as_ref(), options, read, |loaded| &mut loaded.warnings)
+}
+
+/// Reads a file by `read`; `warnings` are those of what was read.
+pub(super) fn loaded<T>(
+    path: &Path,
+    options: &ReadOptions,
+    read: impl FnOnce(&[u8], Format, &ReadOptions) -> Result<T, Error>,
+    warnings: impl FnOnce(&mut T) -> &mut Vec<String>,
+) -> Result<T, Error> {
     let fail = |source| Error::File { action: FileAction::Read, path: path.to_path_buf(), source };
     let length = fs::metadata(path).map_err(fail)?.len();
     let _reservation = options.control.reserve(length)?;
@@ -46,7 +55,7 @@ pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Err
         options.folder = Some(folder.unwrap_or(Path::new(".")).to_path_buf());
     }
     let mut loaded = read(&bytes, detected.format, &options)?;
-    loaded.warnings.splice(0..0, detected.warning);
+    warnings(&mut loaded).splice(0..0, detected.warning);
     Ok(loaded)
 }
 
@@ -54,8 +63,17 @@ pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Err
 /// materials, a material library is written beside it.
 ///
 /// # Errors
-/// [`Error::File`], [`FormatError::Unknown`], and those of [`write()`].
+/// [`Error::File`], [`FormatError::Unknown`], and those of [`write()`](super::write()).
 pub fn save(mesh: &Mesh, path: impl AsRef<Path>, options: &WriteOptions) -> Result<Vec<String>, Error> {
+    save_report(mesh, path, options).map(|written| written.warnings)
+}
+
+/// Writes a mesh file as [`save`] does, and tells besides what the file holds where it is not the mesh; see
+/// [`write_report`].
+///
+/// # Errors
+/// Those of [`save`].
+pub fn save_report(mesh: &Mesh, path: impl AsRef<Path>, options: &WriteOptions) -> Result<Written, Error> {
     let path = path.as_ref();
     let format =
         Format::from_path(path).ok_or_else(|| FormatError::Unknown { name: path.display().to_string() })?;
@@ -70,7 +88,7 @@ pub fn save(mesh: &Mesh, path: impl AsRef<Path>, options: &WriteOptions) -> Resu
         library = Some(new);
     }
     let mut new = NewFile::create(path)?;
-    let warnings = write(mesh, format, &mut new.file, &options).map_err(|error| match error {
+    let written = write_report(mesh, format, &mut new.file, &options).map_err(|error| match error {
         Error::File { action, source, .. } => Error::File { action, path: path.to_path_buf(), source },
         other => other,
     })?;
@@ -82,7 +100,7 @@ pub fn save(mesh: &Mesh, path: impl AsRef<Path>, options: &WriteOptions) -> Resu
             undo.forget();
         }
     }
-    Ok(warnings)
+    Ok(written)
 }
 
 /// The name of the material library for an OBJ file; without blanks, which part names in `mtllib`.

@@ -35,8 +35,10 @@ mod notes;
 mod obj;
 mod off;
 mod options;
+mod outline;
+mod parts;
 mod ply;
-mod precision;
+mod rounding;
 mod scan;
 mod stl;
 mod text;
@@ -48,9 +50,11 @@ use crate::{Error, FileAction, Mesh};
 
 pub use detect::Detected;
 pub use error::FormatError;
-pub use file::{load, save};
+pub use file::{load, save, save_report};
 pub use format::Format;
 pub use options::{Encoding, Precision, ReadOptions, WriteOptions};
+pub use parts::{Part, PartName, Parts, load_parts, read_parts};
+pub use rounding::{Rounding, Written};
 
 /// A mesh read from a file, with what its reader had to say.
 #[derive(Clone, Debug)]
@@ -102,16 +106,47 @@ pub fn write(
     output: &mut impl Write,
     options: &WriteOptions,
 ) -> Result<Vec<String>, Error> {
+    write_to(mesh, format, output, options).map(|written| written.warnings)
+}
+
+/// Writes a mesh as [`write()`] does, and tells besides what the file holds where it is not the mesh: binary STL and glTF have
+/// room for single precision only.
+///
+/// ```
+/// use trisect::io::{self, Format, WriteOptions};
+/// use trisect::primitives;
+///
+/// // A kilometre from the origin, in single precision: steps of 0.06 mm.
+/// let cube = primitives::cuboid([1000.0; 3], [1000.01; 3])?;
+/// let written = io::write_report(&cube, Format::Stl, &mut Vec::new(), &WriteOptions::new())?;
+/// let rounding = written.rounding.expect("0.01 is no number of single precision");
+/// assert_eq!(rounding.step, 2f64.powi(-14));
+/// assert!(rounding.written_volume < rounding.volume && rounding.finer_at_origin);
+/// assert!(written.warnings[0].contains("changes the volume"));
+///
+/// let (moved, _) = cube.recentered();
+/// assert!(io::write_report(&moved, Format::Stl, &mut Vec::new(), &WriteOptions::new())?.warnings.is_empty());
+/// # Ok::<(), trisect::Error>(())
+/// ```
+///
+/// # Errors
+/// Those of [`write()`].
+pub fn write_report(
+    mesh: &Mesh,
+    format: Format,
+    output: &mut impl Write,
+    options: &WriteOptions,
+) -> Result<Written, Error> {
     write_to(mesh, format, output, options)
 }
 
-/// [`write()`] without the type parameter.
+/// [`write_report`] without the type parameter.
 fn write_to(
     mesh: &Mesh,
     format: Format,
     output: &mut dyn Write,
     options: &WriteOptions,
-) -> Result<Vec<String>, Error> {
+) -> Result<Written, Error> {
     finish::check_for_writing(mesh)?;
     match format {
         Format::Obj => obj::write(mesh, output, options),

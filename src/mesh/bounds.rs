@@ -25,6 +25,14 @@ impl Bounds {
 
     /// Grows the box to contain `point`.
     #[inline]
+    /// The smallest box round both.
+    pub(crate) fn united(self, other: Self) -> Self {
+        Self {
+            low: std::array::from_fn(|k| self.low[k].min(other.low[k])),
+            high: std::array::from_fn(|k| self.high[k].max(other.high[k])),
+        }
+    }
+
     pub(crate) fn include(&mut self, point: &[f64; 3]) {
         for axis in 0..3 {
             // Comparisons, not f64::min: they compile to one instruction and skip not-a-numbers alike.

@@ -1,6 +1,7 @@
 //! Lists of items per key, packed one after the other by a counting sort.
 
 /// For every key below a limit the list of its items, in the order they were given.
+#[derive(Debug)]
 pub(crate) struct Buckets<T> {
     /// Where the list of each key begins; one more for the end.
     starts: Vec<u32>,

@@ -1,10 +1,12 @@
 //! Finding what is wrong with a mesh.
 
 use super::clean::{self, Cleaned, Weld};
-use super::diagnosis::{Diagnosis, Fault, Place};
-use super::edges::{Edge, EdgeTable};
+use super::diagnosis::Diagnosis;
+use super::edges::EdgeTable;
+use super::mend::{self, Leave};
 use super::orient::Facing;
 use super::patches::Patches;
+use super::places::{Fault, Spots};
 use super::topology::Topology;
 use super::{Bounds, Mesh, Solid, chain, duplicates, measure, weld};
 use crate::exact::collinear;
@@ -25,6 +27,11 @@ use crate::exact::collinear;
 /// ```
 #[must_use]
 pub fn diagnose(mesh: &Mesh) -> Diagnosis {
+    diagnose_tried(mesh, false)
+}
+
+/// The same; `mending_failed` of a mesh that mending is known not to close.
+pub(super) fn diagnose_tried(mesh: &Mesh, mending_failed: bool) -> Diagnosis {
     let Mesh { positions, triangles, .. } = mesh;
     let mut diagnosis =
         Diagnosis { vertices: positions.len(), triangles: triangles.len(), ..Diagnosis::default() };
@@ -36,6 +43,10 @@ pub fn diagnose(mesh: &Mesh) -> Diagnosis {
     triangles_one_by_one(&spots, &mut diagnosis);
     let cleaned = clean::clean(positions, triangles, Weld::Exact);
     diagnosis.closed = cleaned.closed;
+    if !cleaned.closed && !mending_failed {
+        let mended = mend::mend(mesh, &cleaned.triangles, &cleaned.source, Leave::default());
+        diagnosis.mending = mended.map(|mended| Box::new(mended.report));
+    }
     diagnosis.closing_distance = closing_distance(positions, &cleaned);
     for &pair in &cleaned.opposite {
         diagnosis.opposite_duplicates.add(|| spots.triangles(&pair));
@@ -196,39 +207,6 @@ fn closing_distance(positions: &[[f64; 3]], cleaned: &Cleaned) -> Option<f64> {
         let map = weld::vertex_map(positions.len(), &open, &weld::near_targets(positions, &open, distance));
         weld::cancels(&boundary, |vertex| map[vertex as usize])
     })
-}
-
-/// Makes places out of indices of the mesh.
-struct Spots<'a> {
-    mesh: &'a Mesh,
-}
-
-impl Spots<'_> {
-    fn middle(&self, vertices: &[u32]) -> [f64; 3] {
-        let mut middle = [0.0; 3];
-        for &vertex in vertices {
-            let position = self.mesh.positions.get(vertex as usize).unwrap_or(&[f64::NAN; 3]);
-            for axis in 0..3 {
-                middle[axis] += position[axis] / vertices.len() as f64;
-            }
-        }
-        middle
-    }
-
-    fn vertices(&self, vertices: &[u32]) -> Place {
-        Place { triangles: vec![], vertices: vertices.to_vec(), position: self.middle(&vertices[..1]) }
-    }
-
-    fn triangles(&self, triangles: &[u32]) -> Place {
-        let vertices = self.mesh.triangles[triangles[0] as usize];
-        Place { triangles: triangles.to_vec(), vertices: vertices.to_vec(), position: self.middle(&vertices) }
-    }
-
-    fn edge(&self, edge: Edge<'_>, source: &[u32]) -> Place {
-        let triangles = edge.triangles().take(4).map(|triangle| source[triangle as usize]).collect();
-        let vertices = vec![edge.low, edge.high];
-        Place { triangles, position: self.middle(&vertices), vertices }
-    }
 }
 
 #[cfg(test)]

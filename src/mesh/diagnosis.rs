@@ -2,10 +2,8 @@
 
 use std::fmt;
 
-use super::Bounds;
-
-/// At most this many places are kept of each kind of fault.
-pub(super) const PLACES: usize = 5;
+use super::places::{Fault, PLACES};
+use super::{Bounds, Mending};
 
 /// What [`diagnose`](super::diagnose) found in a mesh: how many faults of each kind, where a few of them are, and
 /// measures where they have a meaning.
@@ -60,6 +58,9 @@ pub struct Diagnosis {
     pub self_crossings: Option<Fault>,
     /// Whether every directed edge is met by its opposite equally often.
     pub closed: bool,
+    /// Where the surface is not closed, but can be mended with certainty: what [`Gate`](super::Gate) does by default. `None`
+    /// if that was tried already and did not close it.
+    pub mending: Option<Box<Mending>>,
     /// Where the surface is not closed: the least power of ten between 1e-9 and 1e-3 of the size within which
     /// welding the vertices on open edges would close it (not looked for where more than 500 000 vertices are on
     /// open edges). [`Mesh::welded`](super::Mesh::welded) does it.
@@ -74,45 +75,6 @@ pub struct Diagnosis {
     pub euler_characteristic: i64,
     /// The genus, if closed and every edge has two triangles; pinched vertices taken apart, summed over the shells.
     pub genus: Option<usize>,
-}
-
-/// Faults of one kind.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Fault {
-    /// How many there are.
-    pub count: usize,
-    /// Where the first of them are.
-    pub places: Vec<Place>,
-}
-
-/// Where a fault is.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Place {
-    /// The triangles concerned (of an edge with many, the first few).
-    pub triangles: Vec<u32>,
-    /// The vertices concerned: the ends of an edge, the corners of a triangle.
-    pub vertices: Vec<u32>,
-    /// A point at the fault: the vertex, the middle of the edge or of the triangle. Not a number where a
-    /// coordinate is not finite or missing.
-    pub position: [f64; 3],
-}
-
-impl Fault {
-    /// Counts one more, and keeps its place if there is room.
-    pub(super) fn add(&mut self, place: impl FnOnce() -> Place) {
-        if self.places.len() < PLACES {
-            self.places.push(place());
-        }
-        self.count += 1;
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub fn is_none(&self) -> bool {
-        self.count == 0
-    }
 }
 
 impl Diagnosis {
@@ -143,6 +105,14 @@ impl Diagnosis {
         ]
     }
 
+    /// The faults without advice: a text for each kind there is, with up to `places` places (of at most five that are kept).
+    #[must_use]
+    pub fn listed(&self, places: usize) -> Vec<String> {
+        let crossings = self.self_crossings.as_ref().map(|fault| ("crossing pair", "crossing pairs", fault));
+        let kinds = self.faults().into_iter().chain(crossings).filter(|(.., fault)| !fault.is_none());
+        kinds.map(|(one, several, fault)| fault.text(one, several, places)).collect()
+    }
+
     /// How to mend a surface that no welding closes.
     fn advice(&self) -> Option<&'static str> {
         let (open, turned) = (!self.open_edges.is_none(), !self.misoriented_edges.is_none());
@@ -159,65 +129,21 @@ impl Diagnosis {
 impl fmt::Display for Diagnosis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (separator, shown) = if f.alternate() { ("\n", PLACES) } else { ("; ", 2) };
-        let mut first = true;
-        let mut separate = |f: &mut fmt::Formatter<'_>| {
-            if std::mem::take(&mut first) { Ok(()) } else { f.write_str(separator) }
-        };
-        let crossings = self.self_crossings.as_ref().map(|fault| ("crossing pair", "crossing pairs", fault));
-        for (one, several, fault) in self.faults().into_iter().chain(crossings) {
-            if fault.is_none() {
-                continue;
-            }
-            separate(f)?;
-            write!(f, "{} {}", fault.count, if fault.count == 1 { one } else { several })?;
-            for (index, place) in fault.places.iter().take(shown).enumerate() {
-                write!(f, "{}{place}", if index == 0 { ": " } else { ", " })?;
-            }
-            if fault.count > fault.places.len().min(shown) {
-                f.write_str(", ...")?;
-            }
-        }
-        if let Some(distance) = self.closing_distance {
-            separate(f)?;
-            write!(f, "welding vertices within {distance:e} would close it")?;
+        let mut parts = self.listed(shown);
+        if let Some(mending) = &self.mending {
+            parts.push(format!("mending would close it: {mending}"));
+        } else if let Some(distance) = self.closing_distance {
+            parts.push(format!("welding vertices within {distance:e} would close it"));
         } else if let Some(advice) = self.advice() {
-            separate(f)?;
-            f.write_str(advice)?;
+            parts.push(advice.into());
         }
-        if first { f.write_str("no faults") } else { Ok(()) }
-    }
-}
-
-impl fmt::Display for Place {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list = |indices: &[u32]| indices.iter().map(u32::to_string).collect::<Vec<_>>().join("-");
-        match self.triangles[..] {
-            [] => {}
-            [triangle] => write!(f, "triangle {triangle} ")?,
-            _ => write!(f, "triangles {} ", list(&self.triangles).replace('-', ", "))?,
-        }
-        match self.vertices[..] {
-            [] => {}
-            [vertex] => write!(f, "vertex {vertex} ")?,
-            _ => write!(f, "vertices {} ", list(&self.vertices))?,
-        }
-        let [x, y, z] = self.position.map(short);
-        write!(f, "at ({x}, {y}, {z})")
-    }
-}
-
-/// The number with seven digits at most.
-pub(super) fn short(x: f64) -> String {
-    let rounded = format!("{x:.6e}").parse().unwrap_or(x);
-    if rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) {
-        format!("{rounded}")
-    } else {
-        format!("{rounded:e}")
+        if parts.is_empty() { f.write_str("no faults") } else { f.write_str(&parts.join(separator)) }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::Place;
     use super::*;
 
     fn fault(count: usize) -> Fault {

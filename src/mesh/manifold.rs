@@ -194,14 +194,14 @@ fn pair_by_angle(
 
 /// An edge as an axis: angles around it, counter-clockwise seen against its direction, are compared exactly on the given
 /// coordinates.
-struct Axis {
-    from: [f64; 3],
-    to: [f64; 3],
+pub(super) struct Axis {
+    pub(super) from: [f64; 3],
+    pub(super) to: [f64; 3],
 }
 
 impl Axis {
     /// Compares the angles from the half-plane of `reference` to those of `x` and `y`.
-    fn compare(&self, reference: &[f64; 3], x: &[f64; 3], y: &[f64; 3]) -> std::cmp::Ordering {
+    pub(super) fn compare(&self, reference: &[f64; 3], x: &[f64; 3], y: &[f64; 3]) -> std::cmp::Ordering {
         let sector = |p: &[f64; 3]| match self.turn(reference, p) {
             Sign::Zero if self.same_half_plane(reference, p) => 0,
             Sign::Positive => 1,

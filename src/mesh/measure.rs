@@ -57,6 +57,12 @@ impl Mesh {
     }
 }
 
+/// The volume that `triangles` over `positions` enclose, as [`Mesh::volume`].
+pub(crate) fn enclosed_volume(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> f64 {
+    let corners = triangles.iter().flatten().filter_map(|&corner| positions.get(corner as usize));
+    Bounds::of(corners).map_or(0.0, |bounds| signed_volume(positions, triangles, &bounds).value)
+}
+
 /// Triangles with their coordinates in a frame: multiplied by a power of two where that brings them nearer one, and
 /// with an origin in their middle.
 struct Framed<'a> {

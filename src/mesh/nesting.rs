@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::Bounds;
 use super::patches::Patches;
-use super::scale;
+use super::{scale, shells};
 use crate::exact::{Sign, orient2d, orient3d};
 
 /// Vertices farthest along the axes and the diagonals of space: the first to stick out where a patch is not wholly
@@ -43,9 +43,15 @@ pub(super) struct Nesting {
 }
 
 /// The nesting of each patch. Neither inside nor unclear for patches that are not closed.
+/// Copies of a patch are as nested as the first of them, and do not count otherwise.
 pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &Patches) -> Vec<Nesting> {
     let count = patches.closed.len();
-    if patches.closed.iter().filter(|&&closed| closed).count() < 2 {
+    let originals = shells::originals(positions, triangles, patches, false);
+    let counts: Vec<bool> = (0..)
+        .zip(&originals)
+        .map(|(patch, &original)| patches.closed[patch] && original as usize == patch)
+        .collect();
+    if counts.iter().filter(|&&counts| counts).count() < 2 {
         return vec![Nesting::default(); count];
     }
     let corners = |patch: usize| {
@@ -55,7 +61,7 @@ pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &
     let mut boxes = vec![Bounds::NOTHING; count];
     let mut starts = Vec::new();
     let mut rays = vec![0; count];
-    for patch in (0..count).filter(|&patch| patches.closed[patch]) {
+    for patch in (0..count).filter(|&patch| counts[patch]) {
         corners(patch).for_each(|corner| boxes[patch].include(&corner));
         let mut places = extremes(corners(patch));
         let members = patches.triangles.get(patch).iter();
@@ -68,7 +74,7 @@ pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &
     let grid = Grid::new(&starts);
     let mut met: FxHashMap<(u32, u32), [Crossings; RAYS]> = FxHashMap::default();
     for (triangle, &patch) in triangles.iter().zip(&patches.of_triangle) {
-        if !patches.closed[patch as usize] {
+        if !counts[patch as usize] {
             continue;
         }
         let corners = triangle.map(|corner| positions[corner as usize]);
@@ -91,7 +97,8 @@ pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &
             crossings.touching |= extent.low[2] <= z && side_of_plane(&corners, start.place) == Sign::Zero;
         });
     }
-    decide(count, &rays, &met)
+    let nesting = decide(count, &rays, &met);
+    originals.iter().map(|&original| nesting[original as usize]).collect()
 }
 
 /// What the crossings of the rays of each patch with each other patch say.

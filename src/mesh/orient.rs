@@ -69,19 +69,27 @@ impl Mesh {
     /// that cross each other mostly count as side by side. O(n log n).
     #[must_use]
     pub fn oriented(mut self) -> Self {
-        let Cleaned { triangles, source, .. } = clean::clean(&self.positions, &self.triangles, Weld::Exact);
-        let table = EdgeTable::new(&triangles, self.positions.len());
-        let patches = Patches::new(&table, triangles.len());
-        let facing = Facing::new(&self.positions, &triangles, &patches);
-        for (triangle, &index) in source.iter().enumerate() {
-            let wrong = facing.wrong[patches.of_triangle[triangle] as usize];
-            if patches.reverse[triangle] != wrong {
-                let own = &mut self.triangles[index as usize];
-                *own = reversed(*own);
-            }
-        }
+        turn(&mut self);
         self
     }
+}
+
+/// Orients a mesh, as [`Mesh::oriented`]; returns the triangles that were turned, ascending.
+pub(super) fn turn(mesh: &mut Mesh) -> Vec<u32> {
+    let Cleaned { triangles, source, .. } = clean::clean(&mesh.positions, &mesh.triangles, Weld::Exact);
+    let table = EdgeTable::new(&triangles, mesh.positions.len());
+    let patches = Patches::new(&table, triangles.len());
+    let facing = Facing::new(&mesh.positions, &triangles, &patches);
+    let mut turned = Vec::new();
+    for (triangle, &index) in source.iter().enumerate() {
+        let wrong = facing.wrong[patches.of_triangle[triangle] as usize];
+        if patches.reverse[triangle] != wrong {
+            let own = &mut mesh.triangles[index as usize];
+            *own = reversed(*own);
+            turned.push(index);
+        }
+    }
+    turned
 }
 
 #[cfg(test)]

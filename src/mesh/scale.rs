@@ -12,7 +12,7 @@ pub(super) fn multiplied(positions: &[[f64; 3]], factor: f64) -> Cow<'_, [[f64; 
 
 /// The power of two that brings `largest` near one; one where it is near enough for products of three and their
 /// rounding errors.
-pub(super) fn factor(largest: f64) -> f64 {
+pub(crate) fn factor(largest: f64) -> f64 {
     let exponent = exponent(largest);
     if largest == 0.0 || exponent.abs() <= 200 { 1.0 } else { power_of_two(-exponent.clamp(-1000, 1000)) }
 }

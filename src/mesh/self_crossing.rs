@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::diagnosis::{Fault, Place, short};
+use super::places::{Fault, Place, short};
 
 /// A pair of triangles of one surface that cross.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -74,7 +74,11 @@ impl Solid {
         let mut whole = Whole { mesh: self.mesh().clone(), source: (0..count).collect() };
         let half_edges = HalfEdges::of(&whole);
         make_manifold(&mut whole, &half_edges);
-        let separated = Self::from_closed_unchecked(whole.mesh);
+        let mut separated = Self::from_closed_unchecked(whole.mesh);
+        separated.source =
+            Some(whole.source.iter().map(|&triangle| self.source_triangle(triangle)).collect());
+        separated.cleaning = self.cleaning;
+        separated.mending.clone_from(&self.mending);
         if let Some(known) = self.known_self_crossings() {
             separated.remember_self_crossings(known.clone());
         }

@@ -1,13 +1,10 @@
 //! A mesh known to be a closed surface.
 
-use std::cmp::Ordering;
 use std::sync::OnceLock;
 
-use super::clean::{self, Weld};
 use super::measure::signed_volume;
 use super::topology::Topology;
-use super::{Bounds, FaceGroups, Mesh, MeshError, SelfCrossings, chain, diagnose};
-use crate::parallel::join;
+use super::{Bounds, FaceGroups, Mending, Mesh, SelfCrossings, chain};
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
 /// often as it occurs. Every vertex belongs to a triangle, no triangle has a repeated corner, and the enclosed
@@ -20,9 +17,14 @@ use crate::parallel::join;
 /// - Where the indices do not close the surface (normal and texture seams, STL), vertices on open edges that have
 ///   equal coordinates are made one, the first. Nothing is ever welded by distance; see [`Mesh::welded`].
 /// - Opposite copies of a triangle, which enclose nothing, are left out in pairs.
+/// - What is then still not closed is mended where that is certain: seams a rounding apart, vertices in the middle of
+///   edges, triangles without area, copies, flat fins, single stray triangles, and walls inside the body that were stored
+///   once. A mesh that is closed is never mended, and one that cannot be closed so is refused. [`Gate`](super::Gate)
+///   takes a mesh as it is instead, or does more.
 ///
-/// [`Solid::cleaning`] tells what of this was done and [`Solid::source_triangle`] which of the caller's triangles
-/// each is. Equal copies of a triangle with the same orientation count twice: the surface bounds its volume doubly.
+/// [`Solid::cleaning`] and [`Solid::mending`] tell what of this was done and [`Solid::source_triangle`] which of the
+/// caller's triangles each is, or is a piece of. Where the mesh is closed, equal copies of a triangle with the same
+/// orientation count twice: the surface bounds its volume doubly.
 ///
 /// ```
 /// use trisect::{Mesh, MeshError, Solid};
@@ -41,15 +43,19 @@ use crate::parallel::join;
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Solid {
-    mesh: Mesh,
-    bounds: Option<Bounds>,
+    pub(super) mesh: Mesh,
+    pub(super) bounds: Option<Bounds>,
     /// Whether every edge has two triangles.
-    edge_manifold: OnceLock<bool>,
+    pub(super) edge_manifold: OnceLock<bool>,
     /// The caller's index of each triangle, where that is not its own.
-    source: Option<Vec<u32>>,
-    cleaning: Cleaning,
-    volume: OnceLock<f64>,
-    self_crossings: OnceLock<SelfCrossings>,
+    pub(super) source: Option<Vec<u32>>,
+    pub(super) cleaning: Cleaning,
+    /// What was mended; `None` for nothing.
+    pub(super) mending: Option<Box<Mending>>,
+    pub(super) volume: OnceLock<f64>,
+    pub(super) self_crossings: OnceLock<SelfCrossings>,
+    /// Whether an operation made it so that it crosses itself no deeper than rounding.
+    pub(super) made_clean: bool,
 }
 
 /// What was left out or joined to make a [`Solid`] of a mesh.
@@ -140,6 +146,17 @@ impl Solid {
         self.self_crossings.get_or_init(|| found)
     }
 
+    /// Whether it is known, from a check or from the operation that made it, to cross itself no deeper than rounding, and not
+    /// to touch itself.
+    pub(crate) fn is_known_clean(&self) -> bool {
+        self.made_clean || self.self_crossings.get().is_some_and(SelfCrossings::is_clean)
+    }
+
+    /// Notes that an operation made this so that it crosses itself no deeper than rounding.
+    pub(crate) fn set_made_clean(&mut self) {
+        self.made_clean = true;
+    }
+
     pub(crate) fn set_groups(&mut self, groups: FaceGroups) {
         self.mesh.groups = groups;
     }
@@ -150,7 +167,14 @@ impl Solid {
         self.cleaning
     }
 
-    /// The index that triangle `triangle` had in the mesh this was made of.
+    /// What was mended when this was made of a mesh. Empty for every mesh that is closed.
+    #[must_use]
+    pub fn mending(&self) -> &Mending {
+        static NOTHING: Mending = Mending::NOTHING;
+        self.mending.as_deref().unwrap_or(&NOTHING)
+    }
+
+    /// The index that triangle `triangle` had in the mesh this was made of; where it is a piece of one, that one's.
     ///
     /// # Panics
     /// If there is no such triangle.
@@ -236,97 +260,6 @@ impl<'de> serde::Deserialize<'de> for Solid {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         Self::try_from(Mesh::deserialize(deserializer)?).map_err(serde::de::Error::custom)
     }
-}
-
-/// The gate every operand passes.
-impl TryFrom<Mesh> for Solid {
-    type Error = MeshError;
-
-    /// # Errors
-    /// [`MeshError::IndexOutOfRange`], [`MeshError::NotFinite`], [`MeshError::NotClosed`], [`MeshError::InsideOut`];
-    /// [`MeshError::TooLarge`] beyond 2^31 vertices or 2^32/3 triangles; [`MeshError::Groups`] if the face groups
-    /// do not fit the triangles.
-    fn try_from(mesh: Mesh) -> Result<Self, MeshError> {
-        let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
-        if vertices > chain::MAX_VERTICES || triangles > chain::MAX_TRIANGLES {
-            return Err(MeshError::TooLarge { vertices, triangles });
-        }
-        if let Some(fault) = mesh.groups.fault(triangles) {
-            return Err(MeshError::Groups(fault));
-        }
-        let (examined, (bounds, volume)) = join(
-            triangles,
-            || chain::examine(&mesh.triangles, vertices),
-            || {
-                let bounds = finite_bounds(&mesh.positions);
-                let volume = bounds.map(|bounds| signed_volume(&mesh.positions, &mesh.triangles, &bounds));
-                (bounds, volume)
-            },
-        );
-        let Ok(examined) = examined else {
-            return cleaned(mesh);
-        };
-        let as_it_is = examined.closed && !examined.unreferenced && !examined.two_triangle_vertex;
-        if !(as_it_is && examined.edge_manifold && bounds.is_some()) {
-            return cleaned(mesh);
-        }
-        let solid = Self { mesh, bounds, edge_manifold: OnceLock::from(true), ..Self::default() };
-        match volume {
-            Some(volume) if volume.sign == Ordering::Less => {
-                Err(MeshError::InsideOut { volume: volume.value })
-            }
-            Some(volume) => Ok(Self { volume: OnceLock::from(volume.value), ..solid }),
-            None => Ok(solid),
-        }
-    }
-}
-
-/// The box round `positions`; `None` if there are none or one is not finite.
-fn finite_bounds(positions: &[[f64; 3]]) -> Option<Bounds> {
-    let mut bounds = Bounds::NOTHING;
-    let mut zero = 0.0;
-    for position in positions {
-        bounds.include(position);
-        // Zero times a number is zero unless the number is not finite.
-        zero += position[0] * 0.0 + position[1] * 0.0 + position[2] * 0.0;
-    }
-    (!positions.is_empty() && zero == 0.0).then_some(bounds)
-}
-
-/// The way round for a mesh that is not a solid as it is.
-fn cleaned(mesh: Mesh) -> Result<Solid, MeshError> {
-    let triangles = mesh.triangles.len();
-    clean::check_corners(&mesh)?;
-    let mut cleaned = clean::clean(&mesh.positions, &mesh.triangles, Weld::Exact);
-    if !cleaned.closed {
-        return Err(MeshError::NotClosed(Box::new(diagnose(&mesh))));
-    }
-    let positions = clean::compact(&mesh.positions, &mut cleaned.triangles);
-    let bounds = Bounds::of(&positions);
-    let volume = bounds.map(|bounds| signed_volume(&positions, &cleaned.triangles, &bounds));
-    if let Some(volume) = volume.filter(|volume| volume.sign == Ordering::Less) {
-        return Err(MeshError::InsideOut { volume: volume.value });
-    }
-    let cleaning = Cleaning {
-        repeated_corners: cleaned.repeated_corners,
-        opposite_pairs: cleaned.opposite.len(),
-        welded_vertices: cleaned.welded,
-        unreferenced_vertices: mesh.positions.len() - positions.len() - cleaned.welded,
-    };
-    let mut groups = mesh.groups;
-    let dropped = cleaned.triangles.len() < triangles;
-    if dropped {
-        groups.select(&cleaned.source);
-    }
-    Ok(Solid {
-        mesh: Mesh { positions, triangles: cleaned.triangles, groups },
-        bounds,
-        edge_manifold: OnceLock::from(cleaned.edge_manifold),
-        source: dropped.then_some(cleaned.source),
-        cleaning,
-        volume: volume.map_or_else(OnceLock::new, |volume| OnceLock::from(volume.value)),
-        self_crossings: OnceLock::new(),
-    })
 }
 
 #[cfg(test)]

@@ -117,7 +117,7 @@ pub(super) fn near_targets(positions: &[[f64; 3]], vertices: &[u32], distance: f
 
 /// The number of the cell of width `width` that `x` is in, and that of the neighbour nearer to `x`. Where cells are
 /// too many to count, neighbouring floats are farther apart than a cell is wide, and each has a cell of its own.
-fn cells_near(x: f64, width: f64) -> [i64; 2] {
+pub(super) fn cells_near(x: f64, width: f64) -> [i64; 2] {
     let (cell, within) = ((x / width).floor(), x / width);
     if cell.abs() > 4.0e18 {
         return [position_bits(&[x; 3])[0] as i64; 2];

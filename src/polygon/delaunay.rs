@@ -6,6 +6,7 @@ use spade::handles::{DirectedEdgeHandle, FixedVertexHandle};
 use spade::{CdtEdge, ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
 use super::counted::{CountedEdge, CountedTriangle};
+use crate::exact::{Sign, orient2d};
 
 /// Why edges are not all edges of one triangulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,21 +49,25 @@ fn scale_to_range(largest: f64) -> f64 {
     f64::from_bits((1.0 / largest).clamp(f64::MIN_POSITIVE, f64::MAX).to_bits() & EXPONENT_BITS)
 }
 
-/// Vertices within the range of `spade`. What is too small for it becomes zero: less than 2^-78 of the largest coordinate,
-/// whose unit in the last place is 2^-53 of it or more.
-fn vertices_in_range(points: &[[f64; 2]], indices: impl Iterator<Item = u32> + Clone) -> Vec<Vertex> {
+/// Vertices within the range of `spade`, and whether they are where they were, up to a power of two. What is too small becomes
+/// zero: less than 2^-78 of the largest coordinate.
+fn vertices_in_range(points: &[[f64; 2]], indices: impl Iterator<Item = u32> + Clone) -> (Vec<Vertex>, bool) {
     let coordinates = indices.clone().flat_map(|index| points[index as usize]);
     let scale = scale_to_range(coordinates.fold(0.0f64, |largest, x| largest.max(x.abs())));
-    let coordinate = |x: f64| {
+    let mut are_exact = true;
+    let mut coordinate = |x: f64| {
         let scaled = x * scale;
-        if scaled.abs() < spade::MIN_ALLOWED_VALUE { 0.0 } else { scaled }
+        let is_too_small = scaled.abs() < spade::MIN_ALLOWED_VALUE;
+        are_exact &= !is_too_small || x == 0.0;
+        if is_too_small { 0.0 } else { scaled }
     };
-    indices
+    let vertices = indices
         .map(|index| {
-            let [x, y] = points[index as usize].map(coordinate);
+            let [x, y] = points[index as usize].map(&mut coordinate);
             Vertex { position: Point2::new(x, y), index }
         })
-        .collect()
+        .collect();
+    (vertices, are_exact)
 }
 
 /// Triangles over the region that closed contours enclose by parity, in no particular order, each counter-clockwise.
@@ -75,7 +80,7 @@ pub(crate) fn fill_region(
 ) -> Result<Vec<[u32; 3]>> {
     // 1. The vertices first: loading vertices and edges at once would depend on the order of a hash set where points lie on
     //    one circle.
-    let vertices = vertices_in_range(points, 0..points.len() as u32);
+    let (vertices, _) = vertices_in_range(points, 0..points.len() as u32);
     let mut triangulation = Delaunay::bulk_load(vertices).map_err(|_| Conflict::Place(0))?;
     if triangulation.num_vertices() != points.len() {
         return Err(Conflict::Place(missing_vertex(&triangulation, points.len())));
@@ -164,7 +169,7 @@ fn triangulate_counted(
     constraints.sort_unstable();
     // 2. Their ends first: loading vertices and edges at once would depend on the order of a hash set where points lie on
     // one circle.
-    let (mut triangulation, handles) = load_ends(points, &constraints)?;
+    let (mut triangulation, handles, are_exact) = load_ends(points, &constraints)?;
     // 3. Then the edges, in order.
     for &(u, v) in &constraints {
         // (It is found in several parts if it runs through vertices, in none if it crosses another.)
@@ -185,9 +190,18 @@ fn triangulate_counted(
     // Every edge is passed from both sides, unless it runs through a vertex that is not its end.
     let windings = windings.filter(|_| seen == 2 * counts.len()).ok_or(Conflict::Crossing(0))?;
     let wound = triangulation.inner_faces().filter(|face| windings[face.fix().index()] != 0);
-    Ok(wound
+    let found: Vec<CountedTriangle> = wound
         .map(|face| (face.vertices().map(|vertex| vertex.data().index), windings[face.fix().index()]))
-        .collect())
+        .collect();
+    // 5. What is sound where small coordinates are zero may be folded where they are not.
+    let is_sound = |&([a, b, c], _): &CountedTriangle| {
+        let [a, b, c] = [a, b, c].map(|corner| points[corner as usize]);
+        orient2d(a, b, c) == Sign::Positive
+    };
+    match found.iter().find(|triangle| !are_exact && !is_sound(triangle)) {
+        Some(&([first, ..], _)) => Err(Conflict::Place(first)),
+        None => Ok(found),
+    }
 }
 
 fn sum_counts(edges: &[CountedEdge]) -> Result<Counts> {
@@ -201,22 +215,22 @@ fn sum_counts(edges: &[CountedEdge]) -> Result<Counts> {
     Ok(counts)
 }
 
-/// The triangulation of the ends of some edges, and their handles in it.
+/// The triangulation of the ends of some edges, their handles in it, and whether they are where they were.
 fn load_ends(
     points: &[[f64; 2]],
     edges: &[(u32, u32)],
-) -> Result<(Delaunay, FxHashMap<u32, FixedVertexHandle>)> {
+) -> Result<(Delaunay, FxHashMap<u32, FixedVertexHandle>, bool)> {
     let mut ends: Vec<u32> = edges.iter().flat_map(|&(u, v)| [u, v]).collect();
     ends.sort_unstable();
     ends.dedup();
-    let vertices = vertices_in_range(points, ends.iter().copied());
+    let (vertices, are_exact) = vertices_in_range(points, ends.iter().copied());
     let first = ends.first().copied().unwrap_or(0);
     let triangulation = Delaunay::bulk_load(vertices).map_err(|_| Conflict::Place(first))?;
     if triangulation.num_vertices() != ends.len() {
         return Err(Conflict::Place(first));
     }
     let handles = triangulation.vertices().map(|vertex| (vertex.data().index, vertex.fix())).collect();
-    Ok((triangulation, handles))
+    Ok((triangulation, handles, are_exact))
 }
 
 /// A value for every face by index, from that of the outer one inwards: `pass` gives the value beyond an edge of a face, which
@@ -258,6 +272,26 @@ fn flood<T: Copy + PartialEq>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_lost_beside_a_huge_coordinate_is_not_taken_for_sound() {
+        // A hole of size one in a square of 1e300 is a point there; a needle beside it is folded.
+        let ring = |size: f64| [[-size, -size], [size, -size], [size, size], [-size, size]];
+        let points = [ring(1e300), ring(1.0)].concat();
+        let edges = |first: u32, step: u32| {
+            (0..4).map(move |k| ([first + k, first + (k + step) % 4], 1)).collect::<Vec<CountedEdge>>()
+        };
+        assert!(triangulate_between(&points, &[edges(0, 1), edges(4, 3)].concat()).is_err());
+        let folded = [[0.0, 0.0], [1e300, 0.0], [1e300, 1e300], [1e210, 1e-10], [1e200, 2e-10]];
+        let outline: Vec<CountedEdge> = (0..5).map(|k| ([k, (k + 1) % 5], 1)).collect();
+        if let Ok(found) = triangulate_between(&folded, &outline) {
+            assert!(found.iter().all(|(t, _)| {
+                let [a, b, c] = t.map(|corner| folded[corner as usize]);
+                orient2d(a, b, c) == Sign::Positive
+            }));
+        }
+    }
+
     use rand::rngs::ChaCha8Rng;
     use rand::{RngExt, SeedableRng};
 

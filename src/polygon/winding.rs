@@ -3,6 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::delaunay::triangulate_between;
+use crate::exact::at_hand::{ROUNDING_ULPS, largest_beside, size_at_hand};
 use crate::exact::{Sign, orient2d};
 use crate::polygon::counted::{CountedEdge, CountedTriangle};
 
@@ -15,9 +16,6 @@ pub(crate) struct Edge {
     pub(crate) line: u32,
 }
 
-/// How far from an edge a vertex may be and still count as lying on it, in units in the last place of the largest coordinate:
-/// each of the three points is off by half a unit in each coordinate.
-const ROUNDING_ULPS: f64 = 4.0;
 /// How often edges are split at most. Splitting moves an edge by no more than rounding, so few are left after the first time.
 const ROUNDS: usize = 8;
 
@@ -44,9 +42,8 @@ pub(crate) fn by_winding(
         .flat_map(|edge| edge.ends)
         .flat_map(|v| points[v as usize])
         .fold(0.0f64, |most, x| most.max(x.abs()));
-    let rounding = ROUNDING_ULPS * f64::EPSILON * largest;
     let mut slivers = Vec::new();
-    let edges = split_at_vertices(points, &summed(edges), rounding, &mut slivers);
+    let edges = split_at_vertices(points, &summed(edges), largest, &mut slivers);
     let mut edges = summed(&edges);
     for _ in 0..ROUNDS {
         let counted: Vec<CountedEdge> = edges.iter().map(|edge| (edge.ends, edge.count)).collect();
@@ -54,7 +51,7 @@ pub(crate) fn by_winding(
             return Some(Found { triangles, slivers });
         }
         let before = slivers.len();
-        let mut split = split_at_vertices(points, &edges, rounding, &mut slivers);
+        let mut split = split_at_vertices(points, &edges, largest, &mut slivers);
         if slivers.len() == before {
             split = split_at_crossings(points, &edges, &mut cross, &mut slivers);
         }
@@ -100,17 +97,20 @@ fn split_edge(edge: &Edge, on: &[u32], split: &mut Vec<Edge>, slivers: &mut Vec<
     }
 }
 
-/// Splits edges that run through vertices, or pass them no further than `rounding`.
+/// Splits edges that run through vertices, or pass them no further than rounding of the coordinates there, of which `largest` is
+/// the largest anywhere: each of the three points is off by half a unit in the last place in each coordinate.
 fn split_at_vertices(
     points: &[[f64; 2]],
     edges: &[Edge],
-    rounding: f64,
+    largest: f64,
     slivers: &mut Vec<CountedTriangle>,
 ) -> Vec<Edge> {
     let mut vertices: Vec<u32> = edges.iter().flat_map(|edge| edge.ends).collect();
     vertices.sort_unstable();
     vertices.dedup();
     let at = |k: usize, v: u32| points[v as usize][k];
+    // No vertex is further off than this.
+    let rounding = ROUNDING_ULPS * f64::EPSILON * largest;
     // Along each axis; a list of either axis holds all that can lie on an edge.
     let sorted = [0, 1].map(|k| {
         let mut sorted = vertices.clone();
@@ -126,11 +126,13 @@ fn split_at_vertices(
         let along = |x: u32| if q[k] > p[k] { at(k, x) } else { -at(k, x) };
         let is_on = |x: u32| {
             let at = points[x as usize];
-            let across = || {
+            let is_near = || {
                 let part = (at[k] - p[k]) / (q[k] - p[k]);
-                (at[1 - k] - (p[1 - k] + part * (q[1 - k] - p[1 - k]))).abs()
+                let across = (at[1 - k] - (p[1 - k] + part * (q[1 - k] - p[1 - k]))).abs();
+                let size = || size_at_hand(largest, largest_beside(&p, &at, &q, part));
+                across <= rounding && across <= ROUNDING_ULPS * f64::EPSILON * size()
             };
-            orient2d(p, q, at) == Sign::Zero || (rounding > 0.0 && across() <= rounding)
+            orient2d(p, q, at) == Sign::Zero || is_near()
         };
         let near = |k: usize| {
             let (low, high) = (p[k].min(q[k]) - rounding, p[k].max(q[k]) + rounding);

@@ -211,6 +211,65 @@ fn rules_differ_where_shells_overlap_or_are_open() {
 }
 
 #[test]
+fn the_automatic_rule_is_right_where_shells_overlap_nest_or_are_open() {
+    let decided = |mesh: &Mesh| SignedDistance::of_mesh(mesh, SignRule::Automatic).decided_by();
+    assert_eq!(decided(&sphere([0.0; 3], 1.0, 12, 0.1)), SignRule::PseudoNormal);
+    // The wall of one box inside the other: outside by its own normal, inside of both together.
+    let overlapping = joined(cuboid([0.0; 3], [1.0; 3]), &cuboid([0.5; 3], [1.5; 3]));
+    let distance = SignedDistance::of_mesh(&overlapping, SignRule::Automatic);
+    assert_eq!(distance.decided_by(), SignRule::Winding);
+    assert_eq!(distance.at([0.75, 0.75, 1.25]), 0.25);
+    let found = distance.measure([0.9375, 0.9375, 1.0625]).expect("finite");
+    assert_eq!((found.distance, found.gradient), (0.0625, [0.0, 0.0, 1.0]));
+    // Both facing outwards, one inside the other.
+    let nested = joined(cuboid([0.0; 3], [4.0; 3]), &cuboid([1.0; 3], [2.0; 3]));
+    let distance = SignedDistance::of_mesh(&nested, SignRule::Automatic);
+    assert_eq!((distance.decided_by(), distance.at([1.5, 1.5, 2.25])), (SignRule::Winding, 0.25));
+    let mut open = cuboid([0.0; 3], [2.0; 3]);
+    open.triangles.truncate(10);
+    let distance = SignedDistance::of_mesh(&open, SignRule::Automatic);
+    assert_eq!(distance.decided_by(), SignRule::FastWinding);
+    // The ray from here leaves through the hole, and the other way it does not.
+    let [x, y, z] = open.triangles[0].map(|v| open.positions[v as usize]);
+    let near = [0, 1, 2].map(|k| 0.98 * (x[k] + y[k] + z[k]) / 3.0 + 0.02);
+    assert!(distance.at(near) > 0.0 && distance.at([1.0; 3]) > 0.0 && distance.at([-1.0, 1.0, 1.0]) < 0.0);
+}
+
+#[test]
+fn the_automatic_rule_can_be_asked_for_later_and_stops_at_limits() {
+    let overlapping = joined(cuboid([0.0; 3], [1.0; 3]), &cuboid([0.5; 3], [1.5; 3]));
+    let distance = SignedDistance::of_mesh(&overlapping, SignRule::Parity).with_rule(SignRule::Automatic);
+    assert_eq!(distance.decided_by(), SignRule::Winding);
+    let token = trisect::CancelToken::new();
+    token.cancel();
+    let control = Control::new().cancel(&token);
+    let ball = sphere([0.0; 3], 1.0, 12, 0.1);
+    let distance = SignedDistance::of_mesh_within(&ball, SignRule::Automatic, &control);
+    assert_eq!(distance.decided_by(), SignRule::Winding);
+    assert!(distance.at([0.0; 3]) > 0.5);
+}
+
+/// Random bodies that overlap: the sign is that of the union, the rule chosen without being asked.
+#[test]
+fn signs_of_overlapping_bodies_are_those_of_their_union() {
+    let mut random = rand::rngs::ChaCha8Rng::seed_from_u64(20);
+    for case in 0..12 {
+        let mut centre = || [0; 3].map(|_| random.random::<f64>());
+        let centres = [centre(), centre(), centre()];
+        let ball = |k: usize| sphere(centres[k], 0.6, 10, 0.0);
+        let all = joined(joined(ball(0), &ball(1)), &ball(2));
+        let whole = SignedDistance::of_mesh(&all, SignRule::Automatic);
+        let alone = [0, 1, 2].map(|k| SignedDistance::of_mesh(&ball(k), SignRule::PseudoNormal));
+        assert_eq!(whole.decided_by(), SignRule::Winding, "case {case}");
+        for _ in 0..500 {
+            let point = [0; 3].map(|_| random.random::<f64>() * 3.0 - 1.0);
+            let inside = alone.iter().any(|ball| ball.at(point) > 0.0);
+            assert_eq!(whole.at(point) > 0.0, inside, "case {case} {point:?}");
+        }
+    }
+}
+
+#[test]
 fn two_boxes_sharing_an_edge_or_a_face_have_right_signs() {
     let edge = joined(cuboid([0.0; 3], [1.0; 3]), &cuboid([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]));
     let face = joined(cuboid([0.0; 3], [1.0; 3]), &cuboid([1.0, 0.0, 0.0], [2.0, 1.0, 1.0]));

@@ -11,6 +11,7 @@ mod extraction;
 mod grids;
 mod hostile_text;
 mod limits;
+mod mending;
 mod models;
 mod models_exact;
 mod models_parametric;

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use crate::common::meshes::{chain_of, is_closed, jittered_soup, six_volumes};
 use proptest::prelude::*;
-use trisect::mesh::{Diagnosis, diagnose};
+use trisect::mesh::{Diagnosis, Gate, diagnose};
 use trisect::{FaceGroup, Mesh, MeshError, Solid, primitives};
 
 /// Distinct integer places, so that volumes are known exactly.
@@ -70,9 +70,10 @@ fn check_gate(mesh: &Mesh) -> Result<(), TestCaseError> {
     let volume = six_volumes(mesh);
     let diagnosis = diagnose(mesh);
     prop_assert_eq!(diagnosis.closed, is_closed(&triangles));
-    match Solid::try_from(mesh.clone()) {
+    match Gate::new().as_is(true).solid(mesh.clone()).map_err(|refusal| refusal.error) {
         Ok(solid) => {
             prop_assert!(is_closed(&triangles) && volume >= 0);
+            prop_assert!(solid.mending().is_none());
             prop_assert_eq!(solid.volume(), volume as f64 / 6.0);
             prop_assert!(is_closed(&solid.mesh().triangles));
             prop_assert_eq!(chain_of(solid.mesh()), chain_of(mesh));
@@ -106,6 +107,13 @@ fn check_gate(mesh: &Mesh) -> Result<(), TestCaseError> {
             prop_assert_eq!(said, volume as f64 / 6.0);
         }
         Err(other) => prop_assert!(false, "{other}"),
+    }
+    // Mending changes nothing about what is closed, and makes closed what it takes besides.
+    match Solid::try_from(mesh.clone()) {
+        Ok(solid) if solid.mending().is_none() => prop_assert!(is_closed(&triangles)),
+        Ok(solid) => prop_assert!(!is_closed(&triangles) && is_closed(&solid.mesh().triangles)),
+        Err(MeshError::NotClosed(said)) => prop_assert!(!is_closed(&triangles) && said.mending.is_none()),
+        Err(_) => {}
     }
     Ok(())
 }
@@ -146,7 +154,7 @@ proptest! {
         let counts = mesh.triangles.iter().filter(|[a, b, c]| a != b && b != c && c != a).flatten();
         let positions = counts.filter_map(|&corner| mesh.positions.get(corner as usize));
         let all_finite = positions.flatten().all(|x| x.is_finite());
-        match Solid::try_from(mesh.clone()) {
+        match Gate::new().as_is(true).solid(mesh.clone()).map_err(|refusal| refusal.error) {
             Ok(_) => prop_assert!(diagnosis.closed && !out_of_range),
             Err(MeshError::IndexOutOfRange { .. }) => prop_assert!(out_of_range),
             Err(MeshError::NotFinite { .. }) => prop_assert!(!diagnosis.not_finite.is_none()),
@@ -265,7 +273,10 @@ fn advice_on_welding_holds() {
     let sphere = primitives::icosphere(10.0, 2).unwrap();
     for (jitter, expected) in [(1e-7, 1e-6), (1e-5, 1e-4)] {
         let soup = jittered_soup(&sphere, jitter);
-        let Err(MeshError::NotClosed(diagnosis)) = Solid::try_from(soup.clone()) else { panic!("closed") };
+        let as_is = Gate::new().as_is(true).solid(soup.clone()).map_err(|refusal| refusal.error);
+        let Err(MeshError::NotClosed(diagnosis)) = as_is else { panic!("closed") };
+        // What is a rounding apart is joined unasked.
+        assert_eq!(Solid::try_from(soup.clone()).is_ok(), jitter < 1e-6);
         assert_eq!(diagnosis.closing_distance, Some(expected));
         assert_eq!(diagnosis.open_edges.count, 960);
         let solid = Solid::try_from(soup.welded(expected).unwrap()).unwrap();

@@ -10,6 +10,7 @@ pub(crate) mod program;
 pub(crate) mod same_bits;
 pub(crate) mod shapes;
 pub(crate) mod surface;
+pub(crate) mod threejs;
 
 use trisect::{Mesh, Operation, Outcome, Solid};
 

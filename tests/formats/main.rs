@@ -6,3 +6,4 @@ mod fixtures;
 mod hostile;
 mod oracle;
 mod round_trip;
+mod written;

@@ -207,7 +207,7 @@ fn unusable_operands_are_refused_by_number_and_left_alone() {
     let object = folder.run("check crossing.obj --json").exits(3).json();
     assert!(object["files"][0]["error"]["self_crossings"]["count"] == 6, "{object}");
 
-    folder.run("union inside.obj b.obj -o c.obj --orient").exits(0);
+    folder.run("union --orient inside.obj b.obj -o c.obj").exits(0);
     assert_eq!(volume(&folder.read("c.obj")), 1.875);
     folder
         .run("difference b.obj --scale 9 crossing.obj --translate 5,5,5 -o c.obj --assume-clean")

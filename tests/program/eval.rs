@@ -158,3 +158,37 @@ fn grids_hold_the_distance() {
     folder.run("grid model.json --spacing 0.5 -o m.raw").exits(0);
     assert!(program::bytes(&folder.path("m.raw")).starts_with(b"trisect-grid 1 float32 little-endian"));
 }
+
+/// Two overlapping boxes, and an open one, in files.
+fn unclean() -> Folder {
+    let folder = folder();
+    let boxes = [
+        trisect::primitives::cuboid([0.0; 3], [1.0; 3]).expect("a box"),
+        trisect::primitives::cuboid([0.5; 3], [1.5; 3]).expect("a box"),
+    ];
+    let both = trisect::Mesh::merged(&boxes).expect("small");
+    both.save(folder.path("overlap.obj")).expect("written");
+    let mut open = boxes[0].clone();
+    open.triangles.truncate(10);
+    open.save(folder.path("hole.obj")).expect("written");
+    folder
+}
+
+#[test]
+fn the_inside_of_unclean_meshes_is_told_by_winding_numbers() {
+    let folder = unclean();
+    let line = "grid overlap.obj --spacing 0.25 --bounds=0,0,0,2,2,2 -o g.raw --json --strict";
+    let ran = folder.run(line).exits(0);
+    assert_eq!(ran.json()["grid"]["sign"], "winding");
+    let bytes = program::bytes(&folder.path("g.raw"));
+    let values = bytes[bytes.len() - 4 * 729..].chunks(4);
+    let values: Vec<f32> = values.map(|four| f32::from_le_bytes(four.try_into().expect("four"))).collect();
+    // At (0.75, 0.75, 1.25), which only the second box holds, nearest to the wall of the first.
+    assert_eq!(values[3 * 81 + 3 * 9 + 5], 0.25);
+    let clean = folder.run("grid a.obj --spacing 0.5 -o a.raw --json --strict").exits(0);
+    assert_eq!(clean.json()["grid"]["sign"], "pseudonormal");
+    let open = folder.run("grid hole.obj --spacing 0.5 -o h.raw --json --strict").exits(5);
+    assert_eq!(open.json()["grid"]["sign"], "fast-winding");
+    open.says("hole.obj: it is not closed");
+    folder.run("slice hole.obj -o h.png --width 40 --sign fast-winding --strict").exits(0);
+}

@@ -9,5 +9,7 @@ mod curve;
 mod engine;
 mod eval;
 mod operations;
+mod parts;
 mod repairs;
 mod streams;
+mod written;

@@ -2,7 +2,7 @@
 
 #![cfg(feature = "cli")]
 
-use crate::common::program::{Folder, bytes, cube, inside_out, opened, unit_cube, volume};
+use crate::common::program::{Folder, Ran, bytes, cube, inside_out, opened, unit_cube, volume};
 
 /// Two surfaces in one file.
 fn together(first: &str, second: &str) -> String {
@@ -17,40 +17,130 @@ fn together(first: &str, second: &str) -> String {
     first.to_string() + &shifted.collect::<String>()
 }
 
-#[test]
-fn a_cracked_surface_can_be_welded_by_the_distance_that_is_advised() {
-    let folder = Folder::new();
-    // The last three faces have a corner of their own, a hair off.
+/// Asserts what a run printed on standard output.
+#[track_caller]
+fn prints(ran: &Ran, text: &str) {
+    assert!(ran.out.contains(text), "'{text}' is missing: {}", ran.out);
+}
+
+/// The unit cube whose last three faces have a corner of their own, `off` along x.
+fn cracked(off: &str) -> String {
     let (mut text, mut faces) = (String::new(), 0);
     for line in unit_cube().lines() {
         let is_face = line.starts_with("f ");
         if is_face && faces == 0 {
-            text.push_str("v 1.000000001 1 1\n");
+            text.push_str(&format!("v {off} 1 1\n"));
         }
         faces += usize::from(is_face);
         let cracked = if faces > 9 { line.replace('8', "9") } else { line.to_string() };
         text.push_str(&format!("{cracked}\n"));
     }
-    folder.write("cracked.obj", text);
-    let ran = folder.run("check cracked.obj").exits(3);
-    let (_, advice) = ran.out.split_once("--weld ").expect("a distance is advised");
-    let distance = advice.trim_end_matches(|c: char| !c.is_ascii_digit());
-    folder.run("union cracked.obj -o refused.obj").exits(3).says(&format!("--weld {distance}"));
-    let object = folder.run(&format!("union cracked.obj --weld {distance} -o w.obj --json")).exits(0).json();
-    assert_eq!(object["operands"][0]["welded"], 1);
-    assert!((volume(&folder.read("w.obj")) - 1.0).abs() < 1e-8);
-    folder.run(&format!("check cracked.obj --weld {distance}")).exits(0);
-    folder.run(&format!("convert cracked.obj --weld {distance} c.obj")).exits(0).says("1 vertex welded");
-    folder.run("check c.obj").exits(0);
+    text
+}
+
+#[test]
+fn a_cracked_surface_is_welded_on_request() {
+    let folder = Folder::new();
+    folder.write("cracked.obj", cracked("1.0001"));
+    prints(&folder.run("check cracked.obj").exits(3), "usable with --weld auto (1 vertex of a seam joined");
+    let ran = folder.run("union cracked.obj -o refused.obj --json").exits(3).says("--weld auto");
+    assert_eq!(ran.json()["error"]["remedy"], "--weld auto");
+    for distance in ["auto", "1e-3"] {
+        let object =
+            folder.run(&format!("union cracked.obj --weld {distance} -o w.obj --json")).exits(0).json();
+        assert_eq!(object["operands"][0]["welded"], 1);
+        assert_eq!(object["operands"][0]["mending"]["seams"]["count"], 1);
+        assert!((volume(&folder.read("w.obj")) - 1.0).abs() < 1e-3);
+        prints(
+            &folder.run(&format!("check cracked.obj --weld {distance}")).exits(0),
+            "by a distance of 1.000e-",
+        );
+        folder.run(&format!("convert cracked.obj --weld {distance} c.obj")).exits(0).says("1 vertex welded");
+        folder.run("check c.obj").exits(0);
+    }
     folder.run("check cracked.obj --weld -1").exits(1);
     folder.run("check cracked.obj --weld x").exits(1);
 }
 
 #[test]
-fn an_open_surface_that_no_welding_closes_is_told_so() {
+fn a_seam_a_rounding_apart_is_joined_and_told() {
+    let folder = Folder::new();
+    folder.write("seam.obj", cracked("1.000000001"));
+    let ran = folder.run("union seam.obj -o c.obj --json --strict").exits(0);
+    let operand = &ran.json()["operands"][0];
+    assert_eq!(operand["mending"]["seams"]["count"], 1);
+    assert_eq!(operand["mending"]["seams"]["places"][0]["vertices"], serde_json::json!([7, 8]));
+    assert_eq!(operand["welded"], 0);
+    folder
+        .run("union seam.obj -o c.obj")
+        .exits(0)
+        .says("mended: 1 vertex of a seam joined (at most 1.0e-9 apart)");
+    let ran = folder.run("check seam.obj").exits(0);
+    prints(&ran, "1 vertex of a seam joined: triangle ");
+    prints(&ran, " vertices 7-8 at");
+    prints(&folder.run("info seam.obj").exits(0), "1 vertex of a seam joined");
+    folder.run("union seam.obj --as-is -o c.obj").exits(3).says("usable without --as-is");
+    folder.run("union --as-is seam.obj -o c.obj").exits(3).says("usable without --as-is");
+    folder.run("union seam.obj --as-is --weld auto -o c.obj").exits(1).says("contradict");
+}
+
+#[test]
+fn an_open_surface_that_nothing_closes_is_told_so() {
     let folder = Folder::new();
     folder.write("open.obj", opened(&unit_cube()));
-    folder.run("union open.obj -o c.obj").exits(3).says("holes must be filled");
+    let ran = folder.run("union open.obj -o c.obj --json").exits(3).says("rims of holes");
+    assert!(ran.json()["error"]["remedy"].is_null());
+    prints(&folder.run("check open.obj").exits(3), "no option closes it");
+}
+
+#[test]
+fn what_has_no_hole_is_not_said_to_have_one() {
+    let folder = Folder::new();
+    let path = |name: &str| format!("{}/fixtures/reported/{name}.obj", env!("CARGO_MANIFEST_DIR"));
+    for name in ["t-vertex", "fin", "face-twice", "one-wall", "seam-ulp"] {
+        let path = path(name);
+        folder.run(&format!("union {path} -o c.obj")).exits(0).says("mended: 1 ");
+        let ran = folder.run(&format!("check {path} --as-is")).exits(3);
+        prints(&ran, "usable without --as-is");
+        assert!(!ran.out.contains("hole"), "{}", ran.out);
+    }
+    // What leaves out a piece of the surface is a warning, the rest is none.
+    let strict = |name: &str| folder.run(&format!("union {} -o c.obj --strict", path(name))).code;
+    assert_eq!(["t-vertex", "face-twice", "seam-ulp", "shell-twice"].map(strict), [0; 4]);
+    assert_eq!(["fin", "one-wall"].map(strict), [5; 2]);
+}
+
+#[test]
+fn a_shell_stored_twice_is_taken_once() {
+    let folder = Folder::new();
+    let path = format!("{}/fixtures/reported/shell-twice.obj", env!("CARGO_MANIFEST_DIR"));
+    let ran = folder.run(&format!("check {path}")).exits(0);
+    prints(&ran, "volume 0.1666666667");
+    prints(&ran, "1 copy of a shell left out: triangle 4");
+    folder.run(&format!("union {path} --orient -o c.obj")).exits(0).says("volume 0.1666666667");
+}
+
+#[test]
+fn open_parts_are_left_out_on_request() {
+    let folder = Folder::new();
+    let floor = "v -1 -1 0\nv 3 -1 0\nv 3 3 0\nv -1 3 0\nf 1 2 3\nf 1 3 4\n";
+    folder.write("scene.obj", together(floor, &unit_cube()));
+    folder.write("b.obj", cube([0.5; 3], [1.5; 3]));
+    prints(
+        &folder.run("check scene.obj").exits(3),
+        "usable with --closed-parts (2 triangles of open parts left out",
+    );
+    let ran = folder.run("difference scene.obj --closed-parts b.obj -o c.obj --strict").exits(5);
+    assert!(ran.err.contains("operand 1 (scene.obj): 2 triangles of open parts left out"), "{}", ran.err);
+    assert!(ran.err.contains("(1 part, area 16)"), "{}", ran.err);
+    assert_eq!(volume(&folder.read("c.obj")), 0.875);
+    // The option is for the file before it.
+    folder.run("difference scene.obj b.obj --closed-parts -o c.obj").exits(3).says("--closed-parts");
+    folder.run("difference --closed-parts scene.obj b.obj -o c.obj").exits(0);
+    // Two options where one does not do.
+    folder.write("both.obj", together(floor, &inside_out(&unit_cube())));
+    prints(&folder.run("check both.obj").exits(3), "usable with --orient --closed-parts");
+    folder.run("union both.obj --orient --closed-parts -o c.obj").exits(0).says("volume 1");
 }
 
 #[test]
@@ -91,18 +181,21 @@ fn a_cavity_that_touches_the_outside_everywhere_it_can_is_one() {
 }
 
 #[test]
-fn pictures_of_gltf_have_y_upwards() {
+fn pictures_of_gltf_and_obj_have_y_upwards() {
     let folder = Folder::new();
     folder.write("a.obj", cube([0.0; 3], [1.0, 2.0, 4.0]));
-    folder.run("convert a.obj a.glb").exits(0);
+    folder.run("convert a.obj -o a.glb -o a.stl -o a.ply -o a.off").exits(0);
     let picture = |line: &str| {
         folder.run(&format!("{line} --png p.png --png-size 64x48 --png-color none")).exits(0);
         bytes(&folder.path("p.png"))
     };
     let (up_y, up_z) = (picture("convert a.obj --png-up y"), picture("convert a.obj --png-up z"));
     assert_ne!(up_y, up_z);
-    assert_eq!(picture("convert a.obj"), up_z);
+    assert_eq!(picture("convert a.obj"), up_y);
     assert_eq!(picture("convert a.glb"), up_y);
+    for z in ["a.stl", "a.ply", "a.off"] {
+        assert_eq!(picture(&format!("convert {z}")), up_z, "{z}");
+    }
     assert_eq!(picture("union a.glb"), up_y);
     assert_eq!(picture("convert a.glb --png-up z"), up_z);
 }

@@ -4,6 +4,7 @@
 //! Most tests take a sample of what they could try; `TRISECT_PROOF=4` tries four times as much, `TRISECT_PROOF=all` all.
 //! What fails is named, and saved as OBJ files in the folder `TRISECT_PROOF_SAVE` if that is set. See `docs/proof.md`.
 
+mod arrangement;
 mod battery;
 mod chains;
 #[path = "../common/mod.rs"]
@@ -18,4 +19,5 @@ mod properties;
 mod recorded;
 mod regressions;
 mod same_bits;
+mod scales;
 mod trial;

@@ -6,7 +6,7 @@ use std::ops::Index;
 use super::crossings::{Crossing, Crossings};
 use crate::Error;
 use crate::boolean::complex::ids::{CutEdgeId, NodeId, VertexId};
-use crate::boolean::complex::predicates::Predicates;
+use crate::boolean::complex::predicates::{Perturbed, Predicates};
 use crate::boolean::complex::{Complex, Corner};
 use crate::exact::{Sign, order};
 use crate::parallel::Runner;
@@ -147,7 +147,8 @@ fn compare(complex: &Complex<'_>, predicates: &Predicates<'_>, x: &Crossing, y: 
     }
 }
 
-/// The order where one face lies wholly on one side of the other's plane: then so does its crossing point.
+/// The order where one face lies wholly on one side of the other's plane: then so does its crossing point. The edge must pierce
+/// both faces.
 fn compare_by_sides(
     predicates: &Predicates<'_>,
     t1: &[Corner; 3],
@@ -155,12 +156,23 @@ fn compare_by_sides(
     p_inside_1: bool,
     p_inside_2: bool,
 ) -> Option<Sign> {
-    // If the crossing with the one is on p's side of the other, it comes first.
-    if let Some(inside) = common_side(predicates, t1, t2) {
-        return Some(if inside == p_inside_2 { Sign::Negative } else { Sign::Positive });
+    if let Some(sign) = compare_with_plane(predicates, t1, t2, p_inside_2) {
+        return Some(sign);
     }
     let inside = common_side(predicates, t2, t1)?;
     Some(if inside == p_inside_1 { Sign::Positive } else { Sign::Negative })
+}
+
+/// The same where the edge pierces the first face and crosses the plane of the second one anywhere.
+pub(crate) fn compare_with_plane(
+    predicates: &Predicates<'_>,
+    t1: &[Corner; 3],
+    t2: &[Corner; 3],
+    p_inside_2: bool,
+) -> Option<Sign> {
+    // If the crossing with the one is on p's side of the other, it comes first.
+    let inside = common_side(predicates, t1, t2)?;
+    Some(if inside == p_inside_2 { Sign::Negative } else { Sign::Positive })
 }
 
 /// Whether all corners of `t` that `plane` does not share lie inside its plane (true), outside it (false), or neither.

@@ -75,13 +75,18 @@ impl Identification {
             pairs.into_iter().for_each(|[u, v]| classes.join(PointId::new(u), PointId::new(v)));
         }
         // 3. Every point that is stored gets the lowest one of its class.
+        Ok(Self::of_classes(classes, points.len()))
+    }
+
+    /// Of the classes of some of `points` points.
+    pub(crate) fn of_classes(classes: SparseUnionFind<PointId>, points: usize) -> Self {
         let parent = classes.into_roots();
         let mut stored = BitSet::default();
         if !parent.is_empty() {
-            stored = BitSet::new(points.len());
+            stored = BitSet::new(points);
             parent.keys().for_each(|point| stored.insert(point.number()));
         }
-        Ok(Self { parent, stored })
+        Self { parent, stored }
     }
 
     /// Whether every point is its own.
@@ -113,7 +118,7 @@ impl Identification {
 }
 
 /// A point's number and where it is.
-type Placed = (u32, [f64; 3]);
+pub(crate) type Placed = (u32, [f64; 3]);
 
 /// What is known of the points of cut faces.
 #[derive(Clone, Copy)]
@@ -148,7 +153,7 @@ impl Outline<'_> {
 }
 
 /// Appends pairs of points that have equal coordinates; enough of them to join all.
-fn find_coincidences(at: &mut [Placed], pairs: &mut Vec<[u32; 2]>) {
+pub(crate) fn find_coincidences(at: &mut [Placed], pairs: &mut Vec<[u32; 2]>) {
     if at.len() <= FEW {
         for i in 1..at.len() {
             for j in 0..i {

@@ -3,6 +3,7 @@
 use super::crossings::Crossing;
 use crate::boolean::complex::Complex;
 use crate::boolean::complex::ids::VertexId;
+use crate::boolean::complex::predicates::Perturbed;
 use crate::exact::perturbed::PerturbedPoint;
 use crate::exact::position;
 

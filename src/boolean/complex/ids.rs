@@ -53,4 +53,10 @@ ids! {
     CutEdgeId;
     /// A cut face: its place among those of its operand.
     CutFaceId;
+    /// An edge of any number of surfaces (see `general`).
+    EdgeId;
+    /// A point in which three faces meet.
+    TripleId;
+    /// A vector of winding numbers.
+    LabelId;
 }

@@ -25,10 +25,10 @@ use std::sync::OnceLock;
 
 use rustc_hash::FxHashSet;
 
-use crate::exact::perturbed::{PerturbedPoint, jitter};
 use directions::Directions;
 use ids::{FaceId, VertexId};
 use origin::Origin;
+use predicates::Perturbed;
 
 /// One operand: borrowed arrays.
 #[derive(Clone, Copy, Debug)]
@@ -93,11 +93,6 @@ impl<'a> Complex<'a> {
     /// Triangles of an operand that may meet the other one, ascending.
     pub(crate) fn near(&self, operand: usize) -> &[u32] {
         &self.near[operand]
-    }
-
-    /// The largest coordinate.
-    pub(crate) fn largest_coordinate(&self) -> f64 {
-        self.largest
     }
 
     /// How many vertices there are.
@@ -212,18 +207,14 @@ impl<'a> Complex<'a> {
         self.directions().stuck()
     }
 
-    /// A corner with the directions it is perturbed along.
-    pub(crate) fn perturbed(&self, corner: &Corner) -> PerturbedPoint {
-        PerturbedPoint {
-            position: corner.position,
-            first: self.first_direction(corner.id),
-            second: jitter(u64::from(corner.id.number())),
-        }
+    fn directions(&self) -> &Directions {
+        self.directions.get_or_init(|| Directions::new(&self.operands[0], &self.near[0]))
     }
+}
 
-    /// The direction a vertex moves along to first order.
+impl Perturbed for Complex<'_> {
     #[inline]
-    pub(crate) fn first_direction(&self, vertex: VertexId) -> [i32; 3] {
+    fn first_direction(&self, vertex: VertexId) -> [i32; 3] {
         if vertex.index() >= self.operands[0].positions.len() {
             return [0; 3];
         }
@@ -231,7 +222,7 @@ impl<'a> Complex<'a> {
         self.directions().of(vertex.number()).map(|component| sense * component)
     }
 
-    fn directions(&self) -> &Directions {
-        self.directions.get_or_init(|| Directions::new(&self.operands[0], &self.near[0]))
+    fn largest_coordinate(&self) -> f64 {
+        self.largest
     }
 }

@@ -123,7 +123,7 @@ pub struct UnknownName {
 }
 
 impl UnknownName {
-    fn new(given: &str, kind: &'static str, known: &'static [&'static str]) -> Self {
+    pub(crate) fn new(given: &str, kind: &'static str, known: &'static [&'static str]) -> Self {
         Self { given: given.to_owned(), kind, known }
     }
 }

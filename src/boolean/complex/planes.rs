@@ -50,7 +50,7 @@ impl Complex<'_> {
 }
 
 /// Whether the normals of two triangles of one plane point the same way.
-fn look_same_way(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
+pub(crate) fn look_same_way(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
     let seen = Projection::of(x);
     let [a, b, c] = y.map(|p| seen.project(&p));
     orient2d(a, b, c) == Sign::Positive

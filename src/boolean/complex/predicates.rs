@@ -2,8 +2,9 @@
 
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 
+use super::ids::VertexId;
 use super::{Complex, Corner};
-use crate::exact::perturbed::{self, jitter};
+use crate::exact::perturbed::{self, PerturbedPoint, jitter};
 use crate::exact::{FILTER_RANGE, PlaneFilter, Sign, orient3d_filter};
 
 /// The plane through three corners, for many points against it.
@@ -20,17 +21,35 @@ impl<'a> Plane<'a> {
     }
 }
 
+/// Vertices that are perturbed.
+pub(crate) trait Perturbed: Sync + std::fmt::Debug {
+    /// The direction a vertex moves along to first order.
+    fn first_direction(&self, vertex: VertexId) -> [i32; 3];
+
+    /// The largest coordinate.
+    fn largest_coordinate(&self) -> f64;
+
+    /// A corner with the directions it is perturbed along.
+    fn perturbed(&self, corner: &Corner) -> PerturbedPoint {
+        PerturbedPoint {
+            position: corner.position,
+            first: self.first_direction(corner.id),
+            second: jitter(u64::from(corner.id.number())),
+        }
+    }
+}
+
 /// What a step asks of a complex, and how often plain coordinates left the answer open.
 #[derive(Debug)]
 pub(crate) struct Predicates<'a> {
-    complex: &'a Complex<'a>,
+    complex: &'a dyn Perturbed,
     /// Added to every filter's error bound: 0, or infinity where coordinates are so large that filters are unsound.
     filter_floor: f64,
     ties: AtomicU64,
 }
 
 impl<'a> Predicates<'a> {
-    pub(crate) fn new(complex: &'a Complex<'a>) -> Self {
+    pub(crate) fn new(complex: &'a dyn Perturbed) -> Self {
         let filter_floor = if complex.largest_coordinate() <= FILTER_RANGE { 0.0 } else { f64::INFINITY };
         Self { complex, filter_floor, ties: AtomicU64::new(0) }
     }

@@ -20,6 +20,8 @@ use crate::boolean::arrangement::face_walk::visit_cut_faces;
 use crate::boolean::classify::body::Body;
 use crate::boolean::classify::multiplicity::Part;
 use crate::boolean::complex::ids::{CutFaceId, FaceId, PointId};
+use crate::boolean::complex::origin::Origin;
+use crate::boolean::rounding::Rounding;
 use crate::exact::Projection;
 use crate::parallel::Runner;
 use crate::polygon::{Shape, Triangulator};
@@ -39,22 +41,22 @@ pub(crate) struct Cut {
 }
 
 impl Cut {
-    fn append(&mut self, mut other: Self) {
+    pub(crate) fn append(&mut self, mut other: Self) {
         self.pieces.append(&mut other.pieces);
         self.has_inverted |= other.has_inverted;
         self.has_slivers |= other.has_slivers;
     }
 }
 
-/// The pieces of a body, part by part and face by face, without the faces `done` otherwise. Edges up to `rounding` long, in
-/// units of the coordinates, are reported as slivers.
+/// The pieces of a body, part by part and face by face, without the faces `done` otherwise. Edges no longer than
+/// rounding are reported as slivers.
 ///
 /// # Errors
 /// Only limits.
 pub(crate) fn cut(
     body: Body<'_>,
     done: &FxHashSet<FaceId>,
-    rounding: f64,
+    rounding: Rounding,
     runner: Runner<'_>,
 ) -> Result<Cut, Error> {
     let cutter = Cutter { body, done, rounding };
@@ -63,12 +65,12 @@ pub(crate) fn cut(
         let count = body.arrangement.curve.faces[part.operand].len();
         let grain = if runner.is_parallel() { FACES_AT_ONCE } else { count };
         let cuts = runner.pieces(count, grain, |range| {
-            let mut scratch = Scratch::default();
+            let mut filler = Filler::default();
             let mut cut = Cut::default();
             for start in range.clone().step_by(FACES_AT_ONCE) {
                 runner.control.check()?;
                 let batch = start..(start + FACES_AT_ONCE).min(range.end);
-                cutter.cut_faces(part, batch, &mut scratch, &mut cut);
+                cutter.cut_faces(part, batch, &mut filler, &mut cut);
             }
             Ok::<Cut, Error>(cut)
         })?;
@@ -79,27 +81,77 @@ pub(crate) fn cut(
     Ok(all)
 }
 
-/// Scratch memory of one thread.
+/// Triangulates what is kept of faces, given by its boundary; keeps its scratch memory between calls.
 #[derive(Default)]
-struct Scratch {
+pub(crate) struct Filler {
     triangulator: Triangulator,
-    boundary: Vec<[PointId; 2]>,
+    /// The directed edges that bound what is kept of a face, to their left.
+    pub(crate) boundary: Vec<[PointId; 2]>,
     local_boundary: Vec<[u32; 2]>,
     positions: Vec<[f64; 3]>,
     projected: Vec<[f64; 2]>,
     triangles: Vec<[u32; 3]>,
 }
 
+impl Filler {
+    /// Adds the triangles between the edges of the boundary, seen in a projection.
+    pub(crate) fn fill<'p>(
+        &mut self,
+        position: impl Fn(PointId) -> &'p [f64; 3],
+        seen: Projection,
+        origin: Origin,
+        rounding: Rounding,
+        cut: &mut Cut,
+    ) {
+        // 1. What is left of the boundary.
+        cancel_opposites(&mut self.boundary);
+        if self.boundary.is_empty() {
+            return;
+        }
+        // 2. Local numbers for its points, and where they are in the projection.
+        let mut ids: SmallVec<[PointId; 16]> = SmallVec::new();
+        ids.extend(self.boundary.iter().map(|edge| edge[0]));
+        ids.sort_unstable();
+        ids.dedup();
+        let local = |point: PointId| ids.binary_search(&point).expect("every point is left") as u32;
+        self.local_boundary.clear();
+        self.local_boundary.extend(self.boundary.iter().map(|edge| edge.map(local)));
+        self.positions.clear();
+        self.positions.extend(ids.iter().map(|&point| *position(point)));
+        self.projected.clear();
+        self.projected.extend(self.positions.iter().map(|position| seen.project(position)));
+        // 3. Its triangles.
+        self.triangles.clear();
+        let shape = self.triangulator.triangulate(&self.projected, &self.local_boundary, &mut self.triangles);
+        cut.has_slivers |=
+            shape >= Shape::Flat || has_short_edge(&self.positions, &self.local_boundary, rounding);
+        cut.has_inverted |= shape == Shape::Folded;
+        cut.pieces.extend(self.triangles.iter().map(|corners| Piece {
+            corners: corners.map(|point| ids[point as usize]),
+            origin,
+            flat: false,
+        }));
+    }
+}
+
+/// Whether two consecutive points of a boundary are no further apart than rounding.
+fn has_short_edge(positions: &[[f64; 3]], boundary: &[[u32; 2]], rounding: Rounding) -> bool {
+    boundary.iter().any(|edge| {
+        let [p, q] = edge.map(|i| positions[i as usize]);
+        rounding.is_short(&p, &q)
+    })
+}
+
 #[derive(Clone, Copy)]
 struct Cutter<'a> {
     body: Body<'a>,
     done: &'a FxHashSet<FaceId>,
-    rounding: f64,
+    rounding: Rounding,
 }
 
 impl Cutter<'_> {
     /// Cuts a range of the cut faces of a part.
-    fn cut_faces(&self, part: Part, range: std::ops::Range<usize>, scratch: &mut Scratch, cut: &mut Cut) {
+    fn cut_faces(&self, part: Part, range: std::ops::Range<usize>, filler: &mut Filler, cut: &mut Cut) {
         let Arrangement { curve, points, plane_faces, .. } = self.body.arrangement;
         let faces = &curve.faces[part.operand];
         let windings = self.body.windings.of_operand(part.operand);
@@ -107,62 +159,23 @@ impl Cutter<'_> {
         visit_cut_faces(curve, points, part.operand, range, winding, |face| {
             let is_done = !self.done.is_empty() && self.done.contains(&faces[face].id);
             if !is_done && !plane_faces.belongs_to_earlier(part.operand, face) {
-                self.cut_face(part, face, scratch, cut);
+                self.cut_face(part, face, filler, cut);
             }
         });
     }
 
     /// Cuts a face, together with the later ones of its plane face.
-    fn cut_face(&self, part: Part, first: CutFaceId, scratch: &mut Scratch, cut: &mut Cut) {
+    fn cut_face(&self, part: Part, first: CutFaceId, filler: &mut Filler, cut: &mut Cut) {
         let Arrangement { curve, points, plane_faces, .. } = self.body.arrangement;
         let faces = &curve.faces[part.operand];
-        // 1. The boundary of what is kept.
-        scratch.boundary.clear();
+        filler.boundary.clear();
         for member in plane_faces.members(part.operand, first) {
-            self.body.add_boundary(part, &faces[member], &mut scratch.boundary);
+            self.body.add_boundary(part, &faces[member], &mut filler.boundary);
         }
-        cancel_opposites(&mut scratch.boundary);
-        if scratch.boundary.is_empty() {
-            return;
-        }
-        // 2. Local numbers for its points, and where they are in the projection.
-        let mut ids: SmallVec<[PointId; 16]> = SmallVec::new();
-        ids.extend(scratch.boundary.iter().map(|edge| edge[0]));
-        ids.sort_unstable();
-        ids.dedup();
-        let local = |point: PointId| ids.binary_search(&point).expect("every point is left") as u32;
-        scratch.local_boundary.clear();
-        scratch.local_boundary.extend(scratch.boundary.iter().map(|edge| edge.map(local)));
-        scratch.positions.clear();
-        scratch.positions.extend(ids.iter().map(|&point| *points.position(point)));
         let seen = Projection::of(&self.body.complex().positions(faces[first].id));
         let seen = if part.reversed { seen.reversed() } else { seen };
-        scratch.projected.clear();
-        scratch.projected.extend(scratch.positions.iter().map(|position| seen.project(position)));
-        // 3. Its triangles.
-        scratch.triangles.clear();
-        let shape = scratch.triangulator.triangulate(
-            &scratch.projected,
-            &scratch.local_boundary,
-            &mut scratch.triangles,
-        );
-        cut.has_slivers |=
-            shape >= Shape::Flat || self.has_short_edge(&scratch.positions, &scratch.local_boundary);
-        cut.has_inverted |= shape == Shape::Folded;
         let origin = self.body.complex().origin(faces[first].id, part.reversed);
-        cut.pieces.extend(scratch.triangles.iter().map(|corners| Piece {
-            corners: corners.map(|point| ids[point as usize]),
-            origin,
-            flat: false,
-        }));
-    }
-
-    /// Whether two consecutive points of a boundary are no further apart than rounding.
-    fn has_short_edge(&self, positions: &[[f64; 3]], boundary: &[[u32; 2]]) -> bool {
-        boundary.iter().any(|edge| {
-            let [p, q] = edge.map(|i| positions[i as usize]);
-            (0..3).all(|k| (p[k] - q[k]).abs() <= self.rounding)
-        })
+        filler.fill(|point| points.position(point), seen, origin, self.rounding, cut);
     }
 }
 

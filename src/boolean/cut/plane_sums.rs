@@ -41,7 +41,9 @@ pub(crate) fn add_up(body: Body<'_>, runner: Runner<'_>) -> Result<Sums, Error> 
             runner.control.check()?;
         }
         let before = sums.crossings.len();
-        match Sum::new(body, sheet, &mut sums.crossings).triangles() {
+        let position = |point: PointId| *body.arrangement.points.position(point);
+        let faces = faces_of_sheet(body, sheet, &position, &mut sums.crossings);
+        match faces.and_then(SheetFaces::triangles) {
             Some(left) => {
                 sums.pieces.extend(left);
                 sums.done.extend(sheet);
@@ -55,53 +57,113 @@ pub(crate) fn add_up(body: Body<'_>, runner: Runner<'_>) -> Result<Sums, Error> 
 /// Sheets that are added up before the limits are checked: they are small, a handful of faces each.
 const SHEETS_AT_ONCE: usize = 64;
 
+/// One directed edge of a face of a sheet: its ends, how often it counts, and the line it is a part of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SheetEdge {
+    pub(crate) ends: [PointId; 2],
+    pub(crate) count: i32,
+    /// Its place among the lines of the sheet.
+    pub(crate) line: u32,
+}
+
+/// A face of a sheet that pieces can come from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SheetSource {
+    pub(crate) origin: Origin,
+    /// The corners of the face, as it is (not turned over, even if the origin is).
+    pub(crate) corners: [[f64; 3]; 3],
+}
+
+/// The faces of one sheet, to be added up.
+pub(crate) struct SheetFaces<'a> {
+    /// The boundaries of what is kept of all faces.
+    pub(crate) edges: Vec<SheetEdge>,
+    /// Whole edges, of which those of the sheet are parts.
+    pub(crate) lines: Vec<[[f64; 3]; 2]>,
+    pub(crate) sources: Vec<SheetSource>,
+    /// Where a point is.
+    pub(crate) position: &'a dyn Fn(PointId) -> [f64; 3],
+    /// The number that the first of `crossings` has.
+    pub(crate) next: PointId,
+    /// Points where edges cross that the perturbation kept apart.
+    pub(crate) crossings: &'a mut Vec<SheetCrossing>,
+}
+
+/// The sum of the faces of one sheet of a body.
+fn faces_of_sheet<'a>(
+    body: Body<'_>,
+    sheet: &Sheet,
+    position: &'a dyn Fn(PointId) -> [f64; 3],
+    crossings: &'a mut Vec<SheetCrossing>,
+) -> Option<SheetFaces<'a>> {
+    let complex = body.complex();
+    let (mut edges, mut lines, mut sources) = (Vec::new(), Vec::new(), Vec::new());
+    // Every face's boundary, each edge with the line it is a part of: a side of the face, or a segment.
+    for &id in sheet {
+        let (operand, _) = complex.triangle(id);
+        let face = body.arrangement.curve.faces[operand].find(id)?;
+        let corners = complex.positions(id);
+        let first = lines.len() as u32;
+        lines.extend((0..3).map(|k| [corners[k], corners[(k + 1) % 3]]));
+        for part in body.parts_of(operand) {
+            body.for_boundary(part, face, |ends, of_side, count| {
+                let line = match of_side {
+                    Some(k) => first + k as u32,
+                    None => {
+                        lines.push(ends.map(position));
+                        lines.len() as u32 - 1
+                    }
+                };
+                edges.push(SheetEdge { ends, count: count as i32, line });
+            });
+            sources.push(SheetSource { origin: complex.origin(id, part.reversed), corners });
+        }
+    }
+    Some(SheetFaces { edges, lines, sources, position, next: body.arrangement.points.next(), crossings })
+}
+
 /// The sum of the faces of one sheet.
 struct Sum<'a> {
-    body: Body<'a>,
-    sheet: &'a Sheet,
+    of: SheetFaces<'a>,
     /// How the plane is projected.
     seen: Projection,
     /// The sheet's points, and where they are in the projection.
     points: Vec<PointId>,
     flat: Vec<[f64; 2]>,
-    /// Whole edges, of which those of the sheet are parts.
-    lines: Vec<[[f64; 3]; 2]>,
-    crossings: &'a mut Vec<SheetCrossing>,
 }
 
-impl<'a> Sum<'a> {
-    fn new(body: Body<'a>, sheet: &'a Sheet, crossings: &'a mut Vec<SheetCrossing>) -> Self {
-        let seen = Projection::of(&body.complex().positions(sheet[0])).along_axis();
-        Self { body, sheet, seen, points: Vec::new(), flat: Vec::new(), lines: Vec::new(), crossings }
+impl SheetFaces<'_> {
+    /// The triangles left, or `None` where the shapes do not allow it.
+    pub(crate) fn triangles(self) -> Option<Vec<Piece>> {
+        let Some(first) = self.sources.first() else { return Some(Vec::new()) };
+        let seen = Projection::of(&first.corners).along_axis();
+        Sum { of: self, seen, points: Vec::new(), flat: Vec::new() }.triangles()
     }
+}
 
+impl Sum<'_> {
     fn project(&self, position: &[f64; 3]) -> [f64; 2] {
         self.seen.project(position)
-    }
-
-    /// Where a point of the arrangement is.
-    fn position(&self, point: PointId) -> &'a [f64; 3] {
-        self.body.arrangement.points.position(point)
     }
 
     /// The triangles left, or `None` where the shapes do not allow it.
     fn triangles(mut self) -> Option<Vec<Piece>> {
         // 1. The boundaries of what is kept of all faces, as they add up.
-        let edges = self.edges()?;
+        let edges = self.edges();
         let mut at: FxHashMap<[u64; 3], u32> = FxHashMap::default();
         for (i, &point) in (0..).zip(&self.points) {
-            at.insert(bits(self.position(point)), i);
+            at.insert(bits(&(self.of.position)(point)), i);
         }
         // 2. The plane between them by winding number: opposite edges cancel, and where edges cross there is a new point,
         //    unless there is one already.
-        let next = self.body.arrangement.points.next();
+        let next = self.of.next;
         let mut flat = std::mem::take(&mut self.flat);
         let found = polygon::by_winding(&mut flat, &edges, |x, y, flat| {
             let crossing = self.crossing(x.line, y.line)?;
             let position = crossing.position;
             Some(*at.entry(bits(&position)).or_insert_with(|| {
-                self.points.push(PointId::new(next.number() + self.crossings.len() as u32));
-                self.crossings.push(crossing);
+                self.points.push(PointId::new(next.number() + self.of.crossings.len() as u32));
+                self.of.crossings.push(crossing);
                 flat.push(self.project(&position));
                 flat.len() as u32 - 1
             }))
@@ -112,44 +174,24 @@ impl<'a> Sum<'a> {
     }
 
     /// The directed edges of all faces, with local numbers of the points.
-    fn edges(&mut self) -> Option<Vec<polygon::Edge>> {
-        let mut edges: Vec<polygon::Edge> = Vec::new();
-        let body = self.body;
-        // 1. Every face's boundary, each edge with the line it is a part of: a side of the face, or a segment.
-        for &id in self.sheet {
-            let (operand, _) = self.body.complex().triangle(id);
-            let face = self.body.arrangement.curve.faces[operand].find(id)?;
-            let corners = self.body.complex().positions(id);
-            let first = self.lines.len() as u32;
-            self.lines.extend((0..3).map(|k| [corners[k], corners[(k + 1) % 3]]));
-            for part in body.parts_of(operand) {
-                body.for_boundary(part, face, |ends, of_side, count| {
-                    let line = match of_side {
-                        Some(k) => first + k as u32,
-                        None => {
-                            self.lines.push(ends.map(|point| *body.arrangement.points.position(point)));
-                            self.lines.len() as u32 - 1
-                        }
-                    };
-                    let ends = ends.map(PointId::number);
-                    edges.push(polygon::Edge { ends, count: count as i32, line });
-                });
-            }
-        }
-        // 2. Numbers without gaps for the points.
-        self.points = edges.iter().flat_map(|edge| edge.ends).map(PointId::new).collect();
+    fn edges(&mut self) -> Vec<polygon::Edge> {
+        self.points = self.of.edges.iter().flat_map(|edge| edge.ends).collect();
         self.points.sort_unstable();
         self.points.dedup();
-        for edge in &mut edges {
-            edge.ends = edge.ends.map(|point| self.points.partition_point(|p| p.number() < point) as u32);
-        }
-        self.flat = self.points.iter().map(|&point| self.project(self.position(point))).collect();
-        Some(edges)
+        let number = |point: PointId| self.points.partition_point(|&p| p < point) as u32;
+        let edges = self.of.edges.iter().map(|edge| polygon::Edge {
+            ends: edge.ends.map(number),
+            count: edge.count,
+            line: edge.line,
+        });
+        let edges = edges.collect();
+        self.flat = self.points.iter().map(|&point| self.project(&(self.of.position)(point))).collect();
+        edges
     }
 
     /// Where two lines cross, rounded as the nodes are; `None` if they only seem to because their parts were rounded.
     fn crossing(&self, x: u32, y: u32) -> Option<SheetCrossing> {
-        let ([p, q], [a, b]) = (&self.lines[x as usize], &self.lines[y as usize]);
+        let ([p, q], [a, b]) = (&self.of.lines[x as usize], &self.of.lines[y as usize]);
         if !polygon::cross_properly([p, q, a, b].map(|point| self.project(point))) {
             return None;
         }
@@ -157,10 +199,9 @@ impl<'a> Sum<'a> {
         let axis = self.seen.axis();
         let size = (0..3).fold(0.0f64, |size, k| size.max((b[k] - a[k]).abs()));
         let mut above = *a;
-        above[axis] += size;
-        if above[axis] == a[axis] || !above[axis].is_finite() {
-            return None;
-        }
+        // (Any other point above or below gives the same plane, if this one is lost beside a large coordinate.)
+        let other = [a[axis] + size, a[axis].next_up(), a[axis].next_down()];
+        above[axis] = other.into_iter().find(|&x| x != a[axis] && x.is_finite())?;
         let still =
             |position: &[f64; 3]| PerturbedPoint { position: *position, first: [0; 3], second: [0; 3] };
         let (edge, triangle) = ([p, q].map(still), [a, b, &above].map(still));
@@ -171,17 +212,15 @@ impl<'a> Sum<'a> {
 
     /// The triangles with the faces they come from: those around their middle that look their way.
     fn attach_origins(&self, found: &polygon::Found) -> Option<Vec<Piece>> {
-        let complex = self.body.complex();
         // 1. The faces each part of the body takes from the sheet, and which way they look.
         let sources: Vec<(Origin, bool, [[f64; 2]; 3])> = self
-            .sheet
+            .of
+            .sources
             .iter()
-            .flat_map(|&face| {
-                let flat = complex.positions(face).map(|p| self.project(&p));
+            .map(|source| {
+                let flat = source.corners.map(|p| self.project(&p));
                 let looks_up = orient2d(flat[0], flat[1], flat[2]) == Sign::Positive;
-                self.body
-                    .parts_of(complex.owner_of_face(face))
-                    .map(move |part| (complex.origin(face, part.reversed), looks_up != part.reversed, flat))
+                (source.origin, looks_up != source.origin.reversed, flat)
             })
             .collect();
         // 2. A tree over them: a sheet may have thousands.

@@ -4,6 +4,8 @@
 //! early; a difference takes the union of all tools off the first operand in one step; an intersection starts with the
 //! smallest operands; a symmetric difference goes from left to right.
 
+mod expressions;
+pub(super) mod made;
 mod merge_order;
 pub(super) mod options;
 
@@ -11,6 +13,7 @@ use std::borrow::Cow;
 
 use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::complex::origin::Origin;
+use crate::boolean::expression::Rule;
 use crate::boolean::pair::{self, Combined, Settings};
 use crate::boolean::result::certificate::{Notes, OperandState};
 use crate::boolean::result::origins::Origins;
@@ -19,6 +22,8 @@ use crate::exact::{Projection, Sign, orient2d};
 use crate::mesh::{FaceGroup, FaceGroups};
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
+use expressions::Wanted;
+use made::{Embed, Made};
 
 /// From this many triangles on, threads are worth waking.
 const PARALLEL_FROM: usize = 4_096;
@@ -30,6 +35,12 @@ pub(crate) struct Policy {
     pub(crate) contact: Contact,
     /// Whether vertices that nobody needs are left out where the operation cuts.
     pub(crate) remove_vertices: bool,
+    /// Whether operands of which it is not known are taken not to cross themselves.
+    pub(crate) assume_clean: bool,
+    /// What is inside an operand, unless it has a rule of its own.
+    pub(crate) rule: Rule,
+    /// What becomes of crossings that rounding makes.
+    pub(crate) embed: Embed,
 }
 
 /// An operand, or what some of them have become.
@@ -43,13 +54,23 @@ struct Partial<'a> {
     contacts: u64,
     /// Whether rounding turned over some triangle on the way.
     may_be_inverted: bool,
+    /// Whether rounding may have made something cross on the way.
+    may_cross: bool,
     /// How often a step of the clean-up stopped at its bound on the way.
     clean_up_stopped: u64,
 }
 
 impl<'a> Partial<'a> {
     fn new(solid: Cow<'a, Solid>, origins: Origins, groups: Vec<u32>) -> Self {
-        Self { solid, origins, groups, contacts: 0, may_be_inverted: false, clean_up_stopped: 0 }
+        Self {
+            solid,
+            origins,
+            groups,
+            contacts: 0,
+            may_be_inverted: false,
+            may_cross: false,
+            clean_up_stopped: 0,
+        }
     }
 
     /// The middle of its box.
@@ -58,8 +79,27 @@ impl<'a> Partial<'a> {
     }
 }
 
-/// Runs an operation over all operands.
+/// Runs an operation over all operands: in one arrangement where one of them crosses or touches itself, else pair by pair.
 pub(crate) fn run(
+    policy: Policy,
+    rules: &[Rule],
+    operation: Operation,
+    operands: &[&Solid],
+    runner: Runner<'_>,
+) -> Result<Outcome, Error> {
+    for solid in operands {
+        if !expressions::is_simple(policy, solid, runner.control)? {
+            let expression = expressions::of_operation(operation, operands.len());
+            let wanted = Wanted { expressions: &[expression], rules, policy };
+            let mut outcomes = expressions::run(&wanted, operands, runner)?;
+            return Ok(outcomes.swap_remove(0));
+        }
+    }
+    run_in_pairs(policy, operation, operands, runner)
+}
+
+/// Runs an operation over operands that do not cross themselves.
+fn run_in_pairs(
     policy: Policy,
     operation: Operation,
     operands: &[&Solid],
@@ -108,8 +148,18 @@ pub(crate) fn run(
         inverted: if result.may_be_inverted { count_inverted(&result, operands) } else { 0 },
         clean_up_stopped: result.clean_up_stopped,
         operands: operands.iter().map(|solid| OperandState::of(solid)).collect(),
+        ..Notes::default()
     };
-    Ok(finish(result, groups.list, notes))
+    let is_clean = policy.contact == Contact::Fuse && operands.iter().all(|solid| solid.is_known_clean());
+    let made = Made {
+        may_cross: result.may_cross,
+        origins: result.origins,
+        groups: FaceGroups { list: groups.list, of_triangle: result.groups },
+        solid: result.solid.into_owned(),
+        notes,
+        is_clean,
+    };
+    made.finish(policy, runner)
 }
 
 struct Engine<'o> {
@@ -184,6 +234,7 @@ impl Engine<'_> {
             groups,
             contacts: a.contacts + b.contacts + contacts,
             may_be_inverted: a.may_be_inverted || b.may_be_inverted || made.has_inverted,
+            may_cross: a.may_cross || b.may_cross || made.may_cross,
             clean_up_stopped: a.clean_up_stopped + b.clean_up_stopped + made.clean_up_stopped,
         })
     }
@@ -206,12 +257,6 @@ fn count_inverted(result: &Partial<'_>, operands: &[&Solid]) -> u64 {
 
 fn no_operands() -> Error {
     Error::InvalidArgument("a boolean needs at least one operand".into())
-}
-
-fn finish(result: Partial<'_>, list: Vec<FaceGroup>, notes: Notes) -> Outcome {
-    let mut solid = result.solid.into_owned();
-    solid.set_groups(FaceGroups { list, of_triangle: result.groups });
-    Outcome::new(solid, result.origins, notes)
 }
 
 /// The groups of all operands together; equal ones become one.

@@ -1,7 +1,10 @@
 //! Settings of a boolean.
 
+use super::expressions::{self, Wanted};
+use super::made::Embed;
 use super::{Policy, run};
 use crate::boolean::complex::operation::{Contact, Operation};
+use crate::boolean::expression::{Expression, Rule};
 use crate::boolean::result::outcome::Outcome;
 use crate::control::Control;
 use crate::parallel::Runner;
@@ -15,6 +18,8 @@ pub struct BooleanOptions {
     control: Control,
     threads: Option<usize>,
     policy: Policy,
+    /// What is inside operands; of those past its end what is inside by the default rule.
+    rules: Vec<Rule>,
 }
 
 impl Default for BooleanOptions {
@@ -22,7 +27,14 @@ impl Default for BooleanOptions {
         Self {
             control: Control::new(),
             threads: None,
-            policy: Policy { contact: Contact::Fuse, remove_vertices: true },
+            policy: Policy {
+                contact: Contact::Fuse,
+                remove_vertices: true,
+                assume_clean: false,
+                rule: Rule::Positive,
+                embed: Embed::default(),
+            },
+            rules: Vec::new(),
         }
     }
 }
@@ -65,6 +77,37 @@ impl BooleanOptions {
         self
     }
 
+    /// What counts as the inside of operands that cross themselves. Default: [`Rule::Positive`].
+    #[must_use]
+    pub fn rule(mut self, rule: Rule) -> Self {
+        self.policy.rule = rule;
+        self
+    }
+
+    /// The same operand by operand, in their order; those past the end of the list follow [`rule`](Self::rule).
+    #[must_use]
+    pub fn rules(mut self, rules: impl IntoIterator<Item = Rule>) -> Self {
+        self.rules = rules.into_iter().collect();
+        self
+    }
+
+    /// Whether operands are taken not to cross or touch themselves, unless they are known to. Default: false; each is looked
+    /// through once (about a microsecond a triangle) and remembers what was found, and results of operations need not be
+    /// looked through. Where the assumption is wrong the result is closed all the same, but regions count as often as they are
+    /// enclosed.
+    #[must_use]
+    pub fn assume_clean(mut self, assume: bool) -> Self {
+        self.policy.assume_clean = assume;
+        self
+    }
+
+    /// What becomes of crossings that rounding makes. Default: [`Embed::WhereNeeded`].
+    #[must_use]
+    pub fn embed(mut self, embed: Embed) -> Self {
+        self.policy.embed = embed;
+        self
+    }
+
     /// Runs `operation` over any number of operands (for a difference: the first minus all the others).
     ///
     /// ```
@@ -80,8 +123,8 @@ impl BooleanOptions {
     /// # Ok::<(), trisect::Error>(())
     /// ```
     ///
-    /// An empty result is a success. An operand that crosses itself (see [`Solid::self_crossings`]) gives a closed result
-    /// in which regions count as often as they are enclosed; the certificate tells what is known of each operand.
+    /// An empty result is a success. An operand that crosses or touches itself (see [`Solid::self_crossings`]) stands for what
+    /// its surface winds around by its [`rule`](Self::rule); then all operands are evaluated at once, in one arrangement.
     ///
     /// # Errors
     /// Limits ([`Error::Limit`]); [`Error::TooLarge`] if the vertices of two operands and of their intersection, or their
@@ -101,33 +144,99 @@ impl BooleanOptions {
         if operands.is_empty() {
             return Err(Error::InvalidArgument("a boolean needs at least one operand".into()));
         }
+        self.on_threads(|runner| run(self.policy, &self.rules, operation, operands, runner))
+    }
+
+    /// Evaluates an expression of operands, all of them at once: nothing is rounded in between.
+    ///
+    /// ```
+    /// use trisect::{BooleanOptions, Expression, Solid, primitives};
+    ///
+    /// let cube = |low: f64, high: f64| Solid::try_from(primitives::cuboid([low; 3], [high; 3])?);
+    /// let operands = [cube(0.0, 3.0)?, cube(1.0, 2.0)?, cube(2.5, 4.0)?];
+    /// let expression = "a - (b + c)".parse::<Expression>()?;
+    /// let left = BooleanOptions::new().evaluate(&expression, &operands)?;
+    /// assert_eq!(left.solid().volume(), 27.0 - 1.0 - 0.125);
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`run`](Self::run), and [`Error::InvalidArgument`] where the expression has more operands than there are.
+    pub fn evaluate<'a>(
+        &self,
+        expression: &Expression,
+        operands: impl IntoIterator<Item = &'a Solid>,
+    ) -> Result<Outcome, Error> {
+        let mut outcomes = self.evaluate_all(std::slice::from_ref(expression), operands)?;
+        Ok(outcomes.swap_remove(0))
+    }
+
+    /// Evaluates several expressions of the same operands in one arrangement: where their results meet they share vertices,
+    /// bit for bit.
+    ///
+    /// # Errors
+    /// As [`evaluate`](Self::evaluate).
+    pub fn evaluate_all<'a>(
+        &self,
+        expressions: &[Expression],
+        operands: impl IntoIterator<Item = &'a Solid>,
+    ) -> Result<Vec<Outcome>, Error> {
+        let operands: Vec<&Solid> = operands.into_iter().collect();
+        self.control.check()?;
+        let wanted = Wanted { expressions, rules: &self.rules, policy: self.policy };
+        self.on_threads(|runner| expressions::run(&wanted, &operands, runner))
+    }
+
+    /// What an operand stands for by its [`rule`](Self::rule), as a surface that crosses itself no deeper than rounding.
+    ///
+    /// ```
+    /// use trisect::{BooleanOptions, Mesh, Solid, primitives};
+    ///
+    /// let mut both = primitives::cuboid([0.0; 3], [1.0; 3])?;
+    /// let other = primitives::cuboid([0.5; 3], [1.5; 3])?;
+    /// both.triangles.extend(other.triangles.iter().map(|corners| corners.map(|v| v + 8)));
+    /// both.positions.extend(other.positions);
+    /// let overlapping = Solid::try_from(both)?;
+    /// assert_eq!(overlapping.volume(), 2.0);
+    /// assert_eq!(BooleanOptions::new().resolve(&overlapping)?.solid().volume(), 1.875);
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn resolve(&self, operand: &Solid) -> Result<Outcome, Error> {
+        self.evaluate(&Expression::Operand(0), [operand])
+    }
+
+    /// Runs on the threads that were asked for.
+    fn on_threads<T: Send>(
+        &self,
+        run: impl FnOnce(Runner<'_>) -> Result<T, Error> + Send,
+    ) -> Result<T, Error> {
         match self.threads {
-            None => run(self.policy, operation, operands, Runner::new(&self.control, true)),
-            Some(0 | 1) => run(self.policy, operation, operands, Runner::new(&self.control, false)),
-            Some(threads) => self.run_in_pool(operation, operands, threads),
+            None => run(Runner::new(&self.control, true)),
+            Some(0 | 1) => run(Runner::new(&self.control, false)),
+            Some(threads) => self.in_pool(run, threads),
         }
     }
 
     #[cfg(feature = "parallel")]
-    fn run_in_pool(
+    fn in_pool<T: Send>(
         &self,
-        operation: Operation,
-        operands: &[&Solid],
+        run: impl FnOnce(Runner<'_>) -> Result<T, Error> + Send,
         threads: usize,
-    ) -> Result<Outcome, Error> {
-        let run = || run(self.policy, operation, operands, Runner::new(&self.control, true));
-        run_in_pool(threads, run)
+    ) -> Result<T, Error> {
+        run_in_pool(threads, || run(Runner::new(&self.control, true)))
             .map_err(|error| Error::InvalidArgument(format!("cannot make {threads} threads: {error}")))?
     }
 
     #[cfg(not(feature = "parallel"))]
-    fn run_in_pool(
+    fn in_pool<T: Send>(
         &self,
-        operation: Operation,
-        operands: &[&Solid],
+        run: impl FnOnce(Runner<'_>) -> Result<T, Error> + Send,
         _threads: usize,
-    ) -> Result<Outcome, Error> {
-        run(self.policy, operation, operands, Runner::new(&self.control, false))
+    ) -> Result<T, Error> {
+        run(Runner::new(&self.control, false))
     }
 }
 

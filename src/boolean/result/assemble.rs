@@ -22,6 +22,8 @@ pub(crate) struct Assembled {
     pub(crate) origins: Origins,
     /// Whether rounding turned over some triangle.
     pub(crate) has_inverted: bool,
+    /// Whether rounding may have made something cross: some new triangle is no higher than rounding, or was turned over.
+    pub(crate) may_cross: bool,
     /// How often a step of the clean-up stopped at its bound with work left.
     pub(crate) clean_up_stopped: u64,
 }
@@ -34,7 +36,8 @@ impl Assembled {
     pub(crate) fn append(mut self, other: Self) -> Result<Self, Error> {
         if self.triangles.is_empty() {
             let clean_up_stopped = self.clean_up_stopped + other.clean_up_stopped;
-            return Ok(Self { clean_up_stopped, ..other });
+            let may_cross = self.may_cross || other.may_cross;
+            return Ok(Self { clean_up_stopped, may_cross, ..other });
         }
         let vertices = self.positions.len() + other.positions.len();
         if vertices > u32::MAX as usize {
@@ -45,6 +48,7 @@ impl Assembled {
         self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|v| v + offset)));
         self.origins.append(other.origins);
         self.has_inverted |= other.has_inverted;
+        self.may_cross |= other.may_cross;
         self.clean_up_stopped += other.clean_up_stopped;
         Ok(self)
     }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::Solid;
+use crate::boolean::general::embed::Embedding;
 use crate::exact::collinear;
 
 /// What a result is, and what making it met.
@@ -39,12 +40,18 @@ pub struct Certificate {
     /// that led to the result. It is 0 for nearly every result; where it is not, triangles without area, needless vertices or
     /// edges that touch may be left, but the result is as closed as any.
     pub clean_up_stopped: u64,
+    /// Points in which three faces meet, of one operand or of several; only where operands are arranged all at once.
+    pub three_face_points: u64,
+    /// Planes in which faces touch that could not be added up: there walls without thickness may be left.
+    pub walls_left: u64,
+    /// What was done about crossings that rounding makes; `None` where nothing gave reason to look for any.
+    pub embedding: Option<Embedding>,
     /// For each operand what is known of its crossings with itself.
     pub operands: Vec<OperandState>,
 }
 
 /// What is known of an operand's crossings with itself.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[non_exhaustive]
@@ -60,6 +67,15 @@ pub enum OperandState {
     Crossing {
         /// Pairs of triangles.
         count: usize,
+    },
+    /// It may cross or touch itself, and its surface was resolved by winding number.
+    Resolved {
+        /// Pairs of its triangles that cross.
+        crossings: usize,
+        /// Pairs of its triangles that lie on each other in one plane.
+        touching: usize,
+        /// What the surface encloses as it was given: regions count as often as it winds around them.
+        winding_volume: f64,
     },
 }
 
@@ -81,6 +97,9 @@ pub(crate) struct Notes {
     pub(crate) contacts: u64,
     pub(crate) clean_up_stopped: u64,
     pub(crate) inverted: u64,
+    pub(crate) three_face_points: u64,
+    pub(crate) walls_left: u64,
+    pub(crate) embedding: Option<Embedding>,
     pub(crate) operands: Vec<OperandState>,
 }
 
@@ -112,6 +131,9 @@ impl Certificate {
             largest_rounding: half_ulp * 3.0f64.sqrt(),
             contacts: notes.contacts,
             clean_up_stopped: notes.clean_up_stopped,
+            three_face_points: notes.three_face_points,
+            walls_left: notes.walls_left,
+            embedding: notes.embedding,
             operands: notes.operands.clone(),
         }
     }

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use super::face::{LocalFace, LocalPoint, sides};
-use super::flatness::{is_flat, longest_side_squared};
+use super::flatness::{is_flat, longest_side};
 use super::flip::Flip;
 use super::patch::Patch;
 use super::snap::snap_pairs;
@@ -141,10 +141,9 @@ fn split_longest_sides(patch: &mut Patch<'_>) -> Vec<(LocalPoint, LocalPoint)> {
     let mut coincident = Vec::new();
     // 1. The longest first: what meets its longest side then ends between its ends, and all new sides on the line are
     //    shorter.
-    let by_length = |patch: &Patch<'_>, face: LocalFace| {
-        is_flat(patch, face).then(|| (longest_side_squared(patch, face), face))
-    };
-    let mut queue: BinaryHeap<(u64, LocalFace)> =
+    let by_length =
+        |patch: &Patch<'_>, face: LocalFace| is_flat(patch, face).then(|| (longest_side(patch, face), face));
+    let mut queue: BinaryHeap<(u128, LocalFace)> =
         patch.face_numbers().filter_map(|face| by_length(patch, face)).collect();
     if queue.is_empty() {
         return coincident;

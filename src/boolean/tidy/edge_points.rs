@@ -2,7 +2,7 @@
 
 use std::cell::LazyCell;
 
-use glam::{DVec3, Vec3A};
+use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
 use super::face::{Edge, LocalFace, LocalPoint};
@@ -11,6 +11,7 @@ use super::patch::Patch;
 use super::point_grid::PointGrid;
 use super::snap::complete_points;
 use super::splits::Splits;
+use crate::boolean::rounding::distance_order;
 use crate::exact::collinear;
 use crate::mesh::{Buckets, HalfEdges};
 use crate::spatial::{BoxTree, Frame};
@@ -182,9 +183,8 @@ fn walk_along(
 
 /// Sorts points by their distance from `u`.
 fn sort_by_distance(patch: &Patch<'_>, u: LocalPoint, on: &mut [LocalPoint]) {
-    let start = DVec3::from_array(*patch.position(u));
-    let distance = |x: &LocalPoint| DVec3::from_array(*patch.position(*x)).distance_squared(start);
-    on.sort_by(|x, y| distance(x).total_cmp(&distance(y)).then(x.cmp(y)));
+    let start = patch.position(u);
+    on.sort_by_cached_key(|&x| (distance_order(start, patch.position(x)), x));
 }
 
 /// Whether `x` lies on the segment from `u` to `v`, not at its ends: exactly as given, or before it was rounded. Both parts
@@ -196,16 +196,13 @@ fn lies_between(patch: &Patch<'_>, u: LocalPoint, x: LocalPoint, v: LocalPoint) 
         return false;
     }
     // 2. Further from the line than rounding can move it.
-    let rounding = patch.source().rounding;
-    let [start, middle, end] = [p, at, q].map(|position| DVec3::from_array(*position));
-    let length_squared = start.distance_squared(end);
-    let twice_area_squared = (end - start).cross(middle - start).length_squared();
-    if twice_area_squared > (2.0 * rounding).powi(2) * length_squared {
+    if !patch.source().rounding.is_near_line(p, at, q) {
         return false;
     }
     // 3. Both parts shorter, and on one line: now, or before rounding.
-    start.distance_squared(middle).max(middle.distance_squared(end)) < length_squared
+    let length = distance_order(p, q);
+    distance_order(p, at).max(distance_order(at, q)) < length
         && (collinear(p, at, q)
-            || (is_triangle_low(patch, [u, x, v], rounding)
+            || (is_triangle_low(patch, [u, x, v])
                 && patch.source().were_collinear([u, x, v].map(|point| patch.source_point(point)))))
 }

@@ -1,10 +1,9 @@
 //! Which faces have no area, or no height worth the name: triangles of collinear points, and needles and slivers within
 //! rounding.
 
-use glam::DVec3;
-
 use super::face::{LocalFace, LocalPoint};
 use super::patch::Patch;
+use crate::boolean::rounding::{IsLow, Rounding, distance_order};
 use crate::exact::collinear;
 
 /// Whether a face has no area, now or before its corners were rounded.
@@ -23,31 +22,28 @@ pub(super) fn has_flat(patch: &Patch<'_>) -> bool {
     patch.face_numbers().any(|face| !patch[face].untouched && is_flat(patch, face))
 }
 
-/// Whether a face that is not untouched is no higher over its longest side than `height`.
-pub(super) fn is_lower(patch: &Patch<'_>, face: LocalFace, height: f64) -> bool {
+/// Whether a face that is not untouched is as low as `is_low` says.
+pub(super) fn is_lower(patch: &Patch<'_>, face: LocalFace, is_low: IsLow) -> bool {
     let Some(face) = Some(&patch[face]).filter(|face| face.alive && !face.untouched) else { return false };
-    is_triangle_low(patch, face.corners, height)
+    is_low(&patch.source().rounding, face.corners.map(|point| patch.position(point)))
 }
 
-/// Whether a triangle is no higher over its longest side than `height`.
-pub(super) fn is_triangle_low(patch: &Patch<'_>, corners: [LocalPoint; 3], height: f64) -> bool {
-    let [a, b, c] = corners.map(|point| DVec3::from_array(*patch.position(point)));
-    let (u, v, w) = (b - a, c - b, a - c);
-    let longest_squared = u.length_squared().max(v.length_squared()).max(w.length_squared());
-    u.cross(v).length_squared() <= height * height * longest_squared
+/// Whether a triangle is no higher over its longest side than rounding.
+pub(super) fn is_triangle_low(patch: &Patch<'_>, corners: [LocalPoint; 3]) -> bool {
+    patch.source().rounding.is_low(corners.map(|point| patch.position(point)))
 }
 
-/// The square of a face's longest side, as bits: these are in the order of the squares.
-pub(super) fn longest_side_squared(patch: &Patch<'_>, face: LocalFace) -> u64 {
-    let [a, b, c] = patch[face].corners.map(|point| DVec3::from_array(*patch.position(point)));
-    a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).to_bits()
+/// The longest side of a face, as [`distance_order`] has it.
+pub(super) fn longest_side(patch: &Patch<'_>, face: LocalFace) -> u128 {
+    let [a, b, c] = patch[face].corners.map(|point| patch.position(point));
+    distance_order(a, b).max(distance_order(b, c)).max(distance_order(c, a))
 }
 
 /// Marks the faces whose corners lay on one line before they were rounded, but do not now.
 pub(super) fn mark_flat(patch: &mut Patch<'_>) {
     let source = patch.source();
     for face in patch.face_numbers() {
-        let is_low = is_lower(patch, face, source.rounding) && !is_exactly_flat(patch, face);
+        let is_low = is_lower(patch, face, Rounding::is_low) && !is_exactly_flat(patch, face);
         if is_low && source.were_collinear(patch[face].corners.map(|point| patch.source_point(point))) {
             patch.mark_flat(face);
         }

@@ -4,6 +4,7 @@
 use super::face::{LocalFace, LocalPoint};
 use super::flatness::{is_flat, is_lower, middle};
 use super::patch::Patch;
+use crate::boolean::rounding::IsLow;
 
 /// Flips per triangle that is low at the start. Each flip moves a vertex off a longest side, so few are needed; the bound
 /// ends cycles among triangles that all have no area.
@@ -37,10 +38,10 @@ impl Flip {
     }
 }
 
-/// Flips triangles in the 2-manifold that are no higher than `height`, as long as that makes no double edge, and (for those
+/// Flips triangles in the 2-manifold that are as low as `is_low` says, as long as that makes no double edge, and (for those
 /// with some height) both triangles afterwards look the way of the one on the other side.
-pub(super) fn flip_low(patch: &mut Patch<'_>, height: f64) {
-    let is_low = |patch: &Patch<'_>, face: LocalFace| is_flat(patch, face) || is_lower(patch, face, height);
+pub(super) fn flip_low(patch: &mut Patch<'_>, is_low: IsLow) {
+    let is_low = |patch: &Patch<'_>, face: LocalFace| is_flat(patch, face) || is_lower(patch, face, is_low);
     let mut queue: Vec<LocalFace> = patch.face_numbers().filter(|&face| is_low(patch, face)).collect();
     let mut budget = FLIPS_PER_TRIANGLE * queue.len();
     while let Some(face) = queue.pop() {

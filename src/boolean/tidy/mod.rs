@@ -26,14 +26,15 @@ mod source;
 mod split_faces;
 mod splits;
 
-use crate::boolean::classify::body::Body;
 use crate::boolean::complex::ids::PointId;
 use crate::boolean::cut::piece::Piece;
+use crate::boolean::rounding::Rounding;
 use crate::parallel::Runner;
 use crate::{Control, Error};
 use face::LocalPoint;
 use patch::{Patch, Tidied};
 use separate::Separation;
+pub(crate) use source::Ground;
 use source::Source;
 
 /// Rounds of all steps at most, while triangles without area are left: removing vertices, collapsing and flipping may leave
@@ -45,8 +46,8 @@ const MOST_ROUNDS: usize = 3;
 pub(super) struct Settings {
     /// Whether needless vertices are removed, and faces of one plane triangulated together.
     pub(super) remove_vertices: bool,
-    /// What a rounded point can be off, in units of the coordinates: edges and heights up to this are not worth a triangle.
-    pub(super) rounding: f64,
+    /// Edges and heights that are not worth a triangle.
+    pub(super) rounding: Rounding,
     /// Whether points at the same place are snapped to one where operands touch.
     pub(super) glue: bool,
     /// How many decisions plain coordinates left open: without any, nothing touches.
@@ -60,13 +61,13 @@ pub(super) struct Settings {
 ///
 /// # Errors
 /// Those of the limits.
-pub(super) fn tidy(
-    body: Body<'_>,
+pub(crate) fn tidy(
+    ground: Ground<'_>,
     pieces: &[Piece],
     settings: &Settings,
     runner: Runner<'_>,
 ) -> Result<Option<Tidied>, Error> {
-    let source = Source { body, rounding: settings.rounding, has_contacts: settings.contacts > 0 };
+    let source = Source { ground, rounding: settings.rounding, has_contacts: settings.contacts > 0 };
     if !settings.always && !source.needs_clean_up() {
         return Ok(None);
     }
@@ -77,7 +78,7 @@ pub(super) fn tidy(
     }
     // Where an operand touches itself, triangles may come apart at points that are not wholly in the patch. Then all starts
     // again with those; each is taken in but once.
-    let mut extra: Vec<PointId> = Vec::new();
+    let mut extra: Vec<PointId> = source.points_on_pinched_edges();
     loop {
         let patch = gather::gather(source, pieces, &extra);
         // Candidates outside the patch have nothing that changed around them.
@@ -130,13 +131,12 @@ fn attempt(
         control.check()?;
         // 5. Needless vertices are removed.
         if settings.remove_vertices {
-            flip::flip_low(&mut patch, 0.0);
+            flip::flip_low(&mut patch, Rounding::has_no_height);
             remove_vertices::remove_vertices(&mut patch, candidates.clone(), control)?;
         }
         // 6. Edges within rounding are collapsed, and slivers within rounding flipped.
-        let rounding = patch.source().rounding;
-        short_edges::collapse(&mut patch, rounding);
-        flip::flip_low(&mut patch, rounding);
+        short_edges::collapse(&mut patch);
+        flip::flip_low(&mut patch, Rounding::is_low);
         // 7. Again, if that has left triangles without area.
         if !flatness::has_flat(&patch) {
             break;
@@ -158,6 +158,7 @@ mod tests {
     use crate::boolean::arrangement::curve::Curve;
     use crate::boolean::candidates::Candidates;
     use crate::boolean::candidates::overlap::Overlap;
+    use crate::boolean::classify::body::Body;
     use crate::boolean::classify::multiplicity;
     use crate::boolean::classify::winding::Windings;
     use crate::boolean::complex::origin::Origin;
@@ -182,9 +183,14 @@ mod tests {
         let arrangement = Arrangement::new(curve, Vec::new(), true, runner).unwrap();
         let parts = multiplicity::parts(Operation::Intersection);
         let body = Body { arrangement: &arrangement, windings: &windings, parts };
-        let settings =
-            Settings { remove_vertices: true, rounding: 1e-15, glue: false, contacts: 0, always: true };
-        tidy(body, pieces, &settings, runner).unwrap().expect("it was asked for")
+        let settings = Settings {
+            remove_vertices: true,
+            rounding: Rounding::up_to(6.0),
+            glue: false,
+            contacts: 0,
+            always: true,
+        };
+        tidy(Ground::Body(body), pieces, &settings, runner).unwrap().expect("it was asked for")
     }
 
     fn piece(corners: [u32; 3], flat: bool) -> Piece {

@@ -4,12 +4,12 @@
 use super::face::{Face, LocalPoint};
 use super::patch::Patch;
 
-/// Collapses edges up to `length` long (in the largest coordinate difference) at points made by the operation.
-pub(super) fn collapse(patch: &mut Patch<'_>, length: f64) {
+/// Collapses edges no longer than rounding at points made by the operation.
+pub(super) fn collapse(patch: &mut Patch<'_>) {
     let mut queue: Vec<(LocalPoint, LocalPoint)> = Vec::new();
     for (_, face) in patch.faces().filter(|(_, face)| !face.untouched) {
         for (u, v) in face.sides() {
-            if patch.is_new(u) && is_short(patch, u, v, length) {
+            if patch.is_new(u) && is_short(patch, u, v) {
                 queue.push((u, v));
             }
         }
@@ -18,15 +18,14 @@ pub(super) fn collapse(patch: &mut Patch<'_>, length: f64) {
     queue.dedup();
     // The later point goes first: between two new points the one with the lower number stays.
     while let Some((u, v)) = queue.pop() {
-        if patch.left_of(u, v).is_some() && is_short(patch, u, v, length) {
+        if patch.left_of(u, v).is_some() && is_short(patch, u, v) {
             try_collapse(patch, u, v);
         }
     }
 }
 
-fn is_short(patch: &Patch<'_>, u: LocalPoint, v: LocalPoint, length: f64) -> bool {
-    let (p, q) = (patch.position(u), patch.position(v));
-    (0..3).all(|k| (p[k] - q[k]).abs() <= length)
+fn is_short(patch: &Patch<'_>, u: LocalPoint, v: LocalPoint) -> bool {
+    patch.source().rounding.is_short(patch.position(u), patch.position(v))
 }
 
 /// Collapses `u` into `v` if what is left is a sound 2-manifold.

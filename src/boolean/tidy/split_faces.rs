@@ -161,8 +161,7 @@ fn triangulate_strip(
     let is_known =
         |u: LocalPoint, v: LocalPoint| patch.is_complete(u) || patch.is_complete(v) || outline.has_edge(u, v);
     let is_fine = |&corners: &[LocalPoint; 3]| {
-        !is_triangle_low(patch, corners, patch.source().rounding)
-            && (0..3).all(|k| is_known(corners[k], corners[(k + 1) % 3]))
+        !is_triangle_low(patch, corners) && (0..3).all(|k| is_known(corners[k], corners[(k + 1) % 3]))
     };
     if !triangles.iter().all(is_fine) {
         return;

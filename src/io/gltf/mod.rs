@@ -17,6 +17,7 @@ pub(super) use write::write;
 
 use super::finish::check_finite;
 use super::notes::Notes;
+use super::outline::Outline;
 use super::{Format, ReadOptions, malformed, unsupported};
 use crate::{Error, Mesh};
 use buffers::Buffers;
@@ -32,6 +33,25 @@ pub(super) fn read(
     format: Format,
     options: &ReadOptions,
 ) -> Result<(Mesh, Vec<String>), Error> {
+    read_scene(bytes, format, options, false).map(|(mesh, warnings, _)| (mesh, warnings))
+}
+
+/// Reads the mesh, the warnings, and the names of nodes.
+pub(super) fn read_outlined(
+    bytes: &[u8],
+    format: Format,
+    options: &ReadOptions,
+) -> Result<(Mesh, Vec<String>, Outline), Error> {
+    read_scene(bytes, format, options, true)
+}
+
+/// Reads a scene; the outline is empty unless asked for, since it may be large for a small file.
+fn read_scene(
+    bytes: &[u8],
+    format: Format,
+    options: &ReadOptions,
+    outlined: bool,
+) -> Result<(Mesh, Vec<String>, Outline), Error> {
     let mut notes = Notes::default();
     let container = container::open(bytes, format, &mut notes)?;
     let document: Document<'_> = serde_json::from_slice(container.json).map_err(|error| {
@@ -45,10 +65,11 @@ pub(super) fn read(
 
     let buffers = Buffers::new(&reader, container.binary, options);
     let mut builder = Builder::new(&reader, &buffers, bytes.len() as u64, options, &mut notes);
+    builder.outline = outlined.then(Outline::default);
     scene::flatten(&reader, &mut builder)?;
-    let mut mesh = builder.finish();
+    let (mut mesh, outline) = builder.finish();
     check_finite(&mut mesh, format, &mut notes, |vertex| format!("vertex {vertex} of the scene"))?;
-    Ok((mesh, notes.into_warnings(|offset| format!("byte {offset}"))))
+    Ok((mesh, notes.into_warnings(|offset| format!("byte {offset}")), outline))
 }
 
 /// The document being read, and what to call it in errors.

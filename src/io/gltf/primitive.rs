@@ -8,6 +8,7 @@ use gltf::json::accessor::Type;
 use gltf::json::mesh::{LINE_STRIP, POINTS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 
 use super::super::notes::Notes;
+use super::super::outline::{NOWHERE, Outline};
 use super::super::{ReadOptions, unsupported};
 use super::accessor::Accessors;
 use super::buffers::Buffers;
@@ -36,6 +37,8 @@ pub(super) struct Builder<'a> {
     known: HashMap<(Option<u32>, u32, Option<u32>), u32>,
     /// The materials shown so far, each read once.
     materials: HashMap<u32, Material>,
+    /// The names of nodes, if they are wanted.
+    pub(super) outline: Option<Outline>,
 }
 
 impl<'a> Builder<'a> {
@@ -61,6 +64,7 @@ impl<'a> Builder<'a> {
             placed: HashMap::new(),
             known: HashMap::new(),
             materials: HashMap::new(),
+            outline: None,
         }
     }
 
@@ -88,10 +92,28 @@ impl<'a> Builder<'a> {
         Ok(self.options.control.check()?)
     }
 
-    /// Adds a mesh under a transform, as the given node shows it.
-    pub(super) fn add(&mut self, mesh: u32, node: Option<u32>, world: &DAffine3) -> Result<(), Error> {
+    /// Notes a name for what stands under `parent`, and gives its entry of the outline; the parent's, if there is no name.
+    pub(super) fn enter(&mut self, name: Option<&str>, parent: Option<u32>) -> Result<Option<u32>, Error> {
+        let Some(name) = name.filter(|name| !name.is_empty() && self.outline.is_some()) else {
+            return Ok(parent);
+        };
+        self.charge(64 + name.len() as u64)?;
+        Ok(self.outline.as_mut().map(|outline| outline.add(name, parent)))
+    }
+
+    /// Adds a mesh under a transform, as the given node shows it, under an entry of the outline.
+    pub(super) fn add(
+        &mut self,
+        mesh: u32,
+        node: Option<u32>,
+        world: &DAffine3,
+        entry: Option<u32>,
+    ) -> Result<(), Error> {
         let pointer = node.map_or("/meshes".to_string(), |node| format!("/nodes/{node}/mesh"));
         let object = self.reader.get(&self.reader.document.meshes, "meshes", mesh as usize, &pointer)?;
+        // A node without a name is called by that of its mesh.
+        let nameless = node.and_then(|node| self.node_name(node)).is_none();
+        let entry = if nameless { self.enter(object.name.as_deref(), entry)? } else { entry };
         for (i, primitive) in object.primitives.iter().enumerate() {
             let pointer = format!("/meshes/{mesh}/primitives/{i}");
             let before = self.mesh.triangles.len();
@@ -100,6 +122,12 @@ impl<'a> Builder<'a> {
             if added > 0 {
                 let group = self.group(node, mesh, primitive.material, &pointer)?;
                 self.groups.of_triangle.resize(before + added, group);
+                if self.outline.is_some() {
+                    self.charge(4 * added as u64)?;
+                }
+                if let Some(outline) = &mut self.outline {
+                    outline.of_triangle.resize(before + added, entry.unwrap_or(NOWHERE));
+                }
             }
         }
         Ok(())
@@ -267,8 +295,7 @@ impl<'a> Builder<'a> {
             return Ok(group);
         }
         let document = self.reader.document;
-        let node = node.and_then(|node| document.nodes.get(node as usize)).and_then(|node| node.0.as_ref());
-        let name = node.and_then(|node| node.name.as_deref());
+        let name = node.and_then(|node| self.node_name(node));
         let name = name.or_else(|| document.meshes.get(mesh as usize).and_then(|mesh| mesh.name.as_deref()));
         let name = name.unwrap_or_default().to_string();
         let material = match material {
@@ -281,6 +308,11 @@ impl<'a> Builder<'a> {
         self.groups.list.push(FaceGroup { name, material });
         self.known.insert(key, group);
         Ok(group)
+    }
+
+    /// The name of a node.
+    fn node_name(&self, node: u32) -> Option<&'a str> {
+        self.reader.document.nodes.get(node as usize)?.0.as_ref()?.name.as_deref()
     }
 
     /// The material at an index found at `pointer`.
@@ -309,12 +341,12 @@ impl<'a> Builder<'a> {
         Ok(material)
     }
 
-    /// The mesh.
-    pub(super) fn finish(mut self) -> Mesh {
+    /// The mesh, and the outline if it was wanted.
+    pub(super) fn finish(mut self) -> (Mesh, Outline) {
         if self.groups.list.iter().any(|group| *group != FaceGroup::default()) {
             self.mesh.groups = self.groups;
         }
-        self.mesh
+        (self.mesh, self.outline.unwrap_or_default())
     }
 }
 

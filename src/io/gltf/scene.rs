@@ -8,26 +8,29 @@ use super::document::{Instancing, NodeFields};
 use super::primitive::Builder;
 use crate::Error;
 
+/// The nodes of a level, how many of them are done, the transform they are under, and the entry of the outline.
+type Level<'a> = (&'a [u32], usize, DAffine3, Option<u32>);
+
 /// Adds the meshes of the default scene to the builder.
 pub(super) fn flatten(reader: &Reader<'_>, builder: &mut Builder<'_>) -> Result<(), Error> {
     let document = reader.document;
     let mut visited = vec![false; document.nodes.len()];
     if document.scenes.is_empty() && document.nodes.is_empty() {
         for mesh in 0..document.meshes.len() as u32 {
-            builder.add(mesh, None, &DAffine3::IDENTITY)?;
+            builder.add(mesh, None, &DAffine3::IDENTITY, None)?;
         }
     }
-    // One level of the tree each: the nodes of the level, how many are done, and the transform they are under. A list
+    // One level of the tree each: the nodes of the level, how many are done, the transform and the name they are under. A list
     // of single nodes with their transforms could grow to fifty times the size of the file.
     let roots = roots(reader, builder)?;
-    let mut levels: Vec<(&[u32], usize, DAffine3)> = vec![(&roots, 0, DAffine3::IDENTITY)];
-    while let Some((nodes, done, parent)) = levels.last_mut() {
+    let mut levels: Vec<Level<'_>> = vec![(&roots, 0, DAffine3::IDENTITY, None)];
+    while let Some((nodes, done, parent, above)) = levels.last_mut() {
         let Some(&index) = nodes.get(*done) else {
             levels.pop();
             continue;
         };
         *done += 1;
-        let parent = *parent;
+        let (parent, above) = (*parent, *above);
         let pointer = format!("/nodes/{index}");
         let node = reader.get(&document.nodes, "nodes", index as usize, &pointer)?;
         if std::mem::replace(&mut visited[index as usize], true) {
@@ -44,21 +47,22 @@ pub(super) fn flatten(reader: &Reader<'_>, builder: &mut Builder<'_>) -> Result<
             (false, None) => parent,
             (false, Some(local)) => parent * local,
         };
+        let entry = builder.enter(node.name.as_deref(), above)?;
         if let Some(mesh) = node.mesh {
             if node.skin.is_some() {
                 builder.notes.add("skinned mesh read in the pose it is stored in", 1);
             }
             let instancing = node.extensions.as_ref().and_then(|extensions| extensions.instancing.as_ref());
             match instancing {
-                None => builder.add(mesh, Some(index), &world)?,
+                None => builder.add(mesh, Some(index), &world, entry)?,
                 Some(instancing) => {
                     for instance in instances(reader, builder, instancing, &pointer)? {
-                        builder.add(mesh, Some(index), &(world * instance))?;
+                        builder.add(mesh, Some(index), &(world * instance), entry)?;
                     }
                 }
             }
         }
-        levels.push((&node.children, 0, world));
+        levels.push((&node.children, 0, world, entry));
     }
     Ok(())
 }

@@ -17,7 +17,7 @@ use gltf::json::validation::Checked::Valid;
 use gltf::json::{Accessor, Asset, Extras, Index, Node, Root, Scene};
 use serde_json::{Map, Value, json};
 
-use super::super::precision::collapsed;
+use super::super::rounding::{Measure, Written, examined};
 use super::super::text::{write_all, write_blocks};
 use super::super::{Format, WriteOptions, unsupported};
 use crate::{Error, FaceGroup, Mesh};
@@ -28,7 +28,7 @@ pub(in crate::io) fn write(
     format: Format,
     output: &mut dyn Write,
     options: &WriteOptions,
-) -> Result<Vec<String>, Error> {
+) -> Result<Written, Error> {
     if mesh.triangles.is_empty() {
         // Neither a buffer without bytes nor a mesh without triangles is allowed, and some readers want a node.
         let document =
@@ -37,7 +37,7 @@ pub(in crate::io) fn write(
             Format::Glb => write_glb_header(output, &document, None)?,
             _ => write_all(output, document.as_bytes())?,
         }
-        return Ok(Vec::new());
+        return Ok(Written::default());
     }
     let frame = Frame::of(mesh);
     let members = members(mesh);
@@ -67,11 +67,10 @@ pub(in crate::io) fn write(
             write_all(output, &rest.as_bytes()[1..])?;
         }
     }
-    let lost = if frame.exact { 0 } else { collapsed(mesh, |point| frame.local(point)) };
-    Ok(match lost {
-        0 => Vec::new(),
-        _ => vec![format!("rounding to single precision makes two corners of {lost} triangles equal")],
-    })
+    if frame.exact {
+        return Ok(Written::default());
+    }
+    examined(mesh, format, Measure { offset: frame.offset.to_array(), scale: frame.scale }, options)
 }
 
 /// The header of a GLB file, its JSON chunk, and the header of a binary chunk.

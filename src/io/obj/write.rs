@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::io::Write;
 
-use super::super::precision::check_single;
+use super::super::rounding::{self, Written};
 use super::super::text::{NumberWriter, line_name, write_all, write_blocks};
 use super::super::{Format, Precision, WriteOptions};
 use super::groups::NO_MATERIAL;
@@ -14,10 +14,10 @@ pub(in crate::io) fn write(
     mesh: &Mesh,
     output: &mut dyn Write,
     options: &WriteOptions,
-) -> Result<Vec<String>, Error> {
-    let mut warnings = Vec::new();
+) -> Result<Written, Error> {
+    let mut written = Written::default();
     if options.precision == Precision::Single {
-        warnings.extend(check_single(mesh, Format::Obj)?);
+        written = rounding::of_single(mesh, Format::Obj, options)?;
     }
     let names = MaterialNames::of(mesh);
     let mut header = format!("# {} vertices, {} triangles\n", mesh.positions.len(), mesh.triangles.len());
@@ -67,7 +67,7 @@ pub(in crate::io) fn write(
             text.push(b'\n');
         }
     })?;
-    Ok(warnings)
+    Ok(written)
 }
 
 /// The material library of a mesh, if it has any materials.

@@ -5,7 +5,7 @@ use std::io::Write;
 use super::faces::{FaceList, index_error, too_large};
 use super::finish::check_finite;
 use super::notes::Notes;
-use super::precision::check_single;
+use super::rounding::{self, Written};
 use super::scan::{Scanner, line_place, quote};
 use super::text::{write_all, write_lines};
 use super::{Format, Precision, ReadOptions, WriteOptions, malformed, unsupported};
@@ -192,22 +192,19 @@ impl Reader<'_> {
 }
 
 /// Writes vertices and triangles.
-pub(super) fn write(
-    mesh: &Mesh,
-    output: &mut dyn Write,
-    options: &WriteOptions,
-) -> Result<Vec<String>, Error> {
-    let mut warnings = Vec::new();
+pub(super) fn write(mesh: &Mesh, output: &mut dyn Write, options: &WriteOptions) -> Result<Written, Error> {
+    let mut written = Written::default();
     if options.precision == Precision::Single {
-        warnings.extend(check_single(mesh, Format::Off)?);
+        written = rounding::of_single(mesh, Format::Off, options)?;
     }
     let header = format!("OFF\n{} {} 0\n", mesh.positions.len(), mesh.triangles.len());
     write_all(output, header.as_bytes())?;
     write_lines(mesh, output, options)?;
-    if !mesh.groups.list.is_empty() {
-        warnings.push("OFF has no groups: names and materials are not kept".to_string());
+    // Nobody looks for names in OFF; colours it could have.
+    if mesh.groups.list.iter().any(|group| group.material.is_some()) {
+        written.warnings.insert(0, "OFF is written without materials: names and colours are not kept".into());
     }
-    Ok(warnings)
+    Ok(written)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::super::precision::check_single;
+use super::super::rounding::{self, Written};
 use super::super::text::{write_all, write_blocks, write_lines};
 use super::super::{Encoding, Format, Precision, WriteOptions};
 use crate::{Error, Mesh};
@@ -12,14 +12,15 @@ pub(in crate::io) fn write(
     mesh: &Mesh,
     output: &mut dyn Write,
     options: &WriteOptions,
-) -> Result<Vec<String>, Error> {
-    let mut warnings = Vec::new();
-    if !mesh.groups.list.is_empty() {
-        warnings.push("PLY has no groups: names and materials are not kept".to_string());
-    }
+) -> Result<Written, Error> {
+    let mut written = Written::default();
     let double = options.precision == Precision::Double;
     if !double {
-        warnings.extend(check_single(mesh, Format::Ply)?);
+        written = rounding::of_single(mesh, Format::Ply, options)?;
+    }
+    // Nobody looks for names in PLY; colours it could have.
+    if mesh.groups.list.iter().any(|group| group.material.is_some()) {
+        written.warnings.insert(0, "PLY is written without materials: names and colours are not kept".into());
     }
     let coding = match options.encoding {
         Encoding::Ascii => "ascii",
@@ -49,7 +50,7 @@ pub(in crate::io) fn write(
             write_binary(mesh, output, options, |x| (x as f32).to_be_bytes(), u32::to_be_bytes)?;
         }
     }
-    Ok(warnings)
+    Ok(written)
 }
 
 fn write_binary<const SIZE: usize>(

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use super::super::precision::check_single;
+use super::super::rounding::{self, Written};
 use super::super::text::{NumberWriter, line_name, write_all, write_blocks};
 use super::super::{Encoding, Format, Precision, WriteOptions};
 use crate::{Error, Mesh};
@@ -13,23 +13,18 @@ pub(in crate::io) fn write(
     mesh: &Mesh,
     output: &mut dyn Write,
     options: &WriteOptions,
-) -> Result<Vec<String>, Error> {
+) -> Result<Written, Error> {
     let ascii = options.encoding == Encoding::Ascii;
-    let mut warnings = Vec::new();
+    let mut written = Written::default();
     if !ascii || options.precision == Precision::Single {
-        warnings.extend(check_single(mesh, Format::Stl)?.map(|warning| {
-            format!(
-                "{warning}; readers of STL will drop or misjoin them, so write OBJ or PLY, or move the model to the \
-                 origin"
-            )
-        }));
+        written = rounding::of_single(mesh, Format::Stl, options)?;
     }
     if ascii {
         write_ascii(mesh, output, options)?;
     } else {
         write_binary(mesh, output, options)?;
     }
-    Ok(warnings)
+    Ok(written)
 }
 
 /// The unit normal of a triangle, or zero if it has none.

@@ -84,7 +84,11 @@ impl State<'_> {
             }
         };
         let solid = moved(mesh, at.transform).and_then(Solid::try_from);
-        solid.map_err(|error| Error::from(error).in_node(label))
+        let solid = solid.map_err(|error| Error::from(error).in_node(label))?;
+        for (one, several, fault) in solid.mending().left_out() {
+            self.warnings.push(format!("{label}: {}", fault.text(one, several, 2)));
+        }
+        Ok(solid)
     }
 
     fn loaded(&mut self, path: &Path) -> Result<Mesh, Error> {

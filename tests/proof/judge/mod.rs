@@ -4,6 +4,7 @@
 //! - [`oracle`]: whether a result winds as its operands and the operation say, at points where mistakes would show;
 //! - [`surface`]: closedness, manifoldness, components, Euler characteristic, volume, area of a mesh, by definition;
 //! - [`contacts`]: the topology a solid has where its surface touches itself;
+//! - [`wide`]: volumes and windings at any size of coordinates, in integers;
 //! - [`minimise`]: a failing pair made small;
 //! - [`shapes`], [`placement`], [`cases`]: pairs of solids and an operation from a seed.
 
@@ -18,4 +19,5 @@ pub(crate) mod samples;
 pub(crate) mod shapes;
 pub(crate) mod surface;
 pub(crate) mod vector;
+pub(crate) mod wide;
 pub(crate) mod winding;

@@ -1,0 +1,220 @@
+//! Results free of crossings in the numbers that are written: rounding, resolving what that has made cross, and again.
+//!
+//! No proof of termination is known for this, here or elsewhere. So the grid grows from the third round on, the number of
+//! rounds is bounded, and what is left is counted.
+
+use rustc_hash::FxHashMap;
+
+use super::arrangement::{Crossed, General};
+use super::evaluate::evaluate;
+use super::labels::winding;
+use crate::boolean::complex::origin::Origin;
+use crate::parallel::Runner;
+use crate::{Error, Mesh, Solid};
+
+/// The numbers that coordinates of a result are to be.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Grid {
+    /// `f64`, as everywhere in memory, and in OBJ, PLY and OFF.
+    #[default]
+    Double,
+    /// `f32`, as in STL and glTF.
+    Single,
+}
+
+impl Grid {
+    /// The distance from 1 to the next number.
+    fn unit(self) -> f64 {
+        match self {
+            Self::Double => f64::EPSILON,
+            Self::Single => f64::from(f32::EPSILON),
+        }
+    }
+}
+
+/// What was done to free a result of crossings.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Embedding {
+    /// How often crossings were resolved; 0 where there were none.
+    pub rounds: u32,
+    /// No point moved further than this, in units of the coordinates.
+    pub displacement: f64,
+    /// Triangles that still cross others or lie on them.
+    pub left: usize,
+}
+
+/// Rounds at most.
+const MOST_ROUNDS: u32 = 10;
+/// From this round on the grid grows,
+const COARSER_FROM: u32 = 2;
+/// by so many bits a round. (With 1, what rounding moves crosses new neighbours in round after round: of 1,200 results of random
+/// bodies on coarse grids, turned and not, five grew without end; see docs/proof.md.)
+const BITS_A_ROUND: u32 = 3;
+/// Where more triangles cross than so many times the fewest so far, it is given up.
+const GROWTH: usize = 4;
+
+/// A result that is to be freed of crossings: for each triangle where it came from and its group.
+#[derive(Clone, Debug)]
+pub(crate) struct Parts {
+    pub(crate) positions: Vec<[f64; 3]>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) origins: Vec<Origin>,
+    /// Empty if there are no groups.
+    pub(crate) groups: Vec<u32>,
+}
+
+/// Rounds a result to a grid and resolves what crosses, until nothing does.
+///
+/// # Errors
+/// Only limits.
+pub(crate) fn embed(
+    mut parts: Parts,
+    grid: Grid,
+    remove_vertices: bool,
+    runner: Runner<'_>,
+) -> Result<(Parts, Embedding), Error> {
+    let mut report = Embedding::default();
+    let mut troubled: Vec<u32> = Vec::new();
+    let mut best: Option<(Parts, Embedding)> = None;
+    loop {
+        // 1. The grid: a coarser one where it goes on too long.
+        report.displacement += round(&mut parts, grid, coarser(report.rounds), &troubled);
+        if grid == Grid::Single || coarser(report.rounds) > 0 {
+            merge(&mut parts);
+        }
+        // 2. What crosses.
+        let mesh = Mesh::new(std::mem::take(&mut parts.positions), std::mem::take(&mut parts.triangles));
+        let solid = Solid::from_closed_unchecked(compact(mesh));
+        let crossed = Crossed::new(&[&solid], std::slice::from_ref(&parts.groups), &[false], runner)?;
+        troubled = crossed.troubled();
+        report.left = troubled.len();
+        let fewest = best.as_ref().map_or(usize::MAX, |(_, report)| report.left);
+        let is_hopeless = report.rounds == MOST_ROUNDS || report.left > GROWTH.saturating_mul(fewest);
+        if report.left < fewest {
+            let Mesh { positions, triangles, .. } = solid.mesh().clone();
+            let (origins, groups) = (parts.origins.clone(), parts.groups.clone());
+            best = Some((Parts { positions, triangles, origins, groups }, report));
+        }
+        if report.left == 0 || is_hopeless {
+            return Ok(best.expect("the first round is better than none"));
+        }
+        // 3. Its resolution; what is thinner than the next grid is cleaned up.
+        report.rounds += 1;
+        let general = General::new(crossed, true, runner)?;
+        let inside: Vec<bool> =
+            general.faces.labels.all().iter().map(|label| winding(label, 0) > 0).collect();
+        let unit = grid.unit() * f64::from(coarser(report.rounds)).exp2();
+        let arrays = evaluate(&general, &inside, remove_vertices, unit, runner)?.arrays;
+        let before = &parts;
+        let origins = arrays.origins.iter().map(|origin| {
+            let source = before.origins[origin.triangle as usize];
+            Origin { reversed: source.reversed != origin.reversed, ..source }
+        });
+        let groups = |origin: Origin| before.groups.get(origin.triangle as usize).copied();
+        let made = Parts {
+            origins: origins.collect(),
+            groups: arrays.origins.iter().filter_map(groups).collect(),
+            positions: arrays.positions,
+            triangles: arrays.triangles,
+        };
+        let sources: Vec<u32> = arrays.origins.iter().map(|origin| origin.triangle).collect();
+        troubled = descendants(&troubled, &sources);
+        parts = made;
+    }
+}
+
+/// Triangles that come from some others.
+fn descendants(of: &[u32], sources: &[u32]) -> Vec<u32> {
+    (0..).zip(sources).filter(|(_, source)| of.binary_search(source).is_ok()).map(|(t, _)| t).collect()
+}
+
+/// By how many bits the grid is coarser in a round.
+fn coarser(rounds: u32) -> u32 {
+    BITS_A_ROUND * (rounds + 1).saturating_sub(COARSER_FROM)
+}
+
+/// Rounds all positions to the grid, those of some triangles to one that is coarser by some bits. Returns how far a point has
+/// moved at most.
+fn round(parts: &mut Parts, grid: Grid, coarser: u32, troubled: &[u32]) -> f64 {
+    let mut bits = vec![0; parts.positions.len()];
+    if coarser > 0 {
+        for &triangle in troubled {
+            parts.triangles[triangle as usize].iter().for_each(|&v| bits[v as usize] = coarser);
+        }
+    }
+    let mut furthest = 0.0f64;
+    for (position, bits) in parts.positions.iter_mut().zip(bits) {
+        let old = *position;
+        let largest = old.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+        *position = old.map(|x| {
+            let x = match grid {
+                Grid::Double => x,
+                Grid::Single => single(x),
+            };
+            if bits == 0 { x } else { to_spacing(x, largest, grid, bits) }
+        });
+        let moved = (0..3).map(|k| (position[k] - old[k]).powi(2)).sum::<f64>().sqrt();
+        furthest = furthest.max(moved);
+    }
+    furthest
+}
+
+/// The nearest `f32`, or the largest.
+fn single(x: f64) -> f64 {
+    f64::from((x as f32).clamp(-f32::MAX, f32::MAX))
+}
+
+/// A coordinate rounded to a multiple of a spacing: that of the grid at the largest coordinate of its point, times 2^bits.
+fn to_spacing(x: f64, largest: f64, grid: Grid, bits: u32) -> f64 {
+    // The power of two below the largest coordinate.
+    let leading = f64::from_bits(largest.to_bits() & 0x7ff0_0000_0000_0000);
+    let spacing = leading * grid.unit() * f64::from(bits).exp2();
+    if spacing == 0.0 || !spacing.is_normal() {
+        return x;
+    }
+    let rounded = (x / spacing).round() * spacing;
+    if rounded.is_finite() { rounded } else { x }
+}
+
+/// Makes one of points that have become equal, and drops triangles with a repeated corner.
+fn merge(parts: &mut Parts) {
+    let mut first: FxHashMap<[u64; 3], u32> = FxHashMap::default();
+    let number: Vec<u32> = (0..)
+        .zip(&parts.positions)
+        .map(|(v, position)| *first.entry(position.map(|x| (x + 0.0).to_bits())).or_insert(v))
+        .collect();
+    let mut kept = 0;
+    for t in 0..parts.triangles.len() {
+        let [a, b, c] = parts.triangles[t].map(|v| number[v as usize]);
+        if a != b && b != c && c != a {
+            parts.triangles[kept] = [a, b, c];
+            parts.origins[kept] = parts.origins[t];
+            if !parts.groups.is_empty() {
+                parts.groups[kept] = parts.groups[t];
+            }
+            kept += 1;
+        }
+    }
+    parts.triangles.truncate(kept);
+    parts.origins.truncate(kept);
+    parts.groups.truncate(kept);
+}
+
+/// The mesh without vertices that no triangle has.
+fn compact(mut mesh: Mesh) -> Mesh {
+    let mut number = vec![u32::MAX; mesh.positions.len()];
+    mesh.triangles.iter().flatten().for_each(|&v| number[v as usize] = 0);
+    let mut positions = Vec::with_capacity(mesh.positions.len());
+    for (number, position) in number.iter_mut().zip(&mesh.positions) {
+        if *number == 0 {
+            *number = positions.len() as u32;
+            positions.push(*position);
+        }
+    }
+    mesh.triangles.iter_mut().flatten().for_each(|v| *v = number[*v as usize]);
+    Mesh::new(positions, mesh.triangles)
+}

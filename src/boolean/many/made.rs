@@ -1,0 +1,74 @@
+//! The last step of every result: crossings that rounding made are resolved, and the outcome is put together.
+
+use super::Policy;
+use crate::Error;
+use crate::Solid;
+use crate::boolean::general::embed::{Grid, Parts, embed};
+use crate::boolean::result::certificate::Notes;
+use crate::boolean::result::origins::Origins;
+use crate::boolean::result::outcome::Outcome;
+use crate::mesh::FaceGroups;
+use crate::parallel::Runner;
+
+/// What becomes of crossings that rounding makes. Every new point is rounded once, so that parts of a result that are closer to
+/// each other than rounding may cross by as much.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[non_exhaustive]
+pub enum Embed {
+    /// They stay: every new coordinate is the exact one, rounded to nearest.
+    Never,
+    /// They are looked for where new triangles are no higher than rounding, and resolved: the result does not cross itself.
+    #[default]
+    WhereNeeded,
+    /// All coordinates are numbers of a grid, and what crosses on it is resolved: the result does not cross itself when it is
+    /// written in a format with such numbers. Always looked for, about a microsecond a triangle.
+    OnGrid(Grid),
+}
+
+/// A result, but for crossings that rounding made.
+pub(super) struct Made {
+    pub(super) solid: Solid,
+    pub(super) origins: Origins,
+    pub(super) groups: FaceGroups,
+    pub(super) notes: Notes,
+    /// Whether rounding may have made something cross.
+    pub(super) may_cross: bool,
+    /// Whether it is known to cross itself no deeper than rounding.
+    pub(super) is_clean: bool,
+}
+
+impl Made {
+    /// Resolves crossings as the policy says.
+    pub(super) fn finish(mut self, policy: Policy, runner: Runner<'_>) -> Result<Outcome, Error> {
+        match policy.embed {
+            Embed::WhereNeeded if self.may_cross && self.is_clean => {
+                self.embed(Grid::Double, policy, runner)?
+            }
+            Embed::OnGrid(grid) => self.embed(grid, policy, runner)?,
+            Embed::Never | Embed::WhereNeeded => {}
+        }
+        if self.is_clean {
+            self.solid.set_made_clean();
+        }
+        self.solid.set_groups(self.groups);
+        Ok(Outcome::new(self.solid, self.origins, self.notes))
+    }
+
+    fn embed(&mut self, grid: Grid, policy: Policy, runner: Runner<'_>) -> Result<(), Error> {
+        let mesh = std::mem::take(&mut self.solid).into_mesh();
+        let parts = Parts {
+            positions: mesh.positions,
+            triangles: mesh.triangles,
+            origins: self.origins.iter().collect(),
+            groups: std::mem::take(&mut self.groups.of_triangle),
+        };
+        let (parts, report) = embed(parts, grid, policy.remove_vertices, runner)?;
+        self.groups.of_triangle = parts.groups;
+        self.origins = parts.origins.into_iter().collect();
+        self.solid = Solid::from_closed_unchecked(crate::Mesh::new(parts.positions, parts.triangles));
+        self.notes.embedding = Some(report);
+        Ok(())
+    }
+}

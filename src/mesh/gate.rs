@@ -1,0 +1,339 @@
+//! The gate: from a mesh to a solid.
+
+use std::cmp::Ordering;
+use std::sync::OnceLock;
+
+use super::clean::{self, Cleaned, Weld};
+use super::diagnose::diagnose_tried;
+use super::measure::signed_volume;
+use super::mend::{self, Leave, Mending};
+use super::{Bounds, Cleaning, Mesh, MeshError, Solid, UnionFind, chain, orient, shells};
+use crate::parallel::join;
+
+/// What a mesh may be taken through to become a [`Solid`]. As made by [`new`](Self::new) it does what
+/// [`Solid::try_from`] does: it mends what is certain and refuses the rest.
+///
+/// ```
+/// use trisect::mesh::{Gate, Welding};
+/// use trisect::{Mesh, Solid};
+///
+/// // A tetrahedron with a crack: a corner of the last triangle is off by 0.01.
+/// let corners = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.01, 1.0]];
+/// let cracked = Mesh::new(corners, vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 4]]);
+/// assert!(Solid::try_from(cracked.clone()).is_err());
+/// let refusal = Gate::new().solid(cracked).unwrap_err();
+/// let solid = Gate::new().weld(Welding::Within(0.02)).solid(refusal.mesh)?;
+/// assert_eq!(solid.mending().seams.count, 1);
+/// assert_eq!(solid.mending().seams.places[0].triangles, [3]);
+/// # Ok::<(), trisect::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Gate {
+    as_is: bool,
+    weld: Welding,
+    orient: bool,
+    closed_parts: bool,
+    single_shells: bool,
+}
+
+/// Which vertices of open edges are made one, besides those at equal coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum Welding {
+    /// Those that rounding to single precision may have moved apart.
+    #[default]
+    Rounding,
+    /// Those too that are no further apart than this.
+    Within(f64),
+    /// Those too that are no further apart than the least distance that closes the surface, if one up to a thousandth of its
+    /// size does.
+    Closing,
+}
+
+/// A mesh that is no solid, and why.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{error}")]
+pub struct Refusal {
+    /// The mesh, as it was given.
+    pub mesh: Mesh,
+    /// What is wrong with it.
+    #[source]
+    pub error: MeshError,
+}
+
+impl Gate {
+    /// A gate that mends what is certain.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Whether a mesh must be closed as it is: nothing is mended then.
+    #[must_use]
+    pub fn as_is(mut self, as_is: bool) -> Self {
+        self.as_is = as_is;
+        self
+    }
+
+    /// Which vertices are made one where the surface is open.
+    #[must_use]
+    pub fn weld(mut self, weld: Welding) -> Self {
+        self.weld = weld;
+        self
+    }
+
+    /// Whether faces are turned to bound what the surface encloses; see [`Mesh::oriented`].
+    #[must_use]
+    pub fn orient(mut self, orient: bool) -> Self {
+        self.orient = orient;
+        self
+    }
+
+    /// Whether parts of the surface that are not closed are left out, if others are.
+    #[must_use]
+    pub fn closed_parts(mut self, closed_parts: bool) -> Self {
+        self.closed_parts = closed_parts;
+        self
+    }
+
+    /// Whether further copies of a shell are left out. This alone looks into meshes that are closed, in O(n).
+    #[must_use]
+    pub fn single_shells(mut self, single_shells: bool) -> Self {
+        self.single_shells = single_shells;
+        self
+    }
+
+    /// Makes a solid of a mesh. A few nanoseconds a triangle where it is closed by its indices; O(n log n) otherwise.
+    ///
+    /// # Errors
+    /// The mesh, unchanged, with
+    /// [`MeshError::IndexOutOfRange`], [`MeshError::NotFinite`], [`MeshError::NotClosed`], [`MeshError::InsideOut`];
+    /// [`MeshError::TooLarge`] beyond 2^31 vertices or 2^32/3 triangles; [`MeshError::Groups`] if the face groups
+    /// do not fit the triangles; [`MeshError::WeldingDistance`] unless it is finite and not negative.
+    pub fn solid(&self, mut mesh: Mesh) -> Result<Solid, Box<Refusal>> {
+        if let Err(error) = self.check(&mesh) {
+            return Err(Box::new(Refusal { mesh, error }));
+        }
+        let turned = if self.orient { orient::turn(&mut mesh) } else { Vec::new() };
+        let solid = closed_by_indices(mesh).or_else(|open| {
+            let (mesh, error) = *open;
+            let solid = match error {
+                Some(error) => Err(error),
+                None => self.cleaned(&mesh),
+            };
+            solid.map_err(|error| Box::new(Refusal { mesh, error }))
+        });
+        match solid {
+            Ok(mut solid) => {
+                if !turned.is_empty() {
+                    solid.mending.get_or_insert_default().turned += turned.len();
+                }
+                Ok(if self.single_shells { single_shells(solid) } else { solid })
+            }
+            Err(mut refusal) => {
+                for triangle in turned {
+                    let corners = &mut refusal.mesh.triangles[triangle as usize];
+                    *corners = orient::reversed(*corners);
+                }
+                Err(refusal)
+            }
+        }
+    }
+
+    fn check(&self, mesh: &Mesh) -> Result<(), MeshError> {
+        let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
+        if vertices > chain::MAX_VERTICES || triangles > chain::MAX_TRIANGLES {
+            return Err(MeshError::TooLarge { vertices, triangles });
+        }
+        if let Welding::Within(distance) = self.weld
+            && !(distance.is_finite() && distance >= 0.0)
+        {
+            return Err(MeshError::WeldingDistance(distance));
+        }
+        mesh.groups.fault(triangles).map_or(Ok(()), |fault| Err(MeshError::Groups(fault)))
+    }
+
+    /// The way round for a mesh that is not a solid by its indices.
+    fn cleaned(&self, mesh: &Mesh) -> Result<Solid, MeshError> {
+        clean::check_corners(mesh)?;
+        let mut cleaned = clean::clean(&mesh.positions, &mesh.triangles, Weld::Exact);
+        let mut mending = None;
+        if !cleaned.closed {
+            let Some((triangles, source, done)) = self.mended(mesh, &cleaned) else {
+                return Err(MeshError::NotClosed(Box::new(diagnose_tried(mesh, !self.as_is))));
+            };
+            let chain = chain::examine(&triangles, mesh.positions.len());
+            cleaned.edge_manifold = chain.is_ok_and(|chain| chain.edge_manifold);
+            (cleaned.triangles, cleaned.source, mending) = (triangles, source, Some(Box::new(done)));
+        }
+        assemble(mesh, cleaned, mending, self.orient)
+    }
+
+    /// What mending makes of a mesh that is not closed.
+    fn mended(&self, mesh: &Mesh, cleaned: &Cleaned) -> Option<(Vec<[u32; 3]>, Vec<u32>, Mending)> {
+        if self.as_is {
+            return None;
+        }
+        let leave = Leave { distance: None, closed_parts: false };
+        let mend = |leave| mend::mend(mesh, &cleaned.triangles, &cleaned.source, leave);
+        let distance = || match self.weld {
+            Welding::Rounding => None,
+            Welding::Within(distance) => Some(distance),
+            Welding::Closing => mend::closing_distance(mesh, &cleaned.triangles),
+        };
+        // What is asked for is done only where what is certain does not do.
+        let by_distance = || {
+            let leave = Leave { distance: Some(distance()?), ..leave };
+            Some(mend(leave)?.within(leave.distance))
+        };
+        let parts = || {
+            let leave = Leave { distance: distance(), closed_parts: true };
+            Some(mend(leave)?.within(leave.distance))
+        };
+        let mended =
+            mend(leave).or_else(by_distance).or_else(|| if self.closed_parts { parts() } else { None })?;
+        Some((mended.triangles, mended.source, mended.report))
+    }
+}
+
+/// The gate every operand passes.
+impl TryFrom<Mesh> for Solid {
+    type Error = MeshError;
+
+    /// # Errors
+    /// As [`Gate::solid`].
+    fn try_from(mesh: Mesh) -> Result<Self, MeshError> {
+        Gate::new().solid(mesh).map_err(|refusal| refusal.error)
+    }
+}
+
+/// The solid of a mesh that is closed by its indices. Otherwise the mesh, and what is wrong with it if it is closed so but
+/// no solid.
+fn closed_by_indices(mesh: Mesh) -> Result<Solid, Box<(Mesh, Option<MeshError>)>> {
+    let (examined, (bounds, volume)) = join(
+        mesh.triangles.len(),
+        || chain::examine(&mesh.triangles, mesh.positions.len()),
+        || {
+            let bounds = finite_bounds(&mesh.positions);
+            let volume = bounds.map(|bounds| signed_volume(&mesh.positions, &mesh.triangles, &bounds));
+            (bounds, volume)
+        },
+    );
+    let as_it_is = examined.is_ok_and(|examined| {
+        examined.closed && !examined.unreferenced && !examined.two_triangle_vertex && examined.edge_manifold
+    });
+    if !(as_it_is && bounds.is_some()) {
+        return Err(Box::new((mesh, None)));
+    }
+    match volume {
+        Some(volume) if volume.sign == Ordering::Less => {
+            Err(Box::new((mesh, Some(MeshError::InsideOut { volume: volume.value }))))
+        }
+        volume => {
+            let volume = volume.map_or_else(OnceLock::new, |volume| OnceLock::from(volume.value));
+            Ok(Solid { mesh, bounds, edge_manifold: OnceLock::from(true), volume, ..Solid::default() })
+        }
+    }
+}
+
+/// The box round `positions`; `None` if there are none or one is not finite.
+fn finite_bounds(positions: &[[f64; 3]]) -> Option<Bounds> {
+    let mut bounds = Bounds::NOTHING;
+    let mut zero = 0.0;
+    for position in positions {
+        bounds.include(position);
+        // Zero times a number is zero unless the number is not finite.
+        zero += position[0] * 0.0 + position[1] * 0.0 + position[2] * 0.0;
+    }
+    (!positions.is_empty() && zero == 0.0).then_some(bounds)
+}
+
+/// The solid of triangles that are closed, over the vertices of `mesh`.
+fn assemble(
+    mesh: &Mesh,
+    cleaned: Cleaned,
+    mut mending: Option<Box<Mending>>,
+    orient: bool,
+) -> Result<Solid, MeshError> {
+    let Cleaned { mut triangles, source, .. } = cleaned;
+    let positions = clean::compact(&mesh.positions, &mut triangles);
+    let joined = mending.as_ref().map_or(0, |mending| mending.seams.count);
+    let unreferenced = mesh.positions.len().saturating_sub(positions.len() + cleaned.welded + joined);
+    let mut groups = mesh.groups.clone();
+    let is_own =
+        source.len() == mesh.triangles.len() && (0..).zip(&source).all(|(index, &source)| index == source);
+    if !is_own {
+        groups.select(&source);
+    }
+    let mut mesh = Mesh { positions, triangles, groups };
+    if orient && let Some(mending) = &mut mending {
+        // Which way is out shows only now that the surface is closed.
+        mending.turned += orient::turn(&mut mesh).len();
+    }
+    let bounds = Bounds::of(&mesh.positions);
+    let volume = bounds.map(|bounds| signed_volume(&mesh.positions, &mesh.triangles, &bounds));
+    if let Some(volume) = volume.filter(|volume| volume.sign == Ordering::Less) {
+        return Err(MeshError::InsideOut { volume: volume.value });
+    }
+    let cleaning = Cleaning {
+        repeated_corners: cleaned.repeated_corners,
+        opposite_pairs: cleaned.opposite.len(),
+        welded_vertices: cleaned.welded,
+        unreferenced_vertices: unreferenced,
+    };
+    Ok(Solid {
+        mesh,
+        bounds,
+        edge_manifold: OnceLock::from(cleaned.edge_manifold),
+        source: (!is_own).then_some(source),
+        cleaning,
+        mending,
+        volume: volume.map_or_else(OnceLock::new, |volume| OnceLock::from(volume.value)),
+        ..Solid::default()
+    })
+}
+
+/// The solid without further copies of its shells.
+fn single_shells(solid: Solid) -> Solid {
+    let mesh = &solid.mesh;
+    let mut pieces = UnionFind::new(mesh.positions.len());
+    mesh.triangles.iter().for_each(|&[a, b, c]| {
+        pieces.join(a, b);
+        pieces.join(b, c);
+    });
+    let first = mesh.triangles.first().map_or(0, |triangle| pieces.root(triangle[0]));
+    if mesh.triangles.iter().all(|triangle| pieces.root(triangle[0]) == first) && solid.is_edge_manifold() {
+        return solid;
+    }
+    let copies = shells::copies(mesh);
+    if copies.is_empty() {
+        return solid;
+    }
+    let mut mending = solid.mending.clone().unwrap_or_default();
+    let mut dropped = vec![false; mesh.triangles.len()];
+    for copy in copies {
+        copy.iter().for_each(|&triangle| dropped[triangle as usize] = true);
+        let first = copy[0];
+        mending.copied_shells.add(|| {
+            let mut place = super::places::Spots { mesh }.triangles(&[first]);
+            place.triangles = vec![solid.source_triangle(first)];
+            place.vertices.clear();
+            place
+        });
+    }
+    let kept: Vec<u32> =
+        (0..mesh.triangles.len() as u32).filter(|&triangle| !dropped[triangle as usize]).collect();
+    let mut triangles: Vec<[u32; 3]> =
+        kept.iter().map(|&triangle| mesh.triangles[triangle as usize]).collect();
+    let positions = clean::compact(&mesh.positions, &mut triangles);
+    let mut groups = mesh.groups.clone();
+    groups.select(&kept);
+    Solid {
+        bounds: Bounds::of(&positions),
+        mesh: Mesh { positions, triangles, groups },
+        source: Some(kept.iter().map(|&triangle| solid.source_triangle(triangle)).collect()),
+        cleaning: solid.cleaning,
+        mending: Some(mending),
+        ..Solid::default()
+    }
+}
