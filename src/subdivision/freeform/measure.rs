@@ -72,7 +72,8 @@ impl Measure<'_> {
     /// Every face of the cage is measured at the vertices of 4^steps triangles, which are on its surface. Also told is the
     /// largest distance over each face.
     pub(super) fn errors(&self, draft: &Draft, region: &Region, steps: u32) -> (Errors, Vec<f64>) {
-        let mut errors = Errors::default();
+        let within = self.operands.map(|operand| operand.within);
+        let mut errors = Errors { allowance: within[0].max(within[1]), ..Errors::default() };
         let mut of_face = vec![0.0f64; draft.cage.faces().len()];
         let Region { affected, same } = region;
         let (level, points) = fine_surface(draft, steps);
@@ -129,8 +130,7 @@ impl Measure<'_> {
             }
         }
         errors.curve = self.curve_error(draft, &level, &points, steps);
-        let within = self.operands.map(|operand| operand.within);
-        errors.allowance = within[0].max(within[1]) + BETWEEN * errors.largest();
+        errors.allowance += BETWEEN * errors.largest();
         (errors, of_face)
     }
 
