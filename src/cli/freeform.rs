@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::{Value, json};
+use trisect::Error;
 use trisect::subdivision::{ControlMesh, FreeForm, FreeFormOutcome, FreeFormReport};
 
 use super::argument_groups::{Drawing, Writing};
@@ -87,7 +88,7 @@ fn combine(
     let mut outcome: Option<FreeFormOutcome> = None;
     for (index, next) in read.iter().enumerate().skip(1) {
         let first = outcome.as_ref().map_or(&read[0].cage, FreeFormOutcome::surface);
-        let done = settings.run(operation, first, &next.cage)?;
+        let done = settings.run(operation, first, &next.cage).map_err(name_option)?;
         for warning in &done.report().warnings {
             session.warn(format!("after operand {} ({}): {warning}", index + 1, next.name));
         }
@@ -96,6 +97,15 @@ fn combine(
     }
     session.note("steps", steps);
     outcome.ok_or_else(|| Fault::usage("at least two cages are needed"))
+}
+
+/// The error of surfaces that nearly touch, with the option that takes them.
+fn name_option(error: Error) -> Fault {
+    let text = error.to_string();
+    if text.contains("allow tangential curves") {
+        return Fault::unusable(format!("{text} (--allow-tangent)"));
+    }
+    error.into()
 }
 
 fn write(

@@ -9,6 +9,7 @@
 //! rules after Loop 1987, Hoppe et al. 1994, Biermann, Levin and Zorin 2000, DeRose, Kass and Truong 1998. `docs/freeforms.md`
 //! has the words, the weights and what was measured.
 
+mod check;
 mod control_mesh;
 mod details;
 mod error;

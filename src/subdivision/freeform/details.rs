@@ -1,9 +1,9 @@
 //! Details: where the cage is still too far, vertices after one, two, ... subdivisions are fitted, and what that moves them is
 //! kept as displacements in frames of the surface.
 
-use super::Attempt;
 use super::fit::Fit;
 use super::measure::{Measure, Region, affected};
+use super::run::Attempt;
 use crate::Error;
 use crate::subdivision::details::{Details, analysed, synthesised};
 
@@ -18,7 +18,6 @@ const LEAST: f64 = 0.1;
 pub(super) fn add(
     best: &mut Attempt,
     measure: &Measure<'_>,
-    reversed: [bool; 2],
     most: usize,
     tolerance: f64,
 ) -> Result<Vec<Details>, Error> {
@@ -37,7 +36,7 @@ pub(super) fn add(
         // 2. Where to, and the displacements.
         let smooth = draft.cage.points();
         let mut wanted = smooth.clone();
-        let mut fit = Fit::new(&draft, measure.operands, reversed, measure.chains, 1, 1);
+        let mut fit = Fit::new(&draft, measure.operands, measure.start.reversed, measure.chains, 1, 1);
         if !fit.unknown.is_empty() {
             fit.run(&mut wanted, 0.01 * tolerance);
         }

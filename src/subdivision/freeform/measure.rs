@@ -115,23 +115,31 @@ impl Measure<'_> {
             }
         }
         errors.mean = (sum / f64::from(count.max(1))).sqrt();
-        // 3. And back, from its vertices, which are on the operands' surfaces.
-        let tree = TriangleTree::new(&part(&fine, &own));
+        // 3. And back.
+        errors.backward = self.backward(&cut, &part(&fine, &own));
+        errors.curve = self.curve_error(draft, &level, &points, steps);
+        errors.allowance += BETWEEN * errors.largest();
+        (errors, of_face)
+    }
+
+    /// The largest distance of the vertices of some triangles of the exact result, which are on the operands' surfaces, from
+    /// the cage's.
+    fn backward(&self, cut: &[u32], surface: &Mesh) -> f64 {
+        let mesh = self.exact.solid().mesh();
+        let tree = TriangleTree::new(surface);
         let mut seen = vec![false; mesh.positions.len()];
-        let mut guess = None;
-        for &t in &cut {
+        let (mut guess, mut largest) = (None, 0.0f64);
+        for &t in cut {
             for v in mesh.triangles[t as usize] {
                 if !std::mem::replace(&mut seen[v as usize], true)
                     && let Some(closest) = tree.closest_from(mesh.positions[v as usize], guess)
                 {
                     guess = Some(closest.triangle);
-                    errors.backward = errors.backward.max(closest.squared_distance.sqrt());
+                    largest = largest.max(closest.squared_distance.sqrt());
                 }
             }
         }
-        errors.curve = self.curve_error(draft, &level, &points, steps);
-        errors.allowance += BETWEEN * errors.largest();
-        (errors, of_face)
+        largest
     }
 
     /// What is to be measured of a draft whose control points `unknown` moved.
