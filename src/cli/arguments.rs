@@ -154,9 +154,6 @@ pub(crate) struct Combine {
     /// what is read back does not cross itself
     #[arg(long, help_heading = "Results")]
     pub(crate) embed: bool,
-    /// Leave every new point where it rounds to, even where parts closer than rounding then cross
-    #[arg(long, conflicts_with = "embed", help_heading = "Results")]
-    pub(crate) exact_rounding: bool,
     /// Read and check the inputs, say what would be done, write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,

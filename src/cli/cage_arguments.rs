@@ -97,12 +97,20 @@ pub(crate) struct FreeFormVerb {
         allow_hyphen_values = true
     )]
     pub(crate) refine: u32,
-    /// Halve them so many times more while the tolerance is not reached
+    /// Halve them so many times more while the tolerance is not reached [default: 2, with --details 0]
     #[arg(
-        long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=4), default_value = "2",
+        long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=4), allow_hyphen_values = true
+    )]
+    pub(crate) attempts: Option<u32>,
+    /// Add up to so many levels of details while the tolerance is not reached; they are kept by *.json
+    #[arg(
+        long, value_name = "LEVELS", value_parser = clap::value_parser!(u32).range(0..=4), default_value = "0",
         allow_hyphen_values = true
     )]
-    pub(crate) attempts: u32,
+    pub(crate) details: u32,
+    /// Subdivide the result until it has no details, so that *.obj can have it
+    #[arg(long)]
+    pub(crate) flatten: bool,
     /// Rings of control points around what changed that may move
     #[arg(
         long, value_name = "R", value_parser = clap::value_parser!(u32).range(1..=8), default_value = "2",

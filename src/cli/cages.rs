@@ -14,7 +14,7 @@ use super::documents::Document;
 use super::fault::Fault;
 use super::operands;
 use super::output;
-use super::requests::{self, Request, STANDARD};
+use super::requests::{self, Request, STANDARD, Transform};
 use super::session::Session;
 
 /// A cage that was read.
@@ -57,12 +57,20 @@ fn one(request: &Request, choice: Cages, session: &Session<'_>) -> Result<(Contr
         ));
     };
     if !request.transforms.is_empty() {
+        // Details turn with the surface, but keep their lengths: a cage that is scaled loses them first.
+        let rigid =
+            |transform: &Transform| matches!(transform, Transform::Translate(_) | Transform::Rotate(_));
+        if !request.transforms.iter().all(rigid) {
+            cage = cage.subdivided(0)?;
+        }
         let mut mesh = cage.mesh();
         for transform in &request.transforms {
             mesh = transform.apply(mesh)?;
         }
         // A reflection turns the faces over: the mesh has done that already.
-        cage = ControlMesh::new(mesh.positions, mesh.triangles, cage.tags().clone(), cage.rules())?;
+        let details = cage.details().to_vec();
+        cage = ControlMesh::new(mesh.positions, mesh.triangles, cage.tags().clone(), cage.rules())?
+            .with_details(details)?;
     }
     if let Some(degrees) = choice.creases_from_angle {
         cage = cage.with_creases_from_angle(degrees)?;
@@ -80,13 +88,24 @@ pub(crate) fn holds_cage(path: &Path) -> bool {
 }
 
 /// The cage as a file, by its name's ending.
-pub(crate) fn document(path: &Path, cage: &ControlMesh) -> Document {
+pub(crate) fn document(path: &Path, cage: &ControlMesh) -> Result<Document, Fault> {
     let json = has_ending(path, "json");
+    if !json && !cage.details().is_empty() {
+        return Err(Fault::unusable(format!(
+            "{}: OBJ has no details, and the result has {} levels of them; write *.json, or subdivide it (--flatten)",
+            path.display(),
+            cage.details().len()
+        )));
+    }
     let mut text = if json { cage.to_json() } else { cage.to_obj() };
     if json {
         text.push('\n');
     }
-    Document { path: path.to_path_buf(), format: if json { "json" } else { "obj" }, bytes: text.into_bytes() }
+    Ok(Document {
+        path: path.to_path_buf(),
+        format: if json { "json" } else { "obj" },
+        bytes: text.into_bytes(),
+    })
 }
 
 /// Outputs that get a cage, and the others.

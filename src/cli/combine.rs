@@ -153,9 +153,6 @@ fn tell(name: &str, outcome: &Outcome, targets: &[Target], seconds: f64, session
 
 /// What becomes of crossings that rounding makes.
 fn embedding(arguments: &Combine, targets: &[Target]) -> Embed {
-    if arguments.exact_rounding {
-        return Embed::Never;
-    }
     if !arguments.embed {
         return Embed::default();
     }

@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::{Value, json};
+use trisect::Error;
 use trisect::subdivision::{ControlMesh, FreeForm, FreeFormOutcome, FreeFormReport};
 
 use super::argument_groups::{Drawing, Writing};
@@ -52,7 +53,8 @@ pub(crate) fn run(
     let seconds = session.took("run", start);
     // 3. The outputs.
     let start = Instant::now();
-    let cage = outcome.surface();
+    let flat = arguments.flatten.then(|| outcome.surface().subdivided(0)).transpose()?;
+    let cage = flat.as_ref().unwrap_or_else(|| outcome.surface());
     write(arguments, cage, &cage_paths, &targets, session)?;
     if !exact_targets.is_empty() {
         let mesh = outcome.exact().solid().mesh();
@@ -73,7 +75,8 @@ fn combine(
 ) -> Result<FreeFormOutcome, Fault> {
     let mut settings = FreeForm::new()
         .refine(arguments.refine)
-        .attempts(arguments.attempts)
+        .attempts(arguments.attempts.unwrap_or(if arguments.details > 0 { 0 } else { 2 }))
+        .details(arguments.details as usize)
         .rings(arguments.rings as usize)
         .allow_tangent(arguments.allow_tangent)
         .control(session.control());
@@ -85,7 +88,7 @@ fn combine(
     let mut outcome: Option<FreeFormOutcome> = None;
     for (index, next) in read.iter().enumerate().skip(1) {
         let first = outcome.as_ref().map_or(&read[0].cage, FreeFormOutcome::surface);
-        let done = settings.run(operation, first, &next.cage)?;
+        let done = settings.run(operation, first, &next.cage).map_err(name_option)?;
         for warning in &done.report().warnings {
             session.warn(format!("after operand {} ({}): {warning}", index + 1, next.name));
         }
@@ -96,6 +99,15 @@ fn combine(
     outcome.ok_or_else(|| Fault::usage("at least two cages are needed"))
 }
 
+/// The error of surfaces that nearly touch, with the option that takes them.
+fn name_option(error: Error) -> Fault {
+    let text = error.to_string();
+    if text.contains("allow tangential curves") {
+        return Fault::unusable(format!("{text} (--allow-tangent)"));
+    }
+    error.into()
+}
+
 fn write(
     arguments: &FreeFormVerb,
     cage: &ControlMesh,
@@ -103,7 +115,8 @@ fn write(
     targets: &[output::Target],
     session: &mut Session<'_>,
 ) -> Result<(), Fault> {
-    let documents: Vec<_> = cage_paths.iter().map(|path| cages::document(path, cage)).collect();
+    let documents: Vec<_> =
+        cage_paths.iter().map(|path| cages::document(path, cage)).collect::<Result<_, Fault>>()?;
     let mesh = if targets.is_empty() {
         trisect::Mesh::default()
     } else {
@@ -159,6 +172,8 @@ fn described(found: &FreeFormReport) -> Value {
         "crossing_degrees": found.crossing,
         "largest_valence": found.valence,
         "refined": found.refined,
+        "levels": found.levels,
+        "details": found.details,
         "exact_triangles": found.exact_triangles,
         "seconds": seconds,
     })

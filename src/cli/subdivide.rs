@@ -1,17 +1,19 @@
 //! `subdivide`: a cage refined, or its limit surface as a mesh.
 
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::ArgMatches;
-use serde_json::json;
+use serde_json::{Value, json};
 use trisect::subdivision::ControlMesh;
 use trisect::{Error, Mesh};
 
-use super::argument_groups::Writing;
+use super::argument_groups::{Drawing, Writing};
 use super::cage_arguments::Subdivide;
 use super::cages;
+use super::documents;
 use super::fault::{Exit, Fault};
-use super::output::{self, Product};
+use super::output::{self, Product, Target};
 use super::report::{self, Measures};
 use super::session::Session;
 
@@ -35,11 +37,7 @@ pub(crate) fn run(
         if keeps_cage { cages::sorted(outputs)? } else { (Vec::new(), outputs.clone()) };
     let writing = Writing { output: mesh_paths, ..arguments.results.writing };
     let targets = output::targets(&writing, drawing, session.common)?;
-    super::documents::check(
-        cage_paths.iter().map(std::path::PathBuf::as_path),
-        session.common,
-        &session.limits,
-    )?;
+    documents::check(cage_paths.iter().map(|path| -> &Path { path }), session.common, &session.limits)?;
     if targets.is_empty() && cage_paths.is_empty() && !session.common.json && session.common.report.is_none()
     {
         return Err(Fault::usage(
@@ -56,26 +54,11 @@ pub(crate) fn run(
     let made = make(arguments, &input.cage).map_err(|error| error.of_operand(0, input.name.clone()))?;
     let seconds = session.took("run", start);
     // 3. The outputs.
-    let start = Instant::now();
-    let (mesh, drawn_cage) = match &made {
-        Made::Cage(cage) => (cage.mesh(), Some(cage)),
-        Made::Mesh(mesh) => (mesh.clone(), None),
+    let mesh = match &made {
+        Made::Cage(cage) => cage.mesh(),
+        Made::Mesh(mesh) => mesh.clone(),
     };
-    let documents: Vec<_> = drawn_cage
-        .iter()
-        .flat_map(|cage| cage_paths.iter().map(|path| cages::document(path, cage)))
-        .collect();
-    let picture = || match drawn_cage.map(|cage| cages::picture(cage, drawing)) {
-        Some(Ok(picture)) => picture,
-        _ => trisect::render::mesh(&mesh, &output::view(drawing, None), None),
-    };
-    let options = output::write_options(&writing, &session.limits);
-    let product = Product { mesh: &mesh, options, picture: &picture, documents: &documents };
-    let (written, warnings) = output::write_all(&targets, &product, &session.limits)?;
-    for warning in warnings {
-        session.warn(warning);
-    }
-    session.took("write", start);
+    let written = write(&made, &mesh, &cage_paths, &targets, &writing, (drawing, session))?;
     let measures = Measures::of_mesh(&mesh);
     session.note("result", measures.to_json());
     session.note("outputs", written);
@@ -92,6 +75,38 @@ pub(crate) fn run(
         report::time(seconds)
     ));
     Ok(Exit::Fine)
+}
+
+/// Writes cages, meshes and pictures; what the report says of them.
+fn write(
+    made: &Made,
+    mesh: &Mesh,
+    cage_paths: &[PathBuf],
+    targets: &[Target],
+    writing: &Writing,
+    (drawing, session): (&Drawing, &mut Session<'_>),
+) -> Result<Vec<Value>, Fault> {
+    let start = Instant::now();
+    let cage = match made {
+        Made::Cage(cage) => Some(cage),
+        Made::Mesh(_) => None,
+    };
+    let documents = cage
+        .iter()
+        .flat_map(|cage| cage_paths.iter().map(|path| cages::document(path, cage)))
+        .collect::<Result<Vec<_>, Fault>>()?;
+    let picture = || match cage.map(|cage| cages::picture(cage, drawing)) {
+        Some(Ok(picture)) => picture,
+        _ => trisect::render::mesh(mesh, &output::view(drawing, None), None),
+    };
+    let options = output::write_options(writing, &session.limits);
+    let product = Product { mesh, options, picture: &picture, documents: &documents };
+    let (written, warnings) = output::write_all(targets, &product, &session.limits)?;
+    for warning in warnings {
+        session.warn(warning);
+    }
+    session.took("write", start);
+    Ok(written)
 }
 
 fn make(arguments: &Subdivide, cage: &ControlMesh) -> Result<Made, Error> {

@@ -18,7 +18,7 @@ const NEAREST: usize = 5;
 ///
 /// let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no base\nf 1 3 2\nf 1 2 4\no cut_0\nf 2 3 4\no cut_1\nf 1 4 3\n";
 /// let parts = io::read_parts(text, Format::Obj, &ReadOptions::new())?;
-/// let names: Vec<&str> = parts.names().iter().map(|part| part.name.as_str()).collect();
+/// let names: Vec<String> = parts.names().into_iter().map(|part| part.name).collect();
 /// assert_eq!(names, ["base", "cut_0", "cut_1"]);
 /// assert_eq!(parts.select("base")?[0].mesh.triangles.len(), 2);
 /// assert_eq!(parts.select("cut_*")?.len(), 2);

@@ -21,6 +21,8 @@
     reason = "a NaN fails every comparison, and is meant to be refused"
 )]
 
+#[cfg(feature = "subdivision")]
+mod cage;
 mod contour;
 mod evaluate;
 #[cfg(feature = "parametric")]
@@ -40,11 +42,18 @@ use crate::boolean::Operation;
 use crate::field::{Formula, System};
 #[cfg(not(feature = "parametric"))]
 use crate::{Control, Mesh};
+#[cfg(feature = "subdivision")]
+use cage::Cage;
 use contour::PlaneRegion;
 use glam::DAffine3;
 #[cfg(feature = "parametric")]
 use parametric::Parametric;
 use primitive::Primitive;
+
+/// Nothing is a cage in a build without the feature.
+#[cfg(not(feature = "subdivision"))]
+#[derive(Clone, Debug)]
+enum Cage {}
 
 /// No solid is parametric in a build without the feature.
 #[cfg(not(feature = "parametric"))]
@@ -85,6 +94,8 @@ enum Mode {
     Exact,
     /// On functions.
     Field,
+    /// On cages.
+    FreeForm,
 }
 
 #[derive(Clone, Debug)]
@@ -123,6 +134,9 @@ enum Kind {
         allow(dead_code, reason = "nothing is parametric in such a build")
     )]
     Parametric(Parametric),
+    /// A cage: the solid of its limit surface.
+    #[cfg_attr(not(feature = "subdivision"), allow(dead_code, reason = "there are no cages in such a build"))]
+    Cage(Cage),
     /// A leaf of a kind of the caller's own.
     Custom {
         kind: String,
@@ -183,6 +197,7 @@ impl Model {
             | Kind::Primitive(_)
             | Kind::Contour(_)
             | Kind::Parametric(_)
+            | Kind::Cage(_)
             | Kind::Custom { .. } => Vec::new(),
         }
     }

@@ -22,7 +22,8 @@ const CUSTOM: &str = "x-";
 /// Kinds of solids that are described as in `docs/parametric.md`.
 const PARAMETRIC: [&str; 4] = ["patches", "extrusion", "revolution", "sweep"];
 const KINDS: &str = "union, intersection, difference, xor, complement, mesh, box, sphere, cylinder, cone, torus, \
-                     formula, contour, region, patches, extrusion, revolution, sweep, parametric";
+                     formula, contour, region, patches, extrusion, revolution, sweep, parametric, \
+                     freeform";
 
 struct ModelReader<'a> {
     nodes: Vec<Node>,
@@ -190,7 +191,12 @@ impl ModelReader<'_> {
                 None => None,
                 Some("exact") => Some(Mode::Exact),
                 Some("field") => Some(Mode::Field),
-                Some(other) => return Err(fault(format!("`evaluate` is `exact` or `field`, not `{other}`"))),
+                Some("freeform") => Some(Mode::FreeForm),
+                Some(other) => {
+                    return Err(fault(format!(
+                        "`evaluate` is `exact`, `field` or `freeform`, not `{other}`"
+                    )));
+                }
             };
             let extrude = match take(object, "extrude")? {
                 None => None,
@@ -287,6 +293,7 @@ impl ModelReader<'_> {
                 let file = file.ok_or_else(|| fault("`file` is missing").in_node(label))?;
                 self.described(&file).map_err(within(label))?
             }
+            "freeform" => self.cage(std::mem::take(&mut object)).map_err(within(label))?,
             kind if PARAMETRIC.contains(&kind) => {
                 solid_of(kind, std::mem::take(&mut object)).map_err(within(label))?
             }
@@ -315,6 +322,17 @@ impl ModelReader<'_> {
     fn described(&self, file: &str) -> Result<Kind, Error> {
         let _ = self.folder;
         Err(super::without_parametric(file))
+    }
+
+    /// A cage of the node's own keys, or of a file.
+    #[cfg(feature = "subdivision")]
+    fn cage(&self, object: Map<String, Value>) -> Result<Kind, Error> {
+        super::cage::Cage::of_node(object, self.folder).map(Kind::Cage)
+    }
+
+    #[cfg(not(feature = "subdivision"))]
+    fn cage(&self, _: Map<String, Value>) -> Result<Kind, Error> {
+        Err(fault("`freeform` needs a build with the feature `subdivision`"))
     }
 
     fn operation(

@@ -1,16 +1,17 @@
 //! `ControlMesh`: a cage, plain and checked.
 
-use std::f64::consts::PI;
+use std::borrow::Cow;
 
 use glam::DVec3;
 
+use super::check::{check, note_concave};
+use super::details::{Details, MOST_LEVELS, synthesised};
 use super::error::CageError;
 use super::evaluate::Surface;
-use super::level::{Kind, Level};
+use super::level::Level;
 use super::limit_mesh::{LimitMesh, most_steps};
-use super::refine::{CONCAVE_FROM, apply};
 use super::rules::Rules;
-use super::tags::{Crease, Sector, Tags};
+use super::tags::{Crease, Tags};
 use crate::{Error, Mesh};
 
 /// A piecewise-smooth subdivision surface, given by its control mesh: what a modeller calls a cage.
@@ -29,6 +30,7 @@ pub struct ControlMesh {
     positions: Vec<[f64; 3]>,
     level: Level,
     tags: Tags,
+    details: Vec<Details>,
 }
 
 /// Where on a cage: weights of the corners of a control face, which sum to 1.
@@ -71,7 +73,7 @@ impl ControlMesh {
         let mut level = Level::new(rules, positions.len(), faces, &tags)?;
         note_concave(&mut level, &positions);
         let tags = level.tags();
-        Ok(Self { positions, level, tags })
+        Ok(Self { positions, level, tags, details: Vec::new() })
     }
 
     /// The control points.
@@ -122,29 +124,60 @@ impl ControlMesh {
         Mesh::new(self.positions.clone(), self.level.faces.clone())
     }
 
+    /// The displacements of vertices after one, two, ... subdivisions. Most cages have none.
+    #[must_use]
+    pub fn details(&self) -> &[Details] {
+        &self.details
+    }
+
+    /// The same cage with details in place of its own.
+    ///
+    /// # Errors
+    /// [`Error::Cage`] for a detail at no vertex of its level, one that is not finite, and too many levels.
+    pub fn with_details(mut self, details: Vec<Details>) -> Result<Self, Error> {
+        if details.len() > MOST_LEVELS {
+            let what = format!("{} levels of details; there may be {MOST_LEVELS}", details.len());
+            return Err(CageError::Tag(what).into());
+        }
+        if details.iter().flat_map(|level| &level.at).any(|(_, detail)| !detail.iter().all(|x| x.is_finite()))
+        {
+            return Err(CageError::Tag("a detail is not finite".into()).into());
+        }
+        self.details = details;
+        self.subdivided(0)?;
+        Ok(self)
+    }
+
     /// The cage after `steps` subdivisions: the same surface over 4^steps times as many faces. Face f becomes 4f to 4f + 3, its
-    /// corners in their order and then the middle; the first vertices are the old ones. O(4^steps n).
+    /// corners in their order and then the middle; the first vertices are the old ones. A cage with details is subdivided at
+    /// least as often as it has levels of them, and the result has none. O(4^steps n).
     ///
     /// # Errors
     /// [`Error::TooLarge`] beyond what 32-bit indices can name.
     pub fn subdivided(&self, steps: usize) -> Result<Self, Error> {
         let mut level = self.level.clone();
         let mut positions = self.points();
-        for _ in 0..steps {
+        let none = Details::default();
+        for step in 0..steps.max(self.details.len()) {
             if level.faces.len() > most_faces() / 4 {
                 return Err(Error::TooLarge {
                     what: format!("{} faces, four times as many", level.faces.len()),
                 });
             }
-            let (next, rows) = level.refined();
-            positions = rows.iter().map(|row| apply(row, &positions)).collect();
-            level = next;
+            let details = self.details.get(step).unwrap_or(&none);
+            (level, positions) = synthesised(&level, &positions, details, step + 1)?;
         }
         let tags = level.tags();
-        Ok(Self { positions: positions.iter().map(DVec3::to_array).collect(), level, tags })
+        let positions = positions.iter().map(DVec3::to_array).collect();
+        Ok(Self { positions, level, tags, details: Vec::new() })
     }
 
-    /// The positions to which the control points move under endless subdivision. O(n).
+    /// The cage without details: itself, or subdivided as often as it has levels of them.
+    pub(crate) fn flattened(&self) -> Result<Cow<'_, Self>, Error> {
+        if self.details.is_empty() { Ok(Cow::Borrowed(self)) } else { self.subdivided(0).map(Cow::Owned) }
+    }
+
+    /// The positions to which the control points move under endless subdivision, without details. O(n).
     #[must_use]
     pub fn limit_positions(&self) -> Vec<[f64; 3]> {
         let surface = self.surface();
@@ -152,7 +185,8 @@ impl ControlMesh {
     }
 
     /// The limit surface as triangles that are at most `tolerance` away from it, vertices on it, more where it bends more.
-    /// Watertight where the cage is closed.
+    /// Watertight where the cage is closed. (The distance is bounded over regular faces; at extraordinary vertices it is measured
+    /// at middles of edges, and doubled.)
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] for a tolerance that is not positive; [`Error::TooLarge`] where more than
@@ -161,7 +195,7 @@ impl ControlMesh {
         if !(tolerance > 0.0) {
             return Err(Error::InvalidArgument(format!("a tolerance must be positive, not {tolerance}")));
         }
-        let surface = self.surface();
+        let surface = self.flattened()?.surface();
         LimitMesh::new(&surface, &most_steps(&surface, tolerance)?)
     }
 
@@ -175,17 +209,20 @@ impl ControlMesh {
                 what: format!("{} faces, split {steps} times", self.level.faces.len()),
             });
         }
-        LimitMesh::new(&self.surface(), &vec![steps as u32; self.level.faces.len()])
+        let flat = self.flattened()?;
+        let steps = steps.saturating_sub(self.details.len()) as u32;
+        LimitMesh::new(&flat.surface(), &vec![steps; flat.level.faces.len()])
     }
 
-    /// The limit surface at a place; nothing for a face that is not there. For many places, [`evaluator`](Self::evaluator) keeps
+    /// The limit surface at a place, without details; nothing for a face that is not there. For many places, [`evaluator`](Self::evaluator) keeps
     /// what it finds.
     #[must_use]
     pub fn at(&self, place: Place) -> Option<LimitPoint> {
         self.evaluator().at(place)
     }
 
-    /// What evaluates the limit surface at any number of places.
+    /// What evaluates the limit surface at any number of places; without details, for which [`subdivided`](Self::subdivided)
+    /// makes a cage that has them in its control points.
     #[must_use]
     pub fn evaluator(&self) -> Evaluator {
         Evaluator(self.surface())
@@ -200,7 +237,8 @@ impl ControlMesh {
         super::obj::read(bytes, rules)
     }
 
-    /// The cage as an OBJ file with tag lines; reading it gives the same bits.
+    /// The cage as an OBJ file with tag lines; reading it gives the same bits. OBJ has no details: what is written is the cage
+    /// without them, so write [`subdivided(0)`](Self::subdivided) to have their surface.
     #[must_use]
     pub fn to_obj(&self) -> String {
         super::obj::write(self)
@@ -229,7 +267,7 @@ impl ControlMesh {
     /// The same cage with other control points.
     pub(crate) fn with_points(&self, points: &[DVec3]) -> Self {
         let positions = points.iter().map(DVec3::to_array).collect();
-        Self { positions, level: self.level.clone(), tags: self.tags.clone() }
+        Self { positions, level: self.level.clone(), tags: self.tags.clone(), details: Vec::new() }
     }
 
     pub(crate) fn level(&self) -> &Level {
@@ -291,84 +329,4 @@ impl Evaluator {
 /// How many faces a level may have: half-edges are numbered with 32 bits, the largest number standing for none.
 fn most_faces() -> usize {
     u32::MAX as usize / 3
-}
-
-fn check(positions: &[[f64; 3]], faces: &[[u32; 3]], tags: &Tags) -> Result<(), CageError> {
-    let count = positions.len();
-    if let Some(vertex) = positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-        return Err(CageError::NotFinite { vertex });
-    }
-    let known = |what: &dyn Fn() -> String, vertex: u32| {
-        if (vertex as usize) < count {
-            return Ok(());
-        }
-        Err(CageError::NoSuchVertex { what: what(), vertex: u64::from(vertex), count })
-    };
-    for (f, face) in faces.iter().enumerate() {
-        for k in 0..3 {
-            known(&|| format!("face {f}"), face[k])?;
-            if face[k] == face[(k + 1) % 3] {
-                return Err(CageError::RepeatedVertex { face: f, vertex: face[k] });
-            }
-        }
-    }
-    let sharp = |what: &str, sharpness: f64| {
-        if sharpness >= 0.0 {
-            return Ok(());
-        }
-        Err(CageError::Tag(format!("{what} has sharpness {sharpness}; it must be 0 or more")))
-    };
-    for crease in &tags.creases {
-        let what = || format!("crease {}-{}", crease.edge[0], crease.edge[1]);
-        known(&what, crease.edge[0])?;
-        known(&what, crease.edge[1])?;
-        sharp(&what(), crease.sharpness)?;
-    }
-    for corner in &tags.corners {
-        known(&|| "a corner".into(), corner.vertex)?;
-        sharp(&format!("corner {}", corner.vertex), corner.sharpness)?;
-    }
-    for sector in &tags.sectors {
-        known(&|| "a sector".into(), sector.vertex)?;
-        known(&|| "a sector".into(), sector.first)?;
-        let turns = sector.angle > 0.0 && sector.angle < 2.0 * PI && (sector.angle - PI).abs() > 1e-3;
-        if !turns || !(0.0..=1.0).contains(&sector.flatness) {
-            return Err(CageError::Tag(format!(
-                "the sector at {} from {} has angle {} and flatness {}; angles are between 0 and 2 pi, but not pi, and flatness \
-                 is 0 to 1",
-                sector.vertex, sector.first, sector.angle, sector.flatness
-            )));
-        }
-    }
-    Ok(())
-}
-
-/// Notes which sectors at corners are concave, where nothing is said of them.
-fn note_concave(level: &mut Level, positions: &[[f64; 3]]) {
-    let mut found = Vec::new();
-    for v in 0..level.vertex_count as u32 {
-        let ring = level.ring(v);
-        if ring.vertices.is_empty() || level.kind(v, &ring) != Kind::Corner {
-            continue;
-        }
-        let count = ring.vertices.len();
-        for place in 0..ring.face_count() {
-            let span = level.span(v, &ring, Kind::Corner, place);
-            let sharp = level.sharpness[ring.edges[span.start] as usize].is_infinite();
-            let key = (v, ring.vertices[span.start]);
-            if span.start != place || !sharp || span.faces < 2 || level.openings.contains_key(&key) {
-                continue;
-            }
-            let at = |i: usize| {
-                DVec3::from(positions[ring.vertices[i % count] as usize]) - DVec3::from(positions[v as usize])
-            };
-            let opening: f64 = (0..span.faces).map(|i| at(place + i).angle_between(at(place + i + 1))).sum();
-            if opening > CONCAVE_FROM {
-                found.push(Sector { vertex: v, first: key.1, angle: 1.5 * PI, flatness: 0.5 });
-            }
-        }
-    }
-    for Sector { vertex, first, angle, flatness } in found {
-        level.openings.insert((vertex, first), super::level::Opening { angle, flatness });
-    }
 }

@@ -37,7 +37,8 @@ pub(crate) struct Surface {
 /// The surface over one face, as far as it was looked at.
 #[derive(Debug)]
 enum Node {
-    Regular(Patch),
+    /// The polynomial, and a bound on its distance from its triangle.
+    Regular(Patch, f64),
     /// Its four quarters, and the faces around them after one step.
     Split([OnceLock<Box<Node>>; 4], Box<Region>),
     /// At the end of the way: limits and normals of the corners.
@@ -51,7 +52,7 @@ struct Region {
     positions: Vec<DVec3>,
     /// The first of the four faces.
     first: u32,
-    /// The largest distance of a ring point from the plane of the face before the step.
+    /// How far the surface is from the flat triangle over the face before the step.
     spread: f64,
 }
 
@@ -81,7 +82,7 @@ impl Surface {
     }
 
     /// A bound on the distance between the surface over a face and the triangles it is split into `steps` times, vertices on the
-    /// surface. Beside flattened corners it is an estimate.
+    /// surface. Over triangles at extraordinary vertices it is measured, and doubled.
     pub(crate) fn flatness(&self, face: u32, steps: usize) -> f64 {
         self.node(face).flatness(steps, 0)
     }
@@ -94,7 +95,9 @@ impl Surface {
 impl Node {
     fn new(level: &Level, positions: &[DVec3], face: u32, depth: usize) -> Self {
         if let Some(points) = regular_points(level, positions, face) {
-            return Self::Regular(Patch::new(&points));
+            let patch = Patch::new(&points);
+            let flatness = patch.flatness();
+            return Self::Regular(patch, flatness);
         }
         if depth == DEEPEST {
             let corners = level.faces[face as usize];
@@ -124,7 +127,7 @@ impl Node {
 
     fn at(&self, weights: [f64; 3], depth: usize) -> (Jet, DVec3) {
         match self {
-            Self::Regular(patch) => {
+            Self::Regular(patch, _) => {
                 let jet = patch.jet(weights[1], weights[2]);
                 (jet, jet.du.cross(jet.dv).normalize_or_zero())
             }
@@ -151,7 +154,7 @@ impl Node {
 
     fn flatness(&self, steps: usize, depth: usize) -> f64 {
         match self {
-            Self::Regular(patch) => patch.flatness() * 0.25f64.powi(steps as i32),
+            Self::Regular(_, flatness) => flatness * 0.25f64.powi(steps as i32),
             Self::Flat(..) => 0.0,
             Self::Split(_, region) if steps == 0 => region.spread,
             Self::Split(children, region) => (0..4)
@@ -166,26 +169,40 @@ impl Region {
     /// depend on.
     fn around(level: &Level, positions: &[DVec3], face: u32) -> Self {
         let faces = two_rings(level, face);
-        let mut numbers: FxHashMap<u32, u32> = FxHashMap::default();
-        let mut vertices = Vec::new();
+        let mut vertices: Vec<u32> = Vec::with_capacity(faces.len());
+        // Some forty vertices: a look along the list is faster than a table.
         let local: Vec<[u32; 3]> = faces
             .iter()
             .map(|&f| {
                 level.faces[f as usize].map(|v| {
-                    *numbers.entry(v).or_insert_with(|| {
+                    let known = vertices.iter().position(|&w| w == v);
+                    known.unwrap_or_else(|| {
                         vertices.push(v);
-                        vertices.len() as u32 - 1
-                    })
+                        vertices.len() - 1
+                    }) as u32
                 })
             })
             .collect();
-        let part = level.part(&faces, local, &vertices, &numbers);
+        let part = level.part(&faces, local, &vertices);
         let before: Vec<DVec3> = vertices.iter().map(|&v| positions[v as usize]).collect();
         let (next, rows) = part.refined();
         let positions: Vec<DVec3> = rows.iter().map(|row| apply(row, &before)).collect();
-        let spread = spread(&part, &before);
+        let spread = spread(&part, &before).min(SAFETY * sag(&next, &positions));
         Self { level: next, positions, first: 0, spread }
     }
+}
+
+/// A surface over a face beside an extraordinary vertex is not further from its triangle than this times what it is at the
+/// middles of the edges: 4/3 where it bends as a paraboloid, and half as much again.
+const SAFETY: f64 = 2.0;
+
+/// How far the limits of the middles of the face's edges are from the middles of its corners' limits; the face is the first four
+/// of the level.
+fn sag(next: &Level, positions: &[DVec3]) -> f64 {
+    let limit = |v: u32| apply(&next.limit_row(v), positions);
+    let corners = [0, 1, 2].map(|k| limit(next.faces[k][0]));
+    let middles = next.faces[3].map(limit);
+    (0..3).map(|k| middles[k].distance((corners[k] + corners[(k + 1) % 3]) * 0.5)).fold(0.0, f64::max)
 }
 
 /// The largest distance from the plane of its limits of the points around face 0, on its side of the creases: the surface
@@ -318,40 +335,33 @@ impl Level {
     }
 
     /// Some faces alone, with their tags. What is true of vertices whose faces are all there stays true.
-    fn part(
-        &self,
-        faces: &[u32],
-        local: Vec<[u32; 3]>,
-        vertices: &[u32],
-        numbers: &FxHashMap<u32, u32>,
-    ) -> Self {
+    fn part(&self, faces: &[u32], local: Vec<[u32; 3]>, vertices: &[u32]) -> Self {
         let halves = 3 * faces.len();
         let (mut twins, mut edge_of) = (vec![NONE; halves], vec![NONE; halves]);
         let (mut edges, mut sharpness) = (Vec::new(), Vec::new());
-        let mut number_of_edge: FxHashMap<u32, u32> = FxHashMap::default();
-        let mut half_of: FxHashMap<u32, u32> = FxHashMap::default();
-        for (i, &f) in faces.iter().enumerate() {
-            for k in 0..3 {
-                half_of.insert(3 * f + k as u32, (3 * i + k) as u32);
-            }
-        }
         for (i, &f) in faces.iter().enumerate() {
             for k in 0..3 {
                 let (h, own) = (3 * f + k as u32, 3 * i + k);
-                let edge = self.edge_of[h as usize];
-                let number = *number_of_edge.entry(edge).or_insert_with(|| {
-                    edges.push(own as u32);
-                    sharpness.push(self.sharpness[edge as usize]);
-                    edges.len() as u32 - 1
-                });
-                edge_of[own] = number;
-                match half_of.get(&self.twins[h as usize]) {
-                    Some(&twin) => twins[own] = twin,
-                    None => sharpness[number as usize] = f64::INFINITY,
+                let twin = self.twins[h as usize];
+                let there = if twin == NONE { None } else { faces.iter().position(|&g| g == twin / 3) };
+                match there.map(|j| 3 * j + twin as usize % 3) {
+                    Some(other) => {
+                        twins[own] = other as u32;
+                        if other < own {
+                            edge_of[own] = edge_of[other];
+                            continue;
+                        }
+                        sharpness.push(self.sharpness[self.edge_of[h as usize] as usize]);
+                    }
+                    None => sharpness.push(f64::INFINITY),
                 }
+                edge_of[own] = edges.len() as u32;
+                edges.push(own as u32);
             }
         }
-        let named = |v: &u32| numbers.get(v).copied();
+        let named = |v: u32| vertices.iter().position(|&w| w == v).map(|place| place as u32);
+        let corners =
+            vertices.iter().enumerate().filter_map(|(i, v)| Some((i as u32, *self.corners.get(v)?)));
         let mut part = Self {
             rules: self.rules,
             faces: local,
@@ -361,14 +371,16 @@ impl Level {
             edges,
             sharpness,
             first: Vec::new(),
-            corners: self.corners.iter().filter_map(|(v, &s)| Some((named(v)?, s))).collect(),
+            has_sharp: Vec::new(),
+            corners: if self.corners.is_empty() { FxHashMap::default() } else { corners.collect() },
             openings: self
                 .openings
                 .iter()
-                .filter_map(|((v, first), &opening)| Some(((named(v)?, named(first)?), opening)))
+                .filter_map(|(&(v, first), &opening)| Some(((named(v)?, named(first)?), opening)))
                 .collect(),
         };
         part.find_first();
+        part.find_sharp();
         part
     }
 }

@@ -3,13 +3,14 @@
 use serde_json::{Map, Value, json};
 
 use super::ControlMesh;
+use super::details::{Details, DomainVertex};
 use super::error::CageError;
 use super::rules::Rules;
 use super::tags::{Corner, Crease, INFINITE_SHARPNESS, Sector, Tags};
 use crate::Error;
 
 /// The keys of a cage.
-const KEYS: [&str; 7] = ["kind", "positions", "faces", "creases", "corners", "sectors", "rules"];
+const KEYS: [&str; 8] = ["kind", "positions", "faces", "creases", "corners", "sectors", "rules", "details"];
 
 /// Reads a cage from a JSON object.
 pub(crate) fn read(bytes: &[u8]) -> Result<ControlMesh, Error> {
@@ -65,7 +66,28 @@ pub(crate) fn from_value(value: &Value) -> Result<ControlMesh, Error> {
         let [a, b, c] = row[..] else { return Err(wrong("faces", at, "[vertex, vertex, vertex]").into()) };
         triangles.push([index("faces", at, a)?, index("faces", at, b)?, index("faces", at, c)?]);
     }
-    ControlMesh::new(points, triangles, tags, rules)
+    ControlMesh::new(points, triangles, tags, rules)?.with_details(details(object)?)
+}
+
+/// The levels of details: each a list of [face, i, j, k, along, across, up].
+fn details(object: &Map<String, Value>) -> Result<Vec<Details>, CageError> {
+    let Some(value) = object.get("details") else { return Ok(Vec::new()) };
+    let levels = value.as_array().ok_or_else(|| fault("details", "it is not a list of levels"))?;
+    let mut all = Vec::new();
+    for level in levels {
+        let rows = lists(&Map::from_iter([("details".to_owned(), level.clone())]), "details", true)?;
+        let mut at = Vec::new();
+        for (n, row) in rows.iter().enumerate() {
+            let [face, i, j, k, x, y, z] = row[..] else {
+                return Err(wrong("details", n, "[face, i, j, k, along, across, up]"));
+            };
+            let whole = |value| index("details", n, value);
+            let vertex = DomainVertex { face: whole(face)?, numerators: [whole(i)?, whole(j)?, whole(k)?] };
+            at.push((vertex, [x, y, z]));
+        }
+        all.push(Details { at });
+    }
+    Ok(all)
 }
 
 fn fault(place: &str, what: &str) -> CageError {
@@ -106,7 +128,18 @@ pub(crate) fn to_value(cage: &ControlMesh) -> Value {
     let corners: Vec<Value> = tags.corners.iter().map(|c| json!([c.vertex, finite(c.sharpness)])).collect();
     let sectors: Vec<Value> =
         tags.sectors.iter().map(|s| json!([s.vertex, s.first, s.angle, s.flatness])).collect();
-    json!({
+    let details: Vec<Vec<Value>> = cage
+        .details()
+        .iter()
+        .map(|level| {
+            let row = |(vertex, [x, y, z]): &(DomainVertex, [f64; 3])| {
+                let [i, j, k] = vertex.numerators;
+                json!([vertex.face, i, j, k, x, y, z])
+            };
+            level.at.iter().map(row).collect()
+        })
+        .collect();
+    let mut object = json!({
         "kind": "freeform",
         "rules": cage.rules().name(),
         "positions": cage.positions(),
@@ -114,7 +147,11 @@ pub(crate) fn to_value(cage: &ControlMesh) -> Value {
         "creases": creases,
         "corners": corners,
         "sectors": sectors,
-    })
+    });
+    if !details.is_empty() {
+        object["details"] = details.into();
+    }
+    object
 }
 
 #[cfg(test)]

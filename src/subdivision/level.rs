@@ -48,6 +48,8 @@ pub(crate) struct Level {
     pub(crate) sharpness: Vec<f64>,
     /// For each vertex a half-edge that leaves it, the first counter-clockwise at a border; [`NONE`] without faces.
     pub(crate) first: Vec<u32>,
+    /// For each vertex whether it is a corner or has a sharp edge: most have neither, and need no look at their ring.
+    pub(crate) has_sharp: Vec<bool>,
     pub(crate) corners: FxHashMap<u32, f64>,
     /// By corner and the other end of the sector's first crease.
     pub(crate) openings: FxHashMap<(u32, u32), Opening>,
@@ -137,6 +139,7 @@ impl Level {
             edges,
             sharpness,
             first: Vec::new(),
+            has_sharp: Vec::new(),
             corners: FxHashMap::default(),
             openings: FxHashMap::default(),
         };
@@ -154,6 +157,19 @@ impl Level {
                 self.first[v] = h;
             }
         }
+    }
+
+    /// Notes which vertices have something sharp; to be called when tags are known.
+    pub(crate) fn find_sharp(&mut self) {
+        self.has_sharp = vec![false; self.vertex_count];
+        for (e, &h) in self.edges.iter().enumerate() {
+            if self.sharpness[e] > 0.0 {
+                for v in [self.from(h), self.to(h)] {
+                    self.has_sharp[v as usize] = true;
+                }
+            }
+        }
+        self.corners.keys().for_each(|&v| self.has_sharp[v as usize] = true);
     }
 
     /// Refuses vertices with several fans of faces.
@@ -182,6 +198,7 @@ impl Level {
         for &Sector { vertex, first, angle, flatness } in &tags.sectors {
             self.openings.insert((vertex, first), Opening { angle, flatness });
         }
+        self.find_sharp();
         Ok(())
     }
 
@@ -298,7 +315,9 @@ impl Level {
     /// What the edge `e` takes at vertex `v` by its kind: gamma and the sector, if `v` is a crease or corner vertex with at
     /// least two sharp edges.
     pub(crate) fn special(&self, v: u32, e: u32) -> Option<(f64, Ring, Span, usize)> {
-        // Most vertices are smooth: a look at what is sharp comes before the ring is kept.
+        if !self.has_sharp[v as usize] {
+            return None;
+        }
         let ring = self.ring(v);
         let kind = self.kind(v, &ring);
         if !matches!(kind, Kind::Crease | Kind::Corner) {

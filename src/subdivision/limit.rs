@@ -96,7 +96,7 @@ impl Level {
         for i in 0..=k {
             let place = (span.start + i) % count;
             let weight = if i == 0 || i == k { end } else { (theta * i as f64).sin() };
-            add(&mut row, &self.next_row(v, ring, place), weight);
+            add(&mut row, &self.edge_row(ring.edges[place]), weight);
         }
         add(&mut row, &self.vertex_row(v), -theta.sin());
         row
@@ -115,14 +115,9 @@ impl Level {
         }
         add(&mut row, &self.vertex_row(v), weights[0]);
         for i in 0..k {
-            add(&mut row, &self.next_row(v, ring, (start + i) % k), weights[1 + i]);
+            add(&mut row, &self.edge_row(ring.edges[(start + i) % k]), weights[1 + i]);
         }
         row
-    }
-
-    /// The next level's neighbour at a place of the ring.
-    fn next_row(&self, _v: u32, ring: &Ring, place: usize) -> Row {
-        self.edge_row(ring.edges[place])
     }
 
     fn crease_place(&self, ring: &Ring) -> usize {

@@ -9,7 +9,9 @@
 //! rules after Loop 1987, Hoppe et al. 1994, Biermann, Levin and Zorin 2000, DeRose, Kass and Truong 1998. `docs/freeforms.md`
 //! has the words, the weights and what was measured.
 
+mod check;
 mod control_mesh;
+mod details;
 mod error;
 mod evaluate;
 mod freeform;
@@ -26,6 +28,7 @@ mod rules;
 mod tags;
 
 pub use control_mesh::{ControlMesh, Evaluator, LimitPoint, Place};
+pub use details::{Details, DomainVertex};
 pub use error::CageError;
 pub use freeform::{Errors, FreeForm, FreeFormOutcome, FreeFormReport, VertexOrigin};
 pub use limit_mesh::LimitMesh;

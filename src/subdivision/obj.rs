@@ -126,8 +126,8 @@ impl Reader {
         let (faces, split) = polygons::triangles(&self.positions, &self.faces)?;
         if split > 0 {
             warnings.push(format!(
-                "{split} faces with more than three corners were split into triangles: the surface is that of the triangles, \
-                 not the Catmull-Clark surface of the file (--catmull-clark fits that one)"
+                "{split} faces with more than three corners were split into triangles: the surface is Loop's of the triangles, not \
+                 the Catmull-Clark surface that the program which wrote the file may have shown"
             ));
         }
         Ok((ControlMesh::new(self.positions, faces, self.tags, rules)?, warnings))

@@ -200,6 +200,12 @@ impl Level {
         for h in (0..4 * halves as u32).rev() {
             edges[edge_of[h as usize] as usize] = h;
         }
+        self.inherited(faces, twins, edge_of, edges)
+    }
+
+    /// The next level from its faces, with this level's tags.
+    fn inherited(&self, faces: Vec<[u32; 3]>, twins: Vec<u32>, edge_of: Vec<u32>, edges: Vec<u32>) -> Self {
+        let vertices = self.vertex_count as u32;
         let mut sharpness = vec![0.0; edges.len()];
         for (e, &before) in self.sharpness.iter().enumerate() {
             sharpness[2 * e] = after(before);
@@ -214,6 +220,7 @@ impl Level {
             edges,
             sharpness,
             first: Vec::new(),
+            has_sharp: Vec::new(),
             corners: self.corners.iter().map(|(&v, &s)| (v, after(s))).filter(|&(_, s)| s > 0.0).collect(),
             openings: FxHashMap::default(),
         };
@@ -223,6 +230,7 @@ impl Level {
             }
         }
         level.find_first();
+        level.find_sharp();
         level
     }
 }

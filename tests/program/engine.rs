@@ -198,14 +198,19 @@ fn unusable_operands_are_refused_by_number_and_left_alone() {
 
     folder.run("union a.obj open.obj -o c.obj").exits(3).says("operand 2 (open.obj)").says("open edge");
     folder.run("union inside.obj b.obj -o c.obj").exits(3).says("operand 1 (inside.obj)").says("--orient");
-    folder
-        .run("difference a.obj crossing.obj -o c.obj")
-        .exits(3)
-        .says("operand 2 (crossing.obj)")
-        .says("crosses itself");
     assert_eq!(folder.read("c.obj"), "precious");
-    let object = folder.run("check crossing.obj --json").exits(3).json();
-    assert!(object["files"][0]["error"]["self_crossings"]["count"] == 6, "{object}");
+    // What a surface that crosses itself winds around counts once.
+    let object = folder.run("check crossing.obj --json").exits(0).json();
+    assert!(object["files"][0]["self_crossings"]["count"] == 6, "{object}");
+    folder
+        .run("difference crossing.obj a.obj -o c.obj")
+        .exits(0)
+        .says("6 self-crossings resolved by winding number (positive)");
+    assert_eq!(volume(&folder.read("c.obj")), 0.875);
+    folder.run("resolve crossing.obj -o c.obj").exits(0);
+    assert_eq!(volume(&folder.read("c.obj")), 1.875);
+    folder.run("resolve crossing.obj --rule even-odd -o c.obj").exits(0);
+    assert_eq!(volume(&folder.read("c.obj")), 1.75);
 
     folder.run("union --orient inside.obj b.obj -o c.obj").exits(0);
     assert_eq!(volume(&folder.read("c.obj")), 1.875);

@@ -5,6 +5,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+#[cfg(feature = "subdivision")]
+mod cages;
 mod curve;
 mod engine;
 mod eval;

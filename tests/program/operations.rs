@@ -445,3 +445,38 @@ fn a_film_is_warned_about_with_its_place() {
     folder.write("tool.obj", cube([0.25, 0.25, 0.0], [0.75, 0.75, 1.0]));
     folder.run("difference body.obj tool.obj -o cut.obj --strict").exits(0);
 }
+
+#[test]
+fn expressions_and_counts_of_several_inputs() {
+    let folder = Folder::new();
+    folder.write("a.obj", unit_cube());
+    folder.write("b.obj", cube([0.5; 3], [1.5; 3]));
+    folder.write("c.obj", cube([0.25; 3], [0.75; 3]));
+    // The unit cube, one moved by half of it, and one in the middle of the first.
+    folder.run("combine --expr a-(b+c) a.obj b.obj c.obj -o e.obj").exits(0);
+    let volume_of = |name: &str| volume(&folder.read(name));
+    assert_eq!(volume_of("e.obj"), 1.0 - 0.125 - 0.125 + 0.015625);
+    folder.run("combine --expr body&pin body=a.obj pin=c.obj -o e.obj").exits(0);
+    assert_eq!(volume_of("e.obj"), 0.125);
+    folder.run("combine --at-least 2 a.obj b.obj c.obj -o e.obj").exits(0);
+    assert_eq!(volume_of("e.obj"), 0.125 + 0.125 - 0.015625);
+    folder.run("combine --all a.obj b.obj -o e.obj").exits(0).says("intersection: ");
+    assert_eq!(volume_of("e-union.obj"), 1.875);
+    assert_eq!(volume_of("e-intersection.obj"), 0.125);
+    assert_eq!((volume_of("e-difference.obj"), volume_of("e-reverse.obj")), (0.875, 0.875));
+}
+
+#[test]
+fn expressions_that_cannot_be_meant_are_refused_with_the_place() {
+    let folder = Folder::new();
+    folder.write("a.obj", unit_cube());
+    folder.write("b.obj", cube([0.5; 3], [1.5; 3]));
+    folder.run("combine a.obj b.obj -o e.obj").exits(1);
+    folder.run("combine --expr a- a.obj b.obj -o e.obj").exits(1).says("character 3");
+    folder.run("combine --expr a+d a.obj b.obj -o e.obj").exits(1).says("no operand is called 'd'");
+    folder.run("combine --expr a a.obj b.obj -o e.obj").exits(1).says("does not name operand b (b.obj)");
+    folder.run("combine --at-least 3 a.obj b.obj -o e.obj").exits(1).says("is nothing");
+    folder.run("combine --all a.obj -o e.obj").exits(1).says("takes two inputs");
+    folder.run("resolve a.obj b.obj -o e.obj").exits(1).says("takes one input");
+    folder.run("resolve a.obj --rule odd -o e.obj").exits(1).says("known are positive, nonzero, even-odd");
+}

@@ -187,7 +187,7 @@ fn boxes_on_a_grid_are_right_in_every_plane() {
             crossing += u64::from(outcome.certificate().three_face_points > 0);
         }
     }
-    assert!(tried > 1_000 && crossing > 100, "{tried} results, {crossing} with three-face points");
+    assert!(tried > 1_000 && crossing > 50, "{tried} results, {crossing} with three-face points");
 }
 
 /// How often a surface winds around a point, by the way to a point outside; `None` if that touches an edge.
@@ -367,7 +367,8 @@ fn bodies_of_one_file_that_touch_are_one_body() {
     append(&mut pair, below, &[[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]]);
     let resolved = BooleanOptions::new().resolve(&Solid::try_from(pair).unwrap()).unwrap();
     assert_eq!(resolved.solid().volume(), 1.0 / 3.0);
-    assert_eq!((resolved.solid().components(), resolved.solid().mesh().triangles.len()), (1, 6));
+    // The sides in the planes x = 0 and y = 0 are one triangle each.
+    assert_eq!((resolved.solid().components(), resolved.solid().mesh().triangles.len()), (1, 4));
     // A square with one diagonal above and the other below encloses nothing.
     let square = vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let mut pillow = primitives::cuboid([2.0; 3], [3.0; 3]).unwrap();

@@ -18,9 +18,9 @@ use crate::parallel::Runner;
 #[non_exhaustive]
 pub enum Embed {
     /// They stay: every new coordinate is the exact one, rounded to nearest.
-    Never,
-    /// They are looked for where new triangles are no higher than rounding, and resolved: the result does not cross itself.
     #[default]
+    Never,
+    /// They are looked for where new triangles are no higher than rounding, and resolved.
     WhereNeeded,
     /// All coordinates are numbers of a grid, and what crosses on it is resolved: the result does not cross itself when it is
     /// written in a format with such numbers. Always looked for, about a microsecond a triangle.

@@ -101,7 +101,7 @@ impl BooleanOptions {
         self
     }
 
-    /// What becomes of crossings that rounding makes. Default: [`Embed::WhereNeeded`].
+    /// What becomes of crossings that rounding makes. Default: [`Embed::Never`].
     #[must_use]
     pub fn embed(mut self, embed: Embed) -> Self {
         self.policy.embed = embed;
@@ -152,9 +152,11 @@ impl BooleanOptions {
     /// ```
     /// use trisect::{BooleanOptions, Expression, Solid, primitives};
     ///
-    /// let cube = |low: f64, high: f64| Solid::try_from(primitives::cuboid([low; 3], [high; 3])?);
-    /// let operands = [cube(0.0, 3.0)?, cube(1.0, 2.0)?, cube(2.5, 4.0)?];
-    /// let expression = "a - (b + c)".parse::<Expression>()?;
+    /// let mut operands = Vec::new();
+    /// for [low, high] in [[0.0, 3.0], [1.0, 2.0], [2.5, 4.0]] {
+    ///     operands.push(Solid::try_from(primitives::cuboid([low; 3], [high; 3])?)?);
+    /// }
+    /// let expression: Expression = "a - (b + c)".parse().expect("a, b and c are operands");
     /// let left = BooleanOptions::new().evaluate(&expression, &operands)?;
     /// assert_eq!(left.solid().volume(), 27.0 - 1.0 - 0.125);
     /// # Ok::<(), trisect::Error>(())

@@ -50,6 +50,8 @@ impl State<'_> {
             extrude(&contours, low, high).map_err(|error| error.in_node(label))?
         } else {
             match &at.kind {
+                #[cfg(feature = "subdivision")]
+                Kind::Operation(..) if at.mode == Some(Mode::FreeForm) => self.free_form(node)?,
                 Kind::Operation(operation, operands) => {
                     let mut leaves = Leaves::default();
                     let expression = self.operation(*operation, operands, &mut leaves)?;
@@ -78,6 +80,10 @@ impl State<'_> {
                     let mesh = solid.mesh(self.given_tolerance(node), control);
                     mesh.map_err(|error| error.in_node(label))?
                 }
+                #[cfg(feature = "subdivision")]
+                Kind::Cage(cage) => self.limit_mesh(node, cage)?,
+                #[cfg(not(feature = "subdivision"))]
+                Kind::Cage(none) => match *none {},
                 Kind::Custom { kind, value } => {
                     let Some(handler) = self.settings.kinds.get(kind) else {
                         let what = format!("nodes of the kind `{kind}` cannot be evaluated here");
@@ -158,7 +164,7 @@ impl State<'_> {
     /// The operand of an exact operation: exact itself, unless it says otherwise.
     fn operand_solid(&mut self, node: usize) -> Result<Arc<Solid>, Error> {
         match self.mode(node, Some(Mode::Exact)) {
-            Mode::Exact => self.exact(node),
+            Mode::Exact | Mode::FreeForm => self.exact(node),
             Mode::Field => self.meshed(node),
         }
     }

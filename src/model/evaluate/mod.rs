@@ -1,5 +1,7 @@
 //! Evaluation of a model: exactly on meshes, or as functions with one extraction.
 
+#[cfg(feature = "subdivision")]
+mod cages;
 mod meshes;
 mod state;
 
@@ -112,7 +114,7 @@ impl Evaluation {
     pub fn run(&self, model: &Model) -> Result<Evaluated, Error> {
         let mut state = State::new(self, model);
         let solid = match state.mode(model.result, None) {
-            Mode::Exact => state.exact(model.result)?,
+            Mode::Exact | Mode::FreeForm => state.exact(model.result)?,
             Mode::Field => state.meshed(model.result)?,
         };
         Ok(Evaluated { mesh: solid.mesh().clone(), extraction: state.last, warnings: state.warnings })

@@ -154,8 +154,10 @@ impl<'a> State<'a> {
     fn is_exact_leaf(&self, node: usize) -> bool {
         let at = &self.model.nodes[node];
         match at.kind {
-            Kind::Mesh(_) | Kind::Parametric(_) | Kind::Custom { .. } => at.extrude.is_none(),
-            Kind::Operation(..) => at.mode == Some(Mode::Exact) && at.extrude.is_none(),
+            Kind::Mesh(_) | Kind::Parametric(_) | Kind::Cage(_) | Kind::Custom { .. } => at.extrude.is_none(),
+            Kind::Operation(..) => {
+                matches!(at.mode, Some(Mode::Exact | Mode::FreeForm)) && at.extrude.is_none()
+            }
             _ => false,
         }
     }
@@ -202,7 +204,7 @@ impl<'a> State<'a> {
                 let distance = ContourDistance::new(&contours).map_err(|error| error.in_node(label))?;
                 Ok(self.graph.leaf(Arc::new(distance)))
             }
-            Kind::Mesh(_) | Kind::Parametric(_) | Kind::Custom { .. } => {
+            Kind::Mesh(_) | Kind::Parametric(_) | Kind::Cage(_) | Kind::Custom { .. } => {
                 // Only when extruded: a mesh has no plane region.
                 let what = "only formulas, contours, regions and combinations of them can be extruded";
                 Err(Error::Model(what.into()).in_node(label))

@@ -4,6 +4,7 @@ use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::VertexOrigin;
+use super::curve::Chain;
 use super::operand::Operand;
 use super::work::{Sharp, Work, key};
 use crate::Error;
@@ -33,6 +34,53 @@ pub(super) struct Draft {
     pub(super) sharp: FxHashMap<(u32, u32), Sharp>,
 }
 
+impl Draft {
+    /// The draft after one subdivision: for details. Every face is one of the band, every new vertex new.
+    pub(super) fn refined(&self, chains: &[Chain]) -> Result<Self, Error> {
+        let level = self.cage.level();
+        let cage = self.cage.subdivided(1)?;
+        let before = level.vertex_count as u32;
+        let count = cage.positions().len();
+        let mut sharp = FxHashMap::default();
+        let mut on_curve = self.on_curve.clone();
+        on_curve.resize(count, None);
+        for (e, &h) in level.edges.iter().enumerate() {
+            let (u, v, middle) = (level.from(h), level.to(h), before + e as u32);
+            let Some(&tag) = self.sharp.get(&key(u, v)) else { continue };
+            sharp.insert(key(u, middle), tag);
+            sharp.insert(key(middle, v), tag);
+            if tag == Sharp::Curve {
+                let x = DVec3::from(cage.positions()[middle as usize]);
+                let near =
+                    chains.iter().enumerate().map(|(c, chain)| (c, chain.nearest(x, 0.0, f64::INFINITY)));
+                let nearest = near.min_by(|a, b| a.1.1.distance(x).total_cmp(&b.1.1.distance(x)));
+                on_curve[middle as usize] = nearest.map(|(c, found)| (c as u32, found.0));
+            }
+        }
+        let resized = |of: &[bool]| -> Vec<bool> {
+            of.iter().copied().chain((of.len()..count).map(|_| false)).collect()
+        };
+        let four = |of: &[bool]| -> Vec<bool> { of.iter().flat_map(|&value| [value; 4]).collect() };
+        Ok(Self {
+            origins: Vec::new(),
+            operand_of: self.operand_of.iter().flat_map(|&o| [o; 4]).collect(),
+            sources: vec![None; cage.faces().len()],
+            whole: four(&self.whole),
+            changed: vec![false; count],
+            targets: self
+                .targets
+                .iter()
+                .copied()
+                .chain((self.targets.len()..count).map(|_| DVec3::ZERO))
+                .collect(),
+            on_curve,
+            fixed: resized(&self.fixed),
+            sharp,
+            cage,
+        })
+    }
+}
+
 /// A face with its lowest corner first.
 fn turned(face: [u32; 3]) -> [u32; 3] {
     let k = (0..3).min_by_key(|&k| face[k]).unwrap_or(0);
@@ -42,35 +90,7 @@ fn turned(face: [u32; 3]) -> [u32; 3] {
 /// Puts the cage together.
 pub(super) fn assemble(work: &Work, operands: [&Operand; 2], reversed: [bool; 2]) -> Result<Draft, Error> {
     // 1. Faces: whole ones by their number in the operand, with its corners, then the others.
-    let mut faces: Vec<(usize, u32, [u32; 3])> = Vec::new();
-    let known = operands.map(|operand| {
-        let all = operand.cage.faces().iter().enumerate();
-        all.map(|(f, &corners)| (turned(corners), f as u32)).collect::<FxHashMap<[u32; 3], u32>>()
-    });
-    let rest = usize::MAX;
-    for (i, face) in work.faces.iter().enumerate().filter(|(_, face)| face.alive) {
-        let o = usize::from(face.operand);
-        let mut corners = face.corners;
-        if reversed[o] {
-            corners.swap(1, 2);
-        }
-        let control = corners.map(|v| match work.vertices[v as usize].control {
-            Some((owner, w)) if usize::from(owner) == o => w,
-            _ => u32::MAX,
-        });
-        match known[o].get(&turned(control)).filter(|_| !control.contains(&u32::MAX)) {
-            Some(&f) => {
-                let original = operands[o].cage.faces()[f as usize];
-                let mut own = original.map(|w| corners[control.iter().position(|&c| c == w).unwrap_or(0)]);
-                if reversed[o] {
-                    own.swap(1, 2);
-                }
-                faces.push((o, f, own));
-            }
-            None => faces.push((rest, i as u32, face.corners)),
-        }
-    }
-    faces.sort_by_key(|&(o, f, _)| (o, f));
+    let faces = ordered_faces(work, operands, reversed);
     // 2. Vertices: control vertices of A, of B, then new ones.
     let mut used: Vec<u32> = faces.iter().flat_map(|&(_, _, corners)| corners).collect();
     used.sort_unstable();
@@ -78,11 +98,11 @@ pub(super) fn assemble(work: &Work, operands: [&Operand; 2], reversed: [bool; 2]
     used.sort_by_key(|&v| (work.vertices[v as usize].control.unwrap_or((u8::MAX, v)), v));
     let numbers: FxHashMap<u32, u32> = used.iter().enumerate().map(|(i, &v)| (v, i as u32)).collect();
     let corners: Vec<[u32; 3]> = faces.iter().map(|&(_, _, corners)| corners.map(|v| numbers[&v])).collect();
-    let sources: Vec<_> = faces.iter().map(|&(o, f, _)| (o != rest).then_some((o, f))).collect();
+    let sources: Vec<_> = faces.iter().map(|&(o, f, _)| (o != REST).then_some((o, f))).collect();
     let whole: Vec<bool> = sources.iter().map(Option::is_some).collect();
     let operand_of = faces
         .iter()
-        .map(|&(o, f, _)| if o == rest { work.faces[f as usize].operand } else { o as u8 })
+        .map(|&(o, f, _)| if o == REST { work.faces[f as usize].operand } else { o as u8 })
         .collect();
 
     let origins: Vec<VertexOrigin> = used
@@ -117,6 +137,42 @@ pub(super) fn assemble(work: &Work, operands: [&Operand; 2], reversed: [bool; 2]
     let cage = ControlMesh::new(positions, corners, tags, rules)?;
     let on_curve = used.iter().map(|&v| work.vertices[v as usize].on_curve).collect();
     Ok(Draft { cage, origins, operand_of, sources, whole, changed, targets, on_curve, fixed, sharp })
+}
+
+/// Stands for the operand of faces that are none of its control faces.
+const REST: usize = usize::MAX;
+
+/// The faces in the result's order: operand and control face, or [`REST`] and the number in the working mesh; and the corners.
+fn ordered_faces(work: &Work, operands: [&Operand; 2], reversed: [bool; 2]) -> Vec<(usize, u32, [u32; 3])> {
+    let mut faces: Vec<(usize, u32, [u32; 3])> = Vec::new();
+    let known = operands.map(|operand| {
+        let all = operand.cage.faces().iter().enumerate();
+        all.map(|(f, &corners)| (turned(corners), f as u32)).collect::<FxHashMap<[u32; 3], u32>>()
+    });
+    for (i, face) in work.faces.iter().enumerate().filter(|(_, face)| face.alive) {
+        let o = usize::from(face.operand);
+        let mut corners = face.corners;
+        if reversed[o] {
+            corners.swap(1, 2);
+        }
+        let control = corners.map(|v| match work.vertices[v as usize].control {
+            Some((owner, w)) if usize::from(owner) == o => w,
+            _ => u32::MAX,
+        });
+        match known[o].get(&turned(control)).filter(|_| !control.contains(&u32::MAX)) {
+            Some(&f) => {
+                let original = operands[o].cage.faces()[f as usize];
+                let mut own = original.map(|w| corners[control.iter().position(|&c| c == w).unwrap_or(0)]);
+                if reversed[o] {
+                    own.swap(1, 2);
+                }
+                faces.push((o, f, own));
+            }
+            None => faces.push((REST, i as u32, face.corners)),
+        }
+    }
+    faces.sort_by_key(|&(o, f, _)| (o, f));
+    faces
 }
 
 /// Which vertices are new, or have other faces than before.

@@ -6,12 +6,12 @@ use smallvec::SmallVec;
 
 use super::work::{Work, key, quality};
 
-/// Triangles must look the way the surface does: within 72 degrees, and 84 in the second half of the rounds.
-const UPRIGHT: [f64; 2] = [0.3, 0.1];
+/// Triangles must look the way the surface does, where they did: within 72 degrees at first, then 84, at last a right angle.
+const UPRIGHT: [f64; 3] = [0.3, 0.1, 0.0];
 /// Triangles of a worse shape than this are made only where the old ones were worse.
-const SHAPE: [f64; 2] = [0.12, 0.03];
-/// Rounds of coarsening at most; each takes all it can.
-const ROUNDS: usize = 12;
+const SHAPE: [f64; 3] = [0.12, 0.03, 0.001];
+/// Rounds of coarsening at most for each of these; each takes all it can.
+const ROUNDS: usize = 5;
 
 /// Takes out all vertices that are not to stay, as far as the surface allows. Returns how many are left of them.
 pub(super) fn coarsen(work: &mut Work) -> usize {
@@ -20,13 +20,17 @@ pub(super) fn coarsen(work: &mut Work) -> usize {
     order.sort_by_key(|&v| (std::cmp::Reverse(work.vertices[v as usize].step), v));
     let mut left = order;
     left.retain(|&v| !work.vertices[v as usize].keep && !work.around[v as usize].is_empty());
-    for round in 0..ROUNDS {
-        let strict = usize::from(round >= ROUNDS / 2);
-        let before = left.len();
-        left.retain(|&v| !take_out(work, v, strict));
-        turn_edges(work);
-        if left.is_empty() || (left.len() == before && strict == 1) {
-            break;
+    for strict in 0..UPRIGHT.len() {
+        for _ in 0..ROUNDS {
+            let before = left.len();
+            left.retain(|&v| !take_out(work, v, strict));
+            turn_edges(work);
+            if left.is_empty() {
+                return 0;
+            }
+            if left.len() == before {
+                break;
+            }
         }
     }
     left.len()
@@ -82,8 +86,11 @@ fn worth(work: &Work, v: u32, u: u32, strict: usize) -> Option<f64> {
             continue;
         }
         let corners = face.corners.map(|w| if w == v { u } else { w });
-        if !work.is_upright(corners, face.operand, UPRIGHT[strict])
-            || !turns_little(work, face.corners, corners, UPRIGHT[strict])
+        let least = UPRIGHT[strict];
+        let was_upright = work.is_upright(face.corners, face.operand, least);
+        if was_upright
+            && (!work.is_upright(corners, face.operand, least)
+                || !turns_little(work, face.corners, corners, least))
         {
             return None;
         }
@@ -136,8 +143,8 @@ fn collapse(work: &mut Work, v: u32, u: u32) {
     work.around[u as usize].sort_unstable();
 }
 
-/// Turns edges while that makes triangles better or vertices more regular. Edges of curves and creases, and between control
-/// faces that stay whole, are left. Returns how many were turned.
+/// Turns edges while that makes triangles better or vertices more regular. Edges of curves and creases are left, and
+/// those of control faces that are whole, if no vertex is crowded. Returns how many were turned.
 pub(super) fn turn_edges(work: &mut Work) -> usize {
     let mut turned = 0;
     // The energy falls with each turn, so it ends; the bound is for rounding.
@@ -146,7 +153,7 @@ pub(super) fn turn_edges(work: &mut Work) -> usize {
         for face in work.faces.iter().filter(|face| face.alive) {
             for k in 0..3 {
                 let (u, v) = (face.corners[k], face.corners[(k + 1) % 3]);
-                if face.whole.is_none() {
+                if face.whole.is_none() || is_crowded(work, u, v) {
                     edges.push(key(u, v));
                 }
             }
@@ -171,7 +178,8 @@ fn turn_edge(work: &mut Work, u: u32, v: u32) -> bool {
     }
     let Some([(f, a), (g, b)]) = work.sides(u, v) else { return false };
     let (one, other) = (work.faces[f as usize], work.faces[g as usize]);
-    if one.whole.is_some() || other.whole.is_some() || a == b || work.neighbours(a).contains(&b) {
+    let kept = (one.whole.is_some() || other.whole.is_some()) && !is_crowded(work, u, v);
+    if kept || a == b || work.neighbours(a).contains(&b) {
         return false;
     }
     if [u, v].iter().any(|&w| work.around[w as usize].len() <= 3) {
@@ -211,6 +219,17 @@ fn turn_edge(work: &mut Work, u: u32, v: u32) -> bool {
     true
 }
 
+/// More faces than this at a vertex are worth turning an edge of an operand's faces.
+const CROWDED: usize = 9;
+
+/// Whether an end of an edge has too many faces, of which some are new.
+fn is_crowded(work: &Work, u: u32, v: u32) -> bool {
+    [u, v].into_iter().any(|w| {
+        let around = &work.around[w as usize];
+        around.len() > CROWDED && around.iter().any(|&f| work.faces[f as usize].whole.is_none())
+    })
+}
+
 /// What one face too many, squared, weighs against the inverse shapes of two triangles.
 const CROWD: f64 = 0.35;
 
@@ -232,6 +251,7 @@ fn replace(work: &mut Work, f: u32, corners: [u32; 3]) {
         work.around[w as usize].retain(|g| *g != f);
     }
     work.faces[f as usize].corners = corners;
+    work.faces[f as usize].whole = None;
     for w in corners {
         work.around[w as usize].push(f);
         work.around[w as usize].sort_unstable();

@@ -87,37 +87,48 @@ impl CreaseLines {
     }
 }
 
-/// Rows of the limit surface at the vertices after two steps, over the control points.
+/// Rows of the limit surface at the vertices after one or two steps, over the control points.
 pub(super) struct LimitRows {
     one: Level,
-    two: Level,
     first: Vec<Row>,
-    second: Vec<Option<Row>>,
+    /// The level after two steps, and its rows, made when asked for.
+    two: Option<(Level, Vec<Option<Row>>)>,
 }
 
 impl LimitRows {
-    pub(super) fn new(level: &Level) -> Self {
+    pub(super) fn new(level: &Level, steps: u32) -> Self {
         let (one, first) = level.refined();
-        let two = one.refined_faces();
-        let second = vec![None; two.vertex_count];
-        Self { one, two, first, second }
+        let two = (steps > 1).then(|| {
+            let two = one.refined_faces();
+            let rows = vec![None; two.vertex_count];
+            (two, rows)
+        });
+        Self { one, first, two }
     }
 
-    fn second(&mut self, v: u32) -> &Row {
-        if self.second[v as usize].is_none() {
-            let before = self.one.vertex_count as u32;
-            let row = if v < before { self.one.vertex_row(v) } else { self.one.edge_row(v - before) };
-            let mut all = Row::new();
-            row.iter().for_each(|&(w, weight)| add(&mut all, &self.first[w as usize], weight));
-            self.second[v as usize] = Some(all);
-        }
-        self.second[v as usize].get_or_insert_default()
+    fn last(&self) -> &Level {
+        self.two.as_ref().map_or(&self.one, |(two, _)| two)
+    }
+
+    /// A vertex of the last level over the control points.
+    fn row(&mut self, v: u32) -> Row {
+        let Some((_, rows)) = &mut self.two else { return self.first[v as usize].clone() };
+        let (one, first) = (&self.one, &self.first);
+        rows[v as usize]
+            .get_or_insert_with(|| {
+                let before = one.vertex_count as u32;
+                let row = if v < before { one.vertex_row(v) } else { one.edge_row(v - before) };
+                let mut all = Row::new();
+                row.iter().for_each(|&(w, weight)| add(&mut all, &first[w as usize], weight));
+                all
+            })
+            .clone()
     }
 
     pub(super) fn limit(&mut self, v: u32) -> Vec<(u32, f64)> {
         let mut all = Row::new();
-        for (w, weight) in self.two.limit_row(v) {
-            let row = self.second(w).clone();
+        for (w, weight) in self.last().limit_row(v) {
+            let row = self.row(w);
             add(&mut all, &row, weight);
         }
         all.sort_unstable_by_key(|entry| entry.0);
@@ -146,6 +157,7 @@ impl<'a> Fit<'a> {
         reversed: [bool; 2],
         chains: &'a [Chain],
         rings: usize,
+        steps: u32,
     ) -> Self {
         let unknown = unknowns(draft, rings);
         let mut number = vec![u32::MAX; draft.changed.len()];
@@ -153,14 +165,14 @@ impl<'a> Fit<'a> {
         let creases = operands.map(CreaseLines::new);
         let mut fit = Self { operands, reversed, chains, creases, samples: Vec::new(), unknown, number };
         if !fit.unknown.is_empty() {
-            fit.take_samples(draft);
+            fit.take_samples(draft, steps);
         }
         fit
     }
 
-    /// Samples over all faces whose surface depends on an unknown.
-    fn take_samples(&mut self, draft: &Draft) {
-        let mut rows = LimitRows::new(draft.cage.level());
+    /// Samples over all faces whose surface depends on an unknown: at the vertices after one or two `steps`.
+    fn take_samples(&mut self, draft: &Draft, steps: u32) {
+        let mut rows = LimitRows::new(draft.cage.level(), steps);
         let mut aims: FxHashMap<u32, (Aim, f64)> = FxHashMap::default();
         let faces = draft.cage.faces();
         let mut moves = vec![false; self.number.len()];
@@ -172,22 +184,22 @@ impl<'a> Fit<'a> {
         // 1. On faces.
         for (f, corners) in faces.iter().enumerate() {
             if corners.iter().any(|&v| moves[v as usize]) {
-                for inner in &rows.two.faces[16 * f..16 * f + 16] {
+                for inner in &rows.last().faces[f << (2 * steps)..(f + 1) << (2 * steps)] {
                     inner.iter().for_each(|&v| {
                         aims.insert(v, (Aim::Surface(draft.operand_of[f]), 0.0));
                     });
                 }
             }
         }
-        // 2. On curves and creases: the points of an edge after two steps.
+        // 2. On curves and creases: the points of an edge.
         let level = draft.cage.level();
         for (e, &h) in level.edges.iter().enumerate() {
             let (u, v) = (level.from(h), level.to(h));
             let Some(&sharp) = draft.sharp.get(&(u.min(v), u.max(v))) else { continue };
             let middle = level.vertex_count as u32 + e as u32;
             let quarter = |i: u32| rows.one.vertex_count as u32 + 2 * e as u32 + i;
-            let points = [(u, 0.0), (quarter(0), 0.25), (middle, 0.5), (quarter(1), 0.75), (v, 1.0)];
-            for (point, t) in points {
+            let points = [(u, 0.0), (middle, 0.5), (v, 1.0), (quarter(0), 0.25), (quarter(1), 0.75)];
+            for &(point, t) in &points[..if steps > 1 { 5 } else { 3 }] {
                 if let Some(aim) = aims.get_mut(&point) {
                     *aim = match sharp {
                         Sharp::Curve => self.curve_aim(draft, u, v, t),

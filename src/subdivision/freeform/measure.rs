@@ -27,7 +27,8 @@ pub struct Errors {
     pub band: f64,
     /// The same over the others.
     pub outside: f64,
-    /// How far the triangles that points were looked for on may be off: what the distances above may be off at most.
+    /// What the distances above may be too small by: how far the triangles that they were measured to are from their surfaces at
+    /// most, and what may lie between the points that were measured.
     pub allowance: f64,
     /// The volume of the cage's solid less that of the exact result, in cubed units.
     pub volume: f64,
@@ -51,39 +52,51 @@ pub(super) struct Measure<'a> {
     pub(super) fineness: f64,
 }
 
-/// Every face of the cage is measured at the vertices of 4^3 triangles, which are on its surface.
-const STEPS: u32 = 3;
+/// What may lie between measured points, over the largest distance: it varies over a face about once, and a wave is flat within
+/// (2 pi / 8)^2 / 8 = 8 % over an eighth of it.
+const BETWEEN: f64 = 0.1;
+
+/// Which triangles are measured.
+pub(super) struct Region {
+    /// For each face of the cage whether its surface may differ from an operand's.
+    pub(super) affected: Vec<bool>,
+    /// For each operand and control face whether its surface is in the result as it was.
+    pub(super) same: [Vec<bool>; 2],
+}
 
 impl Measure<'_> {
     /// Measures over all faces whose surface may have changed; over the others both surfaces are one, bit for bit.
     ///
     /// From the cage's surface, the nearest triangle of the exact result is found first, then the foot on the surface that it
     /// stands for. Where that leaves the triangle's neighbourhood, as beyond the curve, the triangle counts.
-    pub(super) fn errors(&self, draft: &Draft, unknown: &[u32]) -> Errors {
-        let mut errors = Errors { allowance: self.fineness, ..Errors::default() };
-        let affected = affected(draft, unknown);
-        let (level, points) = fine_surface(draft);
+    /// Every face of the cage is measured at the vertices of 4^steps triangles, which are on its surface. Also told is the
+    /// largest distance over each face.
+    pub(super) fn errors(&self, draft: &Draft, region: &Region, steps: u32) -> (Errors, Vec<f64>) {
+        let within = self.operands.map(|operand| operand.within);
+        let mut errors = Errors { allowance: within[0].max(within[1]), ..Errors::default() };
+        let mut of_face = vec![0.0f64; draft.cage.faces().len()];
+        let Region { affected, same } = region;
+        let (level, points) = fine_surface(draft, steps);
         let fine = Mesh::new(points.iter().map(DVec3::to_array).collect(), level.faces.clone());
         errors.volume = fine.volume() - self.exact.solid().mesh().volume();
         // 1. The triangles of both that may differ.
         let mesh = self.exact.solid().mesh();
-        let same = self.same_faces(draft, &affected);
         let is_cut = |t: &u32| {
             let (o, f) = self.start.control_face(*t);
             !same[o][f as usize]
         };
         let cut: Vec<u32> = (0..mesh.triangles.len() as u32).filter(is_cut).collect();
         let own: Vec<u32> =
-            (0..fine.triangles.len() as u32).filter(|&t| affected[t as usize >> (2 * STEPS)]).collect();
+            (0..fine.triangles.len() as u32).filter(|&t| affected[t as usize >> (2 * steps)]).collect();
         if own.is_empty() {
-            return errors;
+            return (errors, of_face);
         }
         // 2. From the cage's surface to the exact result.
         let tree = TriangleTree::new(&part(mesh, &cut));
         let mut seen = vec![false; points.len()];
         let (mut sum, mut count, mut guess) = (0.0, 0u32, None);
         for &t in &own {
-            let kind = draft.whole[t as usize >> (2 * STEPS)];
+            let face = t as usize >> (2 * steps);
             for v in fine.triangles[t as usize] {
                 if std::mem::replace(&mut seen[v as usize], true) {
                     continue;
@@ -94,38 +107,55 @@ impl Measure<'_> {
                 let (o, triangle) = self.start.fine_triangle(cut[closest.triangle as usize]);
                 let distance = self.distance(self.operands[o], triangle, x, &closest);
                 errors.forward = errors.forward.max(distance);
-                let kind = if kind { &mut errors.outside } else { &mut errors.band };
+                of_face[face] = of_face[face].max(distance);
+                let kind = if draft.whole[face] { &mut errors.outside } else { &mut errors.band };
                 *kind = kind.max(distance);
                 sum += distance * distance;
                 count += 1;
             }
         }
         errors.mean = (sum / f64::from(count.max(1))).sqrt();
-        // 3. And back, from its vertices, which are on the operands' surfaces.
-        let tree = TriangleTree::new(&part(&fine, &own));
+        // 3. And back.
+        errors.backward = self.backward(&cut, &part(&fine, &own));
+        errors.curve = self.curve_error(draft, &level, &points, steps);
+        errors.allowance += BETWEEN * errors.largest();
+        (errors, of_face)
+    }
+
+    /// The largest distance of the vertices of some triangles of the exact result, which are on the operands' surfaces, from
+    /// the cage's.
+    fn backward(&self, cut: &[u32], surface: &Mesh) -> f64 {
+        let mesh = self.exact.solid().mesh();
+        let tree = TriangleTree::new(surface);
         let mut seen = vec![false; mesh.positions.len()];
-        let mut guess = None;
-        for &t in &cut {
+        let (mut guess, mut largest) = (None, 0.0f64);
+        for &t in cut {
             for v in mesh.triangles[t as usize] {
                 if !std::mem::replace(&mut seen[v as usize], true)
                     && let Some(closest) = tree.closest_from(mesh.positions[v as usize], guess)
                 {
                     guess = Some(closest.triangle);
-                    errors.backward = errors.backward.max(closest.squared_distance.sqrt());
+                    largest = largest.max(closest.squared_distance.sqrt());
                 }
             }
         }
-        errors.curve = self.curve_error(draft, &level, &points);
-        errors
+        largest
+    }
+
+    /// What is to be measured of a draft whose control points `unknown` moved.
+    pub(super) fn region(&self, draft: &Draft, unknown: &[u32]) -> Region {
+        let affected = affected(draft, unknown);
+        let same = self.same_faces(draft, &affected);
+        Region { affected, same }
     }
 
     /// The largest distance of points on the cage's curve edges from the exact curve.
-    fn curve_error(&self, draft: &Draft, fine: &Level, points: &[DVec3]) -> f64 {
+    fn curve_error(&self, draft: &Draft, fine: &Level, points: &[DVec3], steps: u32) -> f64 {
         let level = draft.cage.level();
         let mut largest = 0.0f64;
         // An edge's parts come one after the other, before all edges inside faces.
-        for (e, &h) in fine.edges.iter().enumerate().take(level.edges.len() << STEPS) {
-            let own = level.edges[e >> STEPS];
+        for (e, &h) in fine.edges.iter().enumerate().take(level.edges.len() << steps) {
+            let own = level.edges[e >> steps];
             let (u, v) = (level.from(own), level.to(own));
             if draft.sharp.get(&(u.min(v), u.max(v))) != Some(&Sharp::Curve) {
                 continue;
@@ -157,7 +187,7 @@ impl Measure<'_> {
 }
 
 /// Faces whose surface depends on an unknown: those with a corner beside one.
-fn affected(draft: &Draft, unknown: &[u32]) -> Vec<bool> {
+pub(super) fn affected(draft: &Draft, unknown: &[u32]) -> Vec<bool> {
     let mut is_unknown = vec![false; draft.changed.len()];
     unknown.iter().for_each(|&v| is_unknown[v as usize] = true);
     let mut near = is_unknown.clone();
@@ -169,11 +199,11 @@ fn affected(draft: &Draft, unknown: &[u32]) -> Vec<bool> {
     draft.cage.faces().iter().map(|corners| corners.iter().any(|&v| near[v as usize])).collect()
 }
 
-/// The cage after [`STEPS`] subdivisions, and the limits of its vertices.
-fn fine_surface(draft: &Draft) -> (Level, Vec<DVec3>) {
+/// The cage after some subdivisions, and the limits of its vertices.
+fn fine_surface(draft: &Draft, steps: u32) -> (Level, Vec<DVec3>) {
     let mut level = draft.cage.level().clone();
     let mut positions = draft.cage.points();
-    for _ in 0..STEPS {
+    for _ in 0..steps {
         let (next, rows) = level.refined();
         positions = rows.iter().map(|row| apply(row, &positions)).collect();
         level = next;

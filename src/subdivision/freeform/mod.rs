@@ -13,35 +13,29 @@
 //!    faces of half the size beside the curve; the best is returned.
 
 mod assemble;
+mod build;
 mod coarsen;
 mod curve;
+mod details;
+mod fan;
 mod fit;
 mod measure;
 mod operand;
 mod relax;
 mod report;
+mod run;
 mod sizes;
 mod solve;
 mod start;
+#[cfg(test)]
+mod tests;
 mod work;
 
-use std::time::Instant;
-
-use glam::DVec3;
-
 use super::control_mesh::ControlMesh;
-use super::error::CageError;
-use super::tags::Tags;
-use crate::{BooleanOptions, Control, Error, Operation, Outcome};
-use assemble::{Draft, assemble};
-use curve::Chain;
-use fit::Fit;
+use crate::{Control, Error, Operation, Outcome};
 pub use measure::Errors;
-use measure::Measure;
-use operand::Operand;
 pub use report::FreeFormReport;
-use sizes::Sizes;
-use start::Start;
+use run::{Run, diagonal};
 
 /// Where a control point of a result comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,6 +80,7 @@ pub struct FreeForm {
     refine: u32,
     attempts: u32,
     rings: usize,
+    details: usize,
     allow_tangent: bool,
     control: Control,
 }
@@ -97,6 +92,7 @@ impl Default for FreeForm {
             refine: 0,
             attempts: 2,
             rings: 2,
+            details: 0,
             allow_tangent: false,
             control: Control::new(),
         }
@@ -144,16 +140,8 @@ impl FreeFormOutcome {
     }
 }
 
-/// The limit surfaces are triangulated within this share of the tolerance.
-const FINENESS: f64 = 0.5;
-/// ... but not into more triangles than this for one operand, since the working mesh begins with some of them.
-const MOST_TRIANGLES: usize = 150_000;
-/// ... and no face more often than this.
-const MOST_STEPS: u32 = 5;
 /// Tolerance without one given, over the diagonal of the operands.
 const USUAL_TOLERANCE: f64 = 1e-3;
-/// Surfaces that cross at less than this angle, in degrees, are refused: their curve is not known.
-const LEAST_CROSSING: f64 = 5.0;
 
 impl FreeForm {
     /// Default settings: a thousandth of the operands' diagonal as tolerance, faces beside the curve halved at most twice.
@@ -187,6 +175,15 @@ impl FreeForm {
     #[must_use]
     pub fn rings(mut self, rings: usize) -> Self {
         self.rings = rings.max(1);
+        self
+    }
+
+    /// Up to how many levels of details are added while the tolerance is not reached: displacements after one, two, ...
+    /// subdivisions, which make every level three to five times as near. Default 0: a plain cage, which every program reads. At
+    /// most 4.
+    #[must_use]
+    pub fn details(mut self, levels: usize) -> Self {
+        self.details = levels.min(4);
         self
     }
 
@@ -226,217 +223,6 @@ impl FreeForm {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(Error::InvalidArgument(format!("a tolerance must be positive, not {tolerance}")));
         }
-        let mut run =
-            Run { settings: self, tolerance, report: FreeFormReport::default(), start: Instant::now() };
-        run.report.asked = tolerance;
-        run.all(operation, a, b)
-    }
-}
-
-fn diagonal(cages: &[&ControlMesh]) -> f64 {
-    let points = cages.iter().flat_map(|cage| cage.positions()).map(|&p| DVec3::from(p));
-    let (low, high) =
-        points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-    (high - low).length()
-}
-
-/// One run: settings, and the report that grows.
-struct Run<'s> {
-    settings: &'s FreeForm,
-    tolerance: f64,
-    report: FreeFormReport,
-    start: Instant,
-}
-
-/// What one size of faces gave.
-struct Attempt {
-    draft: Draft,
-    errors: Errors,
-    refined: u32,
-    left_over: usize,
-}
-
-impl Run<'_> {
-    fn took(&mut self, step: &'static str) {
-        let seconds = self.start.elapsed().as_secs_f64();
-        self.start = Instant::now();
-        match self.report.seconds.iter_mut().find(|known| known.0 == step) {
-            Some(known) => known.1 += seconds,
-            None => self.report.seconds.push((step, seconds)),
-        }
-    }
-
-    fn operand(&self, index: usize, cage: &ControlMesh) -> Result<Operand, Error> {
-        let faces = cage.faces().len().max(1);
-        let mut most = MOST_STEPS;
-        while most > 2 && faces.saturating_mul(1 << (2 * most)) > MOST_TRIANGLES {
-            most -= 1;
-        }
-        let most = most.max(2 + self.settings.refine.min(2));
-        Operand::new(cage, self.tolerance * FINENESS, most)
-            .map_err(|error| error.of_operand(index, format!("operand {}", index + 1)))
-    }
-
-    fn all(
-        &mut self,
-        operation: Operation,
-        a: &ControlMesh,
-        b: &ControlMesh,
-    ) -> Result<FreeFormOutcome, Error> {
-        let control = &self.settings.control;
-        // 1. Limit surfaces as triangles, and their exact boolean.
-        control.report("limit surfaces", 0.0)?;
-        let operands = [self.operand(0, a)?, self.operand(1, b)?];
-        let operands = [&operands[0], &operands[1]];
-        self.took("limit");
-        let exact = BooleanOptions::new()
-            .control(control.clone())
-            .remove_vertices(false)
-            .run(operation, [operands[0].solid(), operands[1].solid()])?;
-        self.took("boolean");
-        self.report.exact_triangles = exact.solid().mesh().triangles.len();
-        if exact.solid().is_empty() {
-            let surface = ControlMesh::new(Vec::new(), Vec::new(), Tags::default(), a.rules())?;
-            self.report.reached = true;
-            return Ok(FreeFormOutcome {
-                surface,
-                exact,
-                origins: Vec::new(),
-                report: std::mem::take(&mut self.report),
-            });
-        }
-        if !exact.solid().is_manifold() {
-            return Err(CageError::Operation(
-                "the exact result touches itself in an edge or a vertex, which no cage can do; move an operand a little".into(),
-            )
-            .into());
-        }
-        // 2. The curve.
-        let start = Start::new(operands, &exact);
-        let chains = start.chains(self.tolerance);
-        self.check_chains(&chains)?;
-        self.took("curve");
-        // 3. Cages with faces of smaller and smaller size beside the curve.
-        let mut best: Option<Attempt> = None;
-        let last = self.settings.refine + if chains.is_empty() { 0 } else { self.settings.attempts };
-        for refined in self.settings.refine..=last {
-            control.report(
-                "cage",
-                f64::from(refined - self.settings.refine) / f64::from(last - self.settings.refine + 1),
-            )?;
-            let attempt = self.attempt(operands, &start, &chains, &exact, refined)?;
-            if best.as_ref().is_none_or(|best| attempt.errors.largest() < best.errors.largest()) {
-                best = Some(attempt);
-            }
-            if best.as_ref().is_some_and(|best| best.errors.largest() <= self.tolerance) {
-                break;
-            }
-        }
-        let Some(best) = best else { return Err(CageError::Operation("no cage was made".into()).into()) };
-        self.describe(&best, operands);
-        Ok(FreeFormOutcome {
-            surface: best.draft.cage,
-            exact,
-            origins: best.draft.origins,
-            report: std::mem::take(&mut self.report),
-        })
-    }
-
-    fn check_chains(&mut self, chains: &[Chain]) -> Result<(), Error> {
-        let sine = chains.iter().map(|chain| chain.crossing).fold(1.0, f64::min);
-        self.report.crossing = sine.clamp(0.0, 1.0).asin().to_degrees();
-        self.report.chains = chains.len();
-        self.report.features = chains.iter().map(|chain| chain.features.len()).sum();
-        if self.report.crossing < LEAST_CROSSING {
-            let text = format!(
-                "the surfaces meet at {:.1} degrees somewhere along their curve: where it runs is not well known",
-                self.report.crossing
-            );
-            if !self.settings.allow_tangent {
-                return Err(CageError::Operation(format!(
-                    "{text}; move an operand, take the exact boolean of the limit meshes, or allow it (--allow-tangent)"
-                ))
-                .into());
-            }
-            self.report.warnings.push(text);
-        }
-        Ok(())
-    }
-
-    fn attempt(
-        &mut self,
-        operands: [&Operand; 2],
-        start: &Start<'_>,
-        chains: &[Chain],
-        exact: &Outcome,
-        refined: u32,
-    ) -> Result<Attempt, Error> {
-        // 1. The cage's faces.
-        let sizes = Sizes::new(chains, start.curve_sizes(chains, refined));
-        let steps = start.steps(&sizes);
-        let mut work = start.work(chains, &sizes, &steps)?;
-        let left_over = coarsen::coarsen(&mut work);
-        relax::polish(&mut work, chains);
-        relax::relax(&mut work, chains, operands, start.reversed);
-        coarsen::turn_edges(&mut work);
-        let mut draft = assemble(&work, operands, start.reversed)?;
-        self.took("cage");
-        // 2. Its control points.
-        let mut fit = Fit::new(&draft, operands, start.reversed, chains, self.settings.rings);
-        let mut positions = draft.cage.points();
-        if !fit.unknown.is_empty() {
-            fit.run(&mut positions, 0.01 * self.tolerance);
-            for &v in &fit.unknown {
-                if let VertexOrigin::Kept { operand, vertex } = draft.origins[v as usize] {
-                    draft.origins[v as usize] = VertexOrigin::Fitted { operand, vertex };
-                }
-            }
-        }
-        draft.cage = draft.cage.with_points(&positions);
-        self.took("fit");
-        // 3. The distance.
-        let fineness = self.tolerance * FINENESS;
-        let measure = Measure { operands, start, exact, chains, fineness };
-        let errors = measure.errors(&draft, &fit.unknown);
-        self.took("measure");
-        Ok(Attempt { draft, errors, refined, left_over })
-    }
-
-    fn describe(&mut self, best: &Attempt, operands: [&Operand; 2]) {
-        let report = &mut self.report;
-        let level = best.draft.cage.level();
-        report.errors = best.errors;
-        report.reached = best.errors.largest() <= self.tolerance;
-        report.vertices = best.draft.origins.len();
-        report.faces = level.faces.len();
-        report.refined = best.refined;
-        report.left_over = best.left_over;
-        for (v, origin) in best.draft.origins.iter().enumerate() {
-            let count = level.ring(v as u32).face_count();
-            match *origin {
-                VertexOrigin::Kept { .. } => report.unchanged += 1,
-                VertexOrigin::Fitted { .. } => report.fitted += 1,
-                VertexOrigin::New => report.added += 1,
-            }
-            let before = match *origin {
-                VertexOrigin::Kept { operand, vertex } | VertexOrigin::Fitted { operand, vertex } => {
-                    operands[operand].surface.level.ring(vertex).face_count()
-                }
-                VertexOrigin::New => 0,
-            };
-            if count != before {
-                report.valence = report.valence.max(count);
-            }
-        }
-        if !report.reached {
-            let errors = best.errors;
-            let place = if errors.band >= errors.outside { "beside the curve" } else { "in faces around it" };
-            report.warnings.push(format!(
-                "the cage is within {:.3e} of the exact result, not {:.3e}; the largest distance is {place}: refine the cages there \
-                 (`subdivide --levels 1`), or allow more",
-                errors.largest(),
-                self.tolerance
-            ));
-        }
+        Run::new(self, tolerance).all(operation, a, b)
     }
 }

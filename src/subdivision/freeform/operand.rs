@@ -13,6 +13,8 @@ pub(super) struct Operand {
     pub(super) cage: ControlMesh,
     pub(super) surface: Surface,
     pub(super) fine: LimitMesh,
+    /// How far its triangles may be from the surface.
+    pub(super) within: f64,
     tree: TriangleTree,
 }
 
@@ -36,7 +38,7 @@ impl Operand {
     pub(super) fn new(cage: &ControlMesh, tolerance: f64, most: u32) -> Result<Self, Error> {
         cage.check_closed()?;
         // What is sharp for a while is subdivided away: the surface stays the same.
-        let mut cage = cage.clone();
+        let mut cage = cage.flattened()?.into_owned();
         let mut unrolled = 0;
         while cage.level().is_semi_sharp() && unrolled < 10 {
             cage = cage.subdivided(1)?;
@@ -48,9 +50,11 @@ impl Operand {
                 (LEAST_STEPS..most).find(|&s| surface.flatness(f, s as usize) <= tolerance).unwrap_or(most)
             })
             .collect();
+        let bounds = steps.iter().enumerate().map(|(f, &s)| surface.flatness(f as u32, s as usize));
+        let within = bounds.fold(0.0, f64::max);
         let fine = LimitMesh::new(&surface, &steps)?;
         let tree = TriangleTree::new(fine.mesh());
-        Ok(Self { cage, surface, fine, tree })
+        Ok(Self { cage, surface, fine, within, tree })
     }
 
     /// The triangles as an operand.

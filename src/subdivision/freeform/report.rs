@@ -32,8 +32,10 @@ pub struct FreeFormReport {
     pub valence: usize,
     /// How often faces beside the curve were halved in size for the cage that is returned.
     pub refined: u32,
-    /// Levels of details of the result.
+    /// Levels of details of the result, and how many details there are.
     pub levels: usize,
+    /// Vertices with details.
+    pub details: usize,
     /// Vertices in the working mesh that could not be taken out.
     pub left_over: usize,
     /// Triangles of the exact result.

@@ -42,25 +42,7 @@ pub(super) fn solve(equations: &[Equation], unknowns: &mut [DVec3], ridge: f64) 
     let inverse: Vec<DMat3> =
         diagonal.iter().map(|block| (*block + DMat3::IDENTITY * damping).inverse()).collect();
     // 2. Conjugate gradients for the change.
-    let apply = |x: &[DVec3]| -> Vec<DVec3> {
-        let mut out: Vec<DVec3> = x.iter().map(|&value| value * damping).collect();
-        for equation in equations {
-            let value = equation.row.iter().fold(DVec3::ZERO, |sum, &(i, a)| sum + x[i as usize] * a);
-            let force = equation.weight * value;
-            for &(i, a) in &equation.row {
-                out[i as usize] += force * a;
-            }
-        }
-        out
-    };
-    let mut residual = vec![DVec3::ZERO; n];
-    for equation in equations {
-        let value = equation.row.iter().fold(equation.known, |sum, &(i, a)| sum + unknowns[i as usize] * a);
-        let force = equation.weight * (equation.target - value);
-        for &(i, a) in &equation.row {
-            residual[i as usize] += force * a;
-        }
-    }
+    let mut residual = residuals(equations, unknowns);
     let dot = |a: &[DVec3], b: &[DVec3]| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum::<f64>();
     let conditioned =
         |r: &[DVec3]| -> Vec<DVec3> { r.iter().zip(&inverse).map(|(r, block)| *block * *r).collect() };
@@ -71,7 +53,7 @@ pub(super) fn solve(equations: &[Equation], unknowns: &mut [DVec3], ridge: f64) 
     let goal = rz * TOLERANCE * TOLERANCE;
     let mut steps = 0;
     while rz > goal && rz > 0.0 && steps < STEPS {
-        let applied = apply(&direction);
+        let applied = applied(equations, &direction, damping);
         let curvature = dot(&direction, &applied);
         if !(curvature > 0.0) {
             break;
@@ -93,6 +75,32 @@ pub(super) fn solve(equations: &[Equation], unknowns: &mut [DVec3], ridge: f64) 
         unknowns.iter_mut().zip(&change).for_each(|(x, way)| *x += *way);
     }
     steps
+}
+
+/// What the equations' matrix, with the damping, makes of a vector.
+fn applied(equations: &[Equation], x: &[DVec3], damping: f64) -> Vec<DVec3> {
+    let mut out: Vec<DVec3> = x.iter().map(|&value| value * damping).collect();
+    for equation in equations {
+        let value = equation.row.iter().fold(DVec3::ZERO, |sum, &(i, a)| sum + x[i as usize] * a);
+        let force = equation.weight * value;
+        for &(i, a) in &equation.row {
+            out[i as usize] += force * a;
+        }
+    }
+    out
+}
+
+/// The forces that pull the unknowns: the right side for their change.
+fn residuals(equations: &[Equation], unknowns: &[DVec3]) -> Vec<DVec3> {
+    let mut residual = vec![DVec3::ZERO; unknowns.len()];
+    for equation in equations {
+        let value = equation.row.iter().fold(equation.known, |sum, &(i, a)| sum + unknowns[i as usize] * a);
+        let force = equation.weight * (equation.target - value);
+        for &(i, a) in &equation.row {
+            residual[i as usize] += force * a;
+        }
+    }
+    residual
 }
 
 #[cfg(test)]

@@ -3,30 +3,31 @@
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::build::Builder;
 use super::curve::Chain;
 use super::operand::{Operand, weights_in};
 use super::sizes::Sizes;
-use super::work::{Sharp, Vertex, Work, key};
+use super::work::Work;
 use crate::Outcome;
 use crate::subdivision::control_mesh::Place;
 use crate::subdivision::error::CageError;
-use crate::subdivision::level::{Kind, NONE};
+use crate::subdivision::level::NONE;
 
 /// A place is on an edge of its face when the third weight is below this: rounding of points on the curve.
 const ON_EDGE: f64 = 1e-7;
 
 /// What the exact result says of the operands' faces.
 pub(super) struct Start<'a> {
-    operands: [&'a Operand; 2],
-    outcome: &'a Outcome,
+    pub(super) operands: [&'a Operand; 2],
+    pub(super) outcome: &'a Outcome,
     /// For each operand whether its part is turned over.
     pub(super) reversed: [bool; 2],
     /// For each operand and control face: whether it is in the result as it was.
-    whole: [Vec<bool>; 2],
+    pub(super) whole: [Vec<bool>; 2],
     /// For each operand and fine vertex the vertex of the result there.
-    image: [Vec<u32>; 2],
+    pub(super) image: [Vec<u32>; 2],
     /// For each triangle of the result its fine triangle's control face.
-    face_of: Vec<u32>,
+    pub(super) face_of: Vec<u32>,
 }
 
 impl<'a> Start<'a> {
@@ -97,7 +98,7 @@ impl<'a> Start<'a> {
     }
 
     /// Vertices of the result on creases of an operand.
-    fn crease_vertices(&self) -> FxHashSet<u32> {
+    pub(super) fn crease_vertices(&self) -> FxHashSet<u32> {
         let mut found = FxHashSet::default();
         self.each_side(|_, [u, v], sharp| {
             if sharp {
@@ -108,7 +109,7 @@ impl<'a> Start<'a> {
     }
 
     /// Visits the sides of all triangles of the result: the triangle, its ends, and whether it lies on a crease.
-    fn each_side(&self, mut visit: impl FnMut(usize, [u32; 2], bool)) {
+    pub(super) fn each_side(&self, mut visit: impl FnMut(usize, [u32; 2], bool)) {
         let mesh = self.outcome.solid().mesh();
         for (t, corners) in mesh.triangles.iter().enumerate() {
             let o = self.outcome.origins()[t].operand as usize;
@@ -131,7 +132,7 @@ impl<'a> Start<'a> {
     }
 
     /// Where a vertex of triangle `t` of the result is on the cage of that triangle's operand.
-    fn place(&self, t: usize, v: u32) -> Place {
+    pub(super) fn place(&self, t: usize, v: u32) -> Place {
         let origin = self.outcome.origins()[t];
         let operand = self.operands[origin.operand as usize];
         let triangle = operand.solid().source_triangle(origin.triangle);
@@ -180,7 +181,7 @@ impl<'a> Start<'a> {
         steps: &[Vec<u32>; 2],
     ) -> Result<Work, CageError> {
         let active = [0, 1].map(|o| self.active(o, &steps[o]));
-        let mut builder = Builder { start: self, work: Work::default(), numbers: FxHashMap::default() };
+        let mut builder = Builder::new(self);
         // 1. Control faces that stay, with the points that faces beside them need.
         for o in 0..2 {
             for f in 0..active[o].len() as u32 {
@@ -221,283 +222,5 @@ impl<'a> Start<'a> {
             }
         }
         active
-    }
-}
-
-struct Builder<'s, 'a> {
-    start: &'s Start<'a>,
-    work: Work,
-    /// For each vertex of the result its number here.
-    numbers: FxHashMap<u32, u32>,
-}
-
-impl Builder<'_, '_> {
-    fn vertex(&mut self, v: u32) -> u32 {
-        if let Some(&number) = self.numbers.get(&v) {
-            return number;
-        }
-        let position = self.start.outcome.solid().mesh().positions[v as usize].into();
-        let number = self.work.add_vertex(Vertex {
-            position,
-            control: None,
-            keep: false,
-            fixed: false,
-            on_curve: None,
-            step: u8::MAX,
-            normals: [DVec3::ZERO; 2],
-        });
-        self.numbers.insert(v, number);
-        number
-    }
-
-    /// A control face as one triangle, or as a fan where sides beside active faces have points.
-    fn add_whole(&mut self, o: usize, f: u32, active: &[bool]) {
-        let operand = self.start.operands[o];
-        let level = &operand.surface.level;
-        let image = &self.start.image[o];
-        let corners = level.faces[f as usize];
-        let sides: [Vec<u32>; 3] = std::array::from_fn(|k| {
-            let h = 3 * f + k as u32;
-            let twin = level.twins[h as usize];
-            let edge = level.edge_of[h as usize] as usize;
-            let plain = twin != NONE && !active[twin as usize / 3] && self.start.whole[o][twin as usize / 3];
-            let mut points: Vec<u32> =
-                if plain { Vec::new() } else { operand.fine.edge_points[edge].clone() };
-            if level.edges[edge] != h {
-                points.reverse();
-            }
-            points
-        });
-        let mut number = |w: u32| self.vertex(image[w as usize]);
-        let corners = corners.map(&mut number);
-        let sides = sides.map(|side| side.into_iter().map(&mut number).collect::<Vec<u32>>());
-        let triangles = fan(corners, &sides);
-        let whole = (triangles.len() == 1).then_some(f);
-        for mut triangle in triangles {
-            if self.start.reversed[o] {
-                triangle.swap(1, 2);
-            }
-            self.work.add_face(triangle, o as u8, whole);
-        }
-    }
-
-    /// Where vertices come from, what is normal to them, and whether they stay.
-    fn describe(&mut self, active: &[Vec<bool>; 2], steps: &[Vec<u32>; 2], sizes: &Sizes) {
-        let on_crease = self.start.crease_vertices();
-        // 1. Control vertices and those of splits.
-        for o in 0..2 {
-            let operand = self.start.operands[o];
-            let level = &operand.surface.level;
-            let wanted = wanted_steps(operand, &steps[o]);
-            for (w, &v) in self.start.image[o].iter().enumerate() {
-                let Some(&number) = self.numbers.get(&v) else { continue };
-                let vertex = &mut self.work.vertices[number as usize];
-                if w < level.vertex_count {
-                    vertex.control = vertex.control.or(Some((o as u8, w as u32)));
-                }
-                vertex.step = vertex.step.min(operand.fine.step_of[w]);
-                let corner =
-                    w < level.vertex_count && level.kind(w as u32, &level.ring(w as u32)) == Kind::Corner;
-                let near = sizes.is_too_near(vertex.position, on_crease.contains(&v));
-                vertex.keep = corner || (operand.fine.step_of[w] <= wanted[w] && !near);
-                vertex.fixed = corner;
-            }
-        }
-        // 2. Normals, at all triangles that are not whole faces; control vertices of whole faces by those.
-        let mesh = self.start.outcome.solid().mesh();
-        for (t, corners) in mesh.triangles.iter().enumerate() {
-            let o = self.start.outcome.origins()[t].operand as usize;
-            let f = self.start.face_of[t];
-            for &v in corners {
-                let Some(&number) = self.numbers.get(&v) else { continue };
-                if self.work.vertices[number as usize].normals[o] != DVec3::ZERO {
-                    continue;
-                }
-                let place = self.start.place(t, v);
-                let normal = self.start.operands[o].surface.at(f, place.weights).normal;
-                let turn = if self.start.reversed[o] { -1.0 } else { 1.0 };
-                self.work.vertices[number as usize].normals[o] = normal * turn;
-            }
-        }
-        let _ = active;
-    }
-
-    /// Tags the edges of creases.
-    fn tag(&mut self, active: &[Vec<bool>; 2]) {
-        let mut creases = Vec::new();
-        self.start.each_side(|t, ends, sharp| {
-            if sharp {
-                creases.push((self.start.outcome.origins()[t].operand, ends));
-            }
-        });
-        for (o, [u, v]) in creases {
-            let (Some(&u), Some(&v)) = (self.numbers.get(&u), self.numbers.get(&v)) else { continue };
-            if self.work.sides(u, v).is_some() {
-                self.work.sharp.insert(key(u, v), Sharp::Crease(o as u8));
-            }
-        }
-        // Whole faces have long edges.
-        for o in 0..2 {
-            let level = &self.start.operands[o].surface.level;
-            for (e, &h) in level.edges.iter().enumerate() {
-                let f = h as usize / 3;
-                if level.sharpness[e] == 0.0 || active[o][f] || !self.start.whole[o][f] {
-                    continue;
-                }
-                let ends =
-                    [level.from(h), level.to(h)].map(|w| self.numbers.get(&self.start.image[o][w as usize]));
-                if let [Some(&u), Some(&v)] = ends
-                    && self.work.sides(u, v).is_some()
-                {
-                    self.work.sharp.insert(key(u, v), Sharp::Crease(o as u8));
-                }
-            }
-        }
-        // On a crease no single normal is right.
-        let ends: Vec<(u32, u32, Sharp)> =
-            self.work.sharp.iter().map(|(&(u, v), &sharp)| (u, v, sharp)).collect();
-        for (u, v, sharp) in ends {
-            if let Sharp::Crease(o) = sharp {
-                for w in [u, v] {
-                    self.work.vertices[w as usize].normals[usize::from(o)] = DVec3::ZERO;
-                }
-            }
-        }
-    }
-
-    /// Tags the curve and marks its nodes.
-    fn mark_chains(&mut self, chains: &[Chain], sizes: &Sizes) {
-        for (c, chain) in chains.iter().enumerate() {
-            let n = chain.vertices.len();
-            let numbers: Vec<u32> = chain.vertices.iter().map(|&v| self.vertex(v)).collect();
-            for i in 0..n {
-                let vertex = &mut self.work.vertices[numbers[i] as usize];
-                vertex.on_curve = Some((c as u32, chain.lengths[i]));
-                vertex.keep = vertex.fixed;
-                vertex.step = u8::MAX;
-                vertex.control = None;
-                if i + 1 < n || chain.closed {
-                    self.work.sharp.insert(key(numbers[i], numbers[(i + 1) % n]), Sharp::Curve);
-                }
-            }
-            for &i in &chain.features {
-                let vertex = &mut self.work.vertices[numbers[i] as usize];
-                (vertex.keep, vertex.fixed) = (true, true);
-            }
-            // The point nearest to each wanted node that is not taken becomes it.
-            for length in sizes.nodes(chain, c) {
-                let apart = |i: usize| {
-                    let d = (chain.lengths[i] - length).abs();
-                    if chain.closed { d.min(chain.length() - d) } else { d }
-                };
-                let free = |i: &usize| !self.work.vertices[numbers[*i] as usize].keep;
-                let near = (0..n).min_by(|&i, &j| apart(i).total_cmp(&apart(j)));
-                let best = (0..n).filter(free).min_by(|&i, &j| apart(i).total_cmp(&apart(j)));
-                if let (Some(near), Some(best)) = (near, best) {
-                    let fixed_there = self.work.vertices[numbers[near] as usize].fixed
-                        && apart(near) < 0.3 * sizes.of_chain[c][near];
-                    if !fixed_there {
-                        let vertex = &mut self.work.vertices[numbers[best] as usize];
-                        vertex.keep = true;
-                    }
-                }
-            }
-        }
-    }
-
-    /// Fixes vertices at which tagged edges end or branch.
-    fn fix(&mut self) {
-        for v in 0..self.work.vertices.len() as u32 {
-            let count = self.work.sharp_neighbours(v).len();
-            let vertex = &mut self.work.vertices[v as usize];
-            if count == 1 || count > 2 {
-                (vertex.fixed, vertex.keep) = (true, true);
-            }
-        }
-    }
-}
-
-/// For each fine vertex how often the most split face beside it is to be split.
-fn wanted_steps(operand: &Operand, steps: &[u32]) -> Vec<u8> {
-    let mesh = operand.fine.mesh();
-    let mut wanted = vec![0u8; mesh.positions.len()];
-    for (t, corners) in mesh.triangles.iter().enumerate() {
-        let own = steps[operand.fine.face_of[t] as usize] as u8;
-        corners.iter().for_each(|&v| wanted[v as usize] = wanted[v as usize].max(own));
-    }
-    wanted
-}
-
-/// A triangle with points on at most two of its sides, as triangles.
-fn fan(corners: [u32; 3], sides: &[Vec<u32>; 3]) -> Vec<[u32; 3]> {
-    if sides.iter().all(Vec::is_empty) {
-        return vec![corners];
-    }
-    // Turned so that the side from a to b is one without points.
-    let Some(empty) = (0..3).find(|&k| sides[k].is_empty()) else {
-        return vec![corners];
-    };
-    let (a, b, c) = (corners[empty], corners[(empty + 1) % 3], corners[(empty + 2) % 3]);
-    // From c to a, and from c to b.
-    let mut left: Vec<u32> = vec![c];
-    left.extend(&sides[(empty + 2) % 3]);
-    left.push(a);
-    let mut right: Vec<u32> = vec![c];
-    right.extend(sides[(empty + 1) % 3].iter().rev());
-    right.push(b);
-    let mut triangles = vec![[c, left[1], right[1]]];
-    let (mut i, mut j) = (1, 1);
-    while i + 1 < left.len() || j + 1 < right.len() {
-        let (p, q) = (i as f64 / (left.len() - 1) as f64, j as f64 / (right.len() - 1) as f64);
-        if i + 1 < left.len() && (p <= q || j + 1 == right.len()) {
-            triangles.push([left[i], left[i + 1], right[j]]);
-            i += 1;
-        } else {
-            triangles.push([left[i], right[j + 1], right[j]]);
-            j += 1;
-        }
-    }
-    triangles
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The boundary of a fan is that of the triangle with its points.
-    #[test]
-    fn fans_fill_the_triangle() {
-        for sides in [
-            [vec![], vec![], vec![]],
-            [vec![3], vec![], vec![]],
-            [vec![3, 4, 5], vec![], vec![6]],
-            [vec![], vec![3, 4, 5], vec![6, 7, 8]],
-            [vec![3, 4], vec![5, 6, 7], vec![]],
-        ] {
-            let triangles = fan([0, 1, 2], &sides);
-            let points = 3 + sides.iter().map(Vec::len).sum::<usize>();
-            assert_eq!(triangles.len(), points - 2, "{sides:?}: {triangles:?}");
-            let mut open: FxHashSet<(u32, u32)> = FxHashSet::default();
-            for t in &triangles {
-                for k in 0..3 {
-                    let (u, v) = (t[k], t[(k + 1) % 3]);
-                    if !open.remove(&(v, u)) {
-                        assert!(open.insert((u, v)));
-                    }
-                }
-            }
-            let mut outline = Vec::new();
-            for k in 0..3 {
-                outline.push(k as u32);
-                outline.extend(&sides[k]);
-            }
-            for i in 0..outline.len() {
-                assert!(
-                    open.contains(&(outline[i], outline[(i + 1) % outline.len()])),
-                    "{sides:?} {triangles:?}"
-                );
-            }
-            assert_eq!(open.len(), outline.len());
-        }
     }
 }
