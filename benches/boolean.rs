@@ -100,6 +100,21 @@ fn around(criterion: &mut Criterion) {
         );
     });
     group.finish();
+    // Caps fanned from their centres: the time for a side must not grow with the sides.
+    let mut group = criterion.benchmark_group("self_crossings of fan cylinders");
+    group.sample_size(10);
+    for sides in [64, 512, 4096, 8192] {
+        let solid = shapes::fan_cylinder(sides);
+        group.throughput(Throughput::Elements(u64::from(sides)));
+        group.bench_function(sides.to_string(), |bencher| {
+            bencher.iter_batched(
+                || solid.clone(),
+                |solid| solid.self_crossings(&trisect::Control::new()).expect("no limits").count,
+                criterion::BatchSize::LargeInput,
+            );
+        });
+    }
+    group.finish();
 }
 
 criterion_group!(benches, operations, from_meshes, around);

@@ -210,3 +210,18 @@ pub(crate) fn urchins(level: u32) -> Vec<Solid> {
     let second = turned(urchin(2), SECOND_TURN).translated([2.5, 0.013, -0.007]);
     vec![solid(turned(urchin(1), FIRST_TURN)), solid(second)]
 }
+
+/// A cylinder with caps fanned from their centres.
+pub(crate) fn fan_cylinder(sides: u32) -> Solid {
+    let rim = (0..sides).flat_map(|k| {
+        let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
+        [0.0, 1.0].map(|z| [angle.cos(), angle.sin(), z])
+    });
+    let positions = [[0.0; 3], [0.0, 0.0, 1.0]].into_iter().chain(rim).collect();
+    let at = |k: u32, top: u32| 2 + 2 * (k % sides) + top;
+    let triangles = (0..sides).flat_map(|k| {
+        let ([a, b], [c, d]) = ([at(k, 0), at(k + 1, 0)], [at(k, 1), at(k + 1, 1)]);
+        [[0, b, a], [1, c, d], [a, b, d], [a, d, c]]
+    });
+    solid(Mesh::new(positions, triangles.collect()))
+}

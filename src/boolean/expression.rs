@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::complex::operation::UnknownName;
+use super::complex::operation::{Operation, UnknownName};
 
 /// What counts as the inside of an operand, by how often its surface winds around a point.
 ///
@@ -100,6 +100,48 @@ impl Expression {
             Self::AtLeast(count, sets) => {
                 sets.iter().filter(|set| set.contains(is_in)).count() >= (*count).max(1)
             }
+        }
+    }
+
+    /// The same set as one operation on operands, each once, if it is one: nested unions are opened, and so is a union of what
+    /// is taken off.
+    pub(crate) fn as_operation(&self) -> Option<(Operation, Vec<usize>)> {
+        let mut list = Vec::new();
+        let operation = match self {
+            Self::Operand(_) => Operation::Union,
+            Self::Union(_) => Operation::Union,
+            Self::Intersection(_) => Operation::Intersection,
+            Self::Difference(_) => Operation::Difference,
+            Self::SymmetricDifference(_) => Operation::SymmetricDifference,
+            Self::AtLeast(..) => return None,
+        };
+        let is_flat = match self {
+            Self::Difference(sets) => {
+                let (first, others) = sets.split_first()?;
+                matches!(first, Self::Operand(_))
+                    && first.add_united(&mut list)
+                    && others.iter().all(|set| set.add_united(&mut list))
+            }
+            Self::Intersection(sets) | Self::SymmetricDifference(sets) => {
+                sets.iter().all(|set| matches!(set, Self::Operand(_)) && set.add_united(&mut list))
+            }
+            _ => self.add_united(&mut list),
+        };
+        let mut distinct = list.clone();
+        distinct.sort_unstable();
+        distinct.dedup();
+        (is_flat && distinct.len() == list.len()).then_some((operation, list))
+    }
+
+    /// Adds the operands of a union of unions; false if there is anything else.
+    fn add_united(&self, list: &mut Vec<usize>) -> bool {
+        match self {
+            Self::Operand(operand) => {
+                list.push(*operand);
+                true
+            }
+            Self::Union(sets) => sets.iter().all(|set| set.add_united(list)),
+            _ => false,
         }
     }
 
@@ -328,6 +370,18 @@ mod tests {
         let xor = SymmetricDifference(vec![Intersection(vec![a.clone(), b.clone()]), c.clone()]);
         assert_eq!(read("a & b ^ c"), xor);
         assert_eq!(read("atleast(2, a, b, c)"), AtLeast(2, vec![a, b, c]));
+    }
+
+    #[test]
+    fn nested_unions_are_one_operation() {
+        let operation = |text: &str| text.parse::<Expression>().unwrap().as_operation();
+        assert_eq!(operation("a + (b + c)"), Some((Operation::Union, vec![0, 1, 2])));
+        assert_eq!(operation("a - (b + (c + d)) - e"), Some((Operation::Difference, vec![0, 1, 2, 3, 4])));
+        assert_eq!(operation("b & a"), Some((Operation::Intersection, vec![1, 0])));
+        assert_eq!(operation("a - (b - c)"), None);
+        assert_eq!(operation("a - a"), None);
+        assert_eq!(operation("(a + b) - c"), None);
+        assert_eq!(operation("atleast(1, a, b)"), None);
     }
 
     #[test]

@@ -41,6 +41,7 @@ pub use general::embed::{Embedding, Grid};
 pub use many::made::Embed;
 pub use many::options::BooleanOptions;
 pub use result::certificate::{Certificate, OperandState};
+pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;
 
 use crate::{Error, Solid};

@@ -150,6 +150,13 @@ pub(crate) struct Combine {
     pub(crate) inputs: Inputs,
     #[command(flatten)]
     pub(crate) results: Results,
+    /// Round the result to the numbers of the output's format (single precision in STL and glTF) and resolve what crosses there:
+    /// what is read back does not cross itself
+    #[arg(long, help_heading = "Results")]
+    pub(crate) embed: bool,
+    /// Leave every new point where it rounds to, even where parts closer than rounding then cross
+    #[arg(long, conflicts_with = "embed", help_heading = "Results")]
+    pub(crate) exact_rounding: bool,
     /// Read and check the inputs, say what would be done, write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,

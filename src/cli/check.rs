@@ -119,6 +119,12 @@ fn crossing_lines(crossings: &Crossings) -> String {
              clean file of it\n",
         );
     }
+    if crossings.touching > 0 {
+        let count = crossings.touching;
+        text.push_str(&format!(
+            "{count} pairs of triangles lie on each other in one plane: as an operand, what touches is one body\n"
+        ));
+    }
     if crossings.tolerated > 0 {
         let count = crossings.tolerated;
         text.push_str(&format!("{count} self-crossings no deeper than rounding, which are tolerated\n"));

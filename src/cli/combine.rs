@@ -5,7 +5,7 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::Value;
 use trisect::io::Format;
-use trisect::{BooleanOptions, Operation, Outcome, Solid};
+use trisect::{BooleanOptions, Embed, Grid, Operation, Outcome, Solid};
 
 use super::argument_groups::Colours;
 use super::arguments::{Combination, Combine};
@@ -93,12 +93,7 @@ fn run_task(
     }
 
     let start = Instant::now();
-    let rules = operands.iter().map(|operand| operand.request.rule);
-    let mut options =
-        BooleanOptions::new().control(control).rules(rules).assume_clean(arguments.inputs.using.assume_clean);
-    if let Some(threads) = session.common.threads {
-        options = options.threads(usize::from(threads));
-    }
+    let options = options(arguments, &operands, &targets.concat(), session).control(control);
     let solids: Vec<&Solid> = operands.iter().map(|operand| &operand.solid).collect();
     let outcomes = task.run(&options, &solids)?;
     let seconds = session.took("run", start);
@@ -107,16 +102,9 @@ fn run_task(
     let mut results = Vec::new();
     let mut outputs = Vec::new();
     for ((outcome, targets), suffix) in outcomes.iter().zip(&targets).zip(suffixes) {
-        let measures = Measures::of_solid(outcome.solid());
-        let mut result = measures.to_json();
-        result.insert("certificate".into(), report::certificate(outcome.certificate()));
-        results.push(Value::from(result));
-        outputs.extend(write(arguments, targets, outcome, format, session)?);
-        let names: Vec<String> = targets.iter().map(Target::name).collect();
-        let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
         let name = if suffix.is_empty() { "result" } else { &suffix[1..] };
-        session.console.say(&format!("{name}: {} ({}){arrow}", measures.line(), report::time(seconds)));
-        session.console.detail(&outcome.certificate().to_string());
+        outputs.extend(write(arguments, targets, outcome, format, session)?);
+        results.push(tell(name, outcome, targets, seconds, session));
     }
     session.note("result", results[0].clone());
     if results.len() > 1 {
@@ -124,6 +112,55 @@ fn run_task(
     }
     session.note("outputs", outputs);
     Ok(Exit::Fine)
+}
+
+/// How the operands are combined.
+fn options(
+    arguments: &Combine,
+    operands: &[Operand],
+    targets: &[Target],
+    session: &Session<'_>,
+) -> BooleanOptions {
+    let options = BooleanOptions::new()
+        .rules(operands.iter().map(|operand| operand.request.rule))
+        .embed(embedding(arguments, targets))
+        .assume_clean(arguments.inputs.using.assume_clean);
+    match session.common.threads {
+        Some(threads) => options.threads(usize::from(threads)),
+        None => options,
+    }
+}
+
+/// Says what a result is, and returns it for the report.
+fn tell(name: &str, outcome: &Outcome, targets: &[Target], seconds: f64, session: &mut Session<'_>) -> Value {
+    let certificate = outcome.certificate();
+    let measures = Measures::of_solid(outcome.solid());
+    let mut result = measures.to_json();
+    result.insert("certificate".into(), report::certificate(certificate));
+    if let Some(warning) = report::nearly_flush(certificate) {
+        session.warn(warning);
+    }
+    if let Some(left) = certificate.embedding.map(|done| done.left).filter(|&left| left > 0) {
+        let triangles = report::counted(left, "triangle");
+        session.warn(format!("{name}: {triangles} still cross others or lie on them after rounding"));
+    }
+    let names: Vec<String> = targets.iter().map(Target::name).collect();
+    let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
+    session.console.say(&format!("{name}: {} ({}){arrow}", measures.line(), report::time(seconds)));
+    session.console.detail(&certificate.to_string());
+    result.into()
+}
+
+/// What becomes of crossings that rounding makes.
+fn embedding(arguments: &Combine, targets: &[Target]) -> Embed {
+    if arguments.exact_rounding {
+        return Embed::Never;
+    }
+    if !arguments.embed {
+        return Embed::default();
+    }
+    let single = arguments.results.writing.single || targets.iter().any(Target::is_single);
+    Embed::OnGrid(if single { Grid::Single } else { Grid::Double })
 }
 
 /// The inputs, one for each part of a file that is asked for; in expressions, whose operands are numbered, one for all parts

@@ -150,6 +150,8 @@ pub(crate) struct Crossings {
     pub(crate) count: usize,
     /// How many are no deeper than rounding.
     pub(crate) tolerated: usize,
+    /// How many pairs lie on each other in one plane.
+    pub(crate) touching: usize,
     /// All that is known about them.
     pub(crate) object: Value,
     /// The same, with the triangles' numbers in the file.
@@ -214,8 +216,13 @@ pub(crate) fn tried(
             return Err(Box::new((error, Some(solid.into_mesh()))));
         }
     }
-    let crossings =
-        Crossings { count: found.count, tolerated: found.tolerated, object: json_of(&found), found };
+    let crossings = Crossings {
+        count: found.count,
+        tolerated: found.tolerated,
+        touching: found.touching,
+        object: json_of(&found),
+        found,
+    };
     Ok(Usable { solid, crossings: Some(crossings) })
 }
 

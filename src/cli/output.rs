@@ -63,6 +63,16 @@ impl Target {
         Ok(Self { path: self.path.with_file_name(name), kind: self.kind })
     }
 
+    /// Whether the format has coordinates of single precision.
+    pub(crate) fn is_single(&self) -> bool {
+        match self.kind {
+            Kind::Mesh(format) | Kind::Forced(format) | Kind::Standard(format) => {
+                matches!(format, Format::Stl | Format::Glb | Format::Gltf)
+            }
+            Kind::Picture => false,
+        }
+    }
+
     /// The format in lower case, as in JSON.
     pub(crate) fn format(&self) -> String {
         match self.kind {

@@ -166,6 +166,10 @@ pub(crate) fn operand_line(operand: &Operand, measures: &Measures) -> String {
                 operand.request.rule
             ));
         }
+        Some(crossings) if crossings.touching > 0 => {
+            let count = counted(crossings.touching, "pair");
+            line.push_str(&format!(", {count} of triangles that lie on each other resolved"));
+        }
         Some(crossings) if crossings.tolerated > 0 => {
             let count = counted(crossings.tolerated, "self-crossing");
             line.push_str(&format!(", {count} no deeper than rounding"));
@@ -226,6 +230,29 @@ pub(crate) fn certificate(certificate: &Certificate) -> Value {
     let mut object = into_map(json_of(certificate));
     object.insert("operands".into(), operands.collect());
     object.into()
+}
+
+/// What there is to say about films and gaps too thin for single precision.
+pub(crate) fn nearly_flush(certificate: &Certificate) -> Option<String> {
+    let near = &certificate.nearly_flush;
+    let places: Vec<String> = near
+        .places
+        .iter()
+        .take(3)
+        .map(|found| {
+            let [x, y, z] = found.place.map(short);
+            format!("{:.1e} at ({x}, {y}, {z})", found.distance)
+        })
+        .collect();
+    (near.count > 0).then(|| {
+        format!(
+            "{} nearly flush with a face of another operand, apart by {}{}: films or gaps that thin are \
+             lost in single precision (STL, GLB); give coordinates that are flush, or let the tool reach further",
+            if near.count == 1 { "1 corner of the result is".into() } else { format!("{} corners of the result are", near.count) },
+            places.join(", "),
+            if near.count > places.len() { ", ..." } else { "" },
+        )
+    })
 }
 
 /// The keys of a JSON object.

@@ -6,7 +6,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 const MEANT: [(&[&str], &str); 7] = [
     (&["subtract", "minus", "diff", "carve"], "see `difference`"),
     (&["cut", "trim", "section"], "see `difference`, or `slice` for a picture of a plane section"),
-    (&["merge", "add", "join", "combine", "unite"], "see `union`"),
+    (&["merge", "add", "join", "unite"], "see `union`"),
     (&["and", "common", "overlap"], "see `intersection`"),
     (&["split"], "see `intersection` and `difference` with a body that covers one side"),
     (

@@ -26,7 +26,11 @@ pub struct SelfCrossings {
     pub count: usize,
     /// Pairs that cross no deeper than rounding; every computed mesh may have some. They are tolerated.
     pub tolerated: usize,
-    /// The depth that counts as rounding, in units of the coordinates.
+    /// Pairs that lie on each other in one plane, with area in common: bodies that touch face to face, or sheets without
+    /// thickness.
+    pub touching: usize,
+    /// The depth that counts as rounding at the largest coordinates, in units of these; where all coordinates are smaller than a
+    /// sixteenth of the largest, less in proportion.
     pub tolerance: f64,
     /// The deepest few of the `count` pairs.
     pub places: Vec<SelfCrossing>,
@@ -37,6 +41,14 @@ impl SelfCrossings {
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.count == 0
+    }
+}
+
+impl SelfCrossings {
+    /// Whether the surface neither crosses itself, except by rounding, nor lies on itself anywhere.
+    #[must_use]
+    pub fn is_simple(&self) -> bool {
+        self.count == 0 && self.touching == 0
     }
 }
 

@@ -149,7 +149,7 @@ impl Solid {
     /// Whether it is known, from a check or from the operation that made it, to cross itself no deeper than rounding, and not
     /// to touch itself.
     pub(crate) fn is_known_clean(&self) -> bool {
-        self.made_clean || self.self_crossings.get().is_some_and(SelfCrossings::is_clean)
+        self.made_clean || self.self_crossings.get().is_some_and(SelfCrossings::is_simple)
     }
 
     /// Notes that an operation made this so that it crosses itself no deeper than rounding.

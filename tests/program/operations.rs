@@ -428,3 +428,20 @@ fn inside_out_shells_are_named_by_their_numbers_in_the_file() {
     assert_eq!(number(&ran.out), 14, "{ran:?}");
     assert_eq!(number(&folder.run("union two.obj two.obj -o c.obj").exits(3).err), 14);
 }
+
+#[test]
+fn a_film_is_warned_about_with_its_place() {
+    let folder = workshop();
+    folder.write("body.obj", cube([0.0; 3], [1.0; 3]));
+    folder.write("tool.obj", cube([0.25, 0.25, 0.0], [0.75, 0.75, 0.999_999_999]));
+    let ran = folder.run("difference body.obj tool.obj -o cut.obj --json --strict").exits(5);
+    let ran =
+        ran.says("4 corners of the result are nearly flush").says("1.0e-9 at (0.25, 0.25, 0.999999999)");
+    let object = ran.json();
+    let near = &object["result"]["certificate"]["nearly_flush"];
+    assert_eq!(near["count"], 4, "{near}");
+    assert_eq!(near["places"].as_array().map(Vec::len), Some(4));
+    // What is flush, or thick, is not told.
+    folder.write("tool.obj", cube([0.25, 0.25, 0.0], [0.75, 0.75, 1.0]));
+    folder.run("difference body.obj tool.obj -o cut.obj --strict").exits(0);
+}

@@ -55,7 +55,10 @@ fn a_film_without_thickness_in_the_file_is_told() {
     assert!(report["outputs"][0]["rounding"]["lost_films"].as_u64() > Some(0), "{report}");
     let told = told.says("film 1.0e-9 thick").says("OBJ or PLY");
     assert!(!told.err.contains("--recenter"), "that would not help: {told:?}");
-    folder.run("difference body.obj tool.obj -o c.ply --strict").exits(0);
+    // PLY holds it; what is left is that the operands are nearly flush.
+    let told = folder.run("difference body.obj tool.obj -o c.ply --strict").exits(5);
+    let told = told.says("nearly flush").says("1 warning");
+    assert!(!told.err.contains("thick"), "{told:?}");
     folder.run("convert c.ply c.stl --strict").exits(5).says("film");
     let plain = folder.run("convert body.obj b.stl --json --strict").exits(0).json();
     assert!(plain["outputs"][0]["rounding"].is_null());

@@ -9,7 +9,9 @@ use std::collections::BTreeMap;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use trisect::exact::{Sign, collinear, orient3d};
-use trisect::{BooleanOptions, Control, Expression, Mesh, Rule, Solid, primitives};
+use trisect::{
+    BooleanOptions, Control, Embed, Expression, Grid, Mesh, OperandState, Rule, Solid, primitives,
+};
 
 /// Rounds of a test that usually runs `usual`.
 fn rounds(usual: u64) -> u64 {
@@ -373,4 +375,55 @@ fn bodies_of_one_file_that_touch_are_one_body() {
     let resolved = BooleanOptions::new().resolve(&Solid::try_from(pillow).unwrap()).unwrap();
     assert_eq!(resolved.solid().components(), 1);
     assert_eq!(resolved.solid().mesh().triangles.len(), 12);
+}
+
+#[test]
+fn results_on_a_grid_are_free_of_crossings_or_say_how_many_are_left() {
+    let (mut tried, mut resolved, mut left) = (0, 0, 0);
+    for seed in 0..rounds(60) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let grid = [0.0, 3.0, 8.0][rng.random_range(0..3)];
+        let turn = [0.0, 42.0][rng.random_range(0..2)];
+        let solids: Vec<Solid> = (0..2).filter_map(|_| random_operand(&mut rng, grid, turn)).collect();
+        let [a, b] = solids.as_slice() else { continue };
+        let options = BooleanOptions::new().embed(Embed::OnGrid(Grid::Single));
+        let outcome = options.evaluate(&"a + b".parse().unwrap(), [a, b]).unwrap();
+        let embedding = outcome.certificate().embedding.expect("it was asked for");
+        let mesh = outcome.solid().mesh();
+        assert!(outcome.certificate().closed, "seed {seed}");
+        assert!(mesh.positions.iter().flatten().all(|&x| f64::from(x as f32) == x), "seed {seed}");
+        // Read again, by itself: nothing is known of it.
+        let again = Solid::try_from(Mesh::new(mesh.positions.clone(), mesh.triangles.clone())).unwrap();
+        let found = again.self_crossings(&Control::new()).unwrap();
+        if embedding.left == 0 {
+            assert!(found.is_simple() && found.tolerated == 0, "seed {seed}: {found:?}");
+        }
+        tried += 1;
+        resolved += u32::from(embedding.rounds > 0 && embedding.left == 0);
+        left += u32::from(embedding.left > 0);
+        // It encloses what it did, up to what the grid moves.
+        let exact = BooleanOptions::new().evaluate(&"a + b".parse().unwrap(), [a, b]).unwrap();
+        let change = (exact.solid().volume() - again.volume()).abs();
+        assert!(change <= 20.0 * (embedding.displacement + 1e-7), "seed {seed}: {change:e} {embedding:?}");
+    }
+    println!("{tried} results, {resolved} resolved, {left} with crossings left");
+    assert!(tried > 30 && left * 20 < tried, "{left} of {tried} with crossings left");
+}
+
+#[test]
+fn a_solid_that_lies_on_itself_is_resolved_without_being_asked() {
+    // Two boxes with half a face in common, in one mesh.
+    let mut both = primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
+    let other = primitives::cuboid([0.5, 0.0, 1.0], [1.5, 1.0, 2.0]).unwrap();
+    append(&mut both, other.positions, &other.triangles);
+    let both = Solid::try_from(both).unwrap();
+    let found = both.self_crossings(&Control::new()).unwrap();
+    assert!(found.is_clean() && !found.is_simple() && found.touching > 0);
+    let far = Solid::try_from(primitives::cuboid([5.0; 3], [6.0; 3]).unwrap()).unwrap();
+    let united = both.union(&far).unwrap();
+    assert_eq!((united.solid().volume(), united.solid().components()), (3.0, 2));
+    assert!(matches!(
+        united.certificate().operands[0],
+        OperandState::Resolved { touching: 1.., crossings: 0, .. }
+    ));
 }

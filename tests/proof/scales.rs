@@ -10,14 +10,13 @@ use trisect::Operation::{Difference, Intersection, SymmetricDifference, Union};
 use trisect::{BooleanOptions, Mesh, Solid, primitives};
 
 use crate::judge::placement::{anywhere, mapped, moved, rotated, rotation};
-use crate::judge::vector::{Point, cross, minus, plus, unit};
-use crate::judge::wide::{self, Surface};
-use crate::judge::{oracle, surface};
+use crate::judge::vector::Point;
+use crate::judge::{surface, wide};
 
 /// A vertex of a result may be off by half a unit in the last place, and what the clean-up took for rounding is up to 64 units.
 const ULPS: u32 = 2;
-/// The same for vertices alone.
-const ULPS_OF_A_POINT: u32 = 16;
+/// Points judged for each pair.
+const POINTS: usize = 24;
 
 /// What is wrong with the booleans of a pair; nothing, it is hoped.
 fn faults(a: &Mesh, b: &Mesh, are_convex: bool, seed: u64) -> Vec<String> {
@@ -68,21 +67,12 @@ fn faults(a: &Mesh, b: &Mesh, are_convex: bool, seed: u64) -> Vec<String> {
         sum("|A n B|", wide::six_shared(a, b) - i, &slacks[1] + 100_000);
     }
     // 2. Points are on the right side.
-    let surfaces = [a, b].map(Surface::new);
-    let outcomes: Vec<Surface> = results.iter().map(Surface::new).collect();
     let mut judged = 0;
-    for p in points(a, b, &results, seed) {
-        let windings = surfaces.each_ref().map(|surface| surface.winding(&p));
-        let [Some(w), Some(v)] = windings else { continue };
-        for (&(operation, order), outcome) in all.iter().zip(&outcomes) {
-            let Some(is) = outcome.winding(&p) else { continue };
-            judged += 1;
-            let expected = oracle::expected(operation, &order.map(|k| [w, v][k]));
-            let is_rounding = || surfaces.iter().any(|surface| surface.is_near_a_plane(&p, ULPS_OF_A_POINT));
-            if is != expected && !is_rounding() {
-                found.push(format!("{operation:?} {order:?}: winds {is} times, not {expected}, round {p:?}"));
-            }
-        }
+    let points = wide::points_beside(a, b, &results, POINTS, seed);
+    for (&(operation, order), result) in all.iter().zip(&results) {
+        let verdict = wide::judge(operation, order.map(|k| [a, b][k]), result, &points);
+        judged += verdict.0;
+        found.extend(verdict.1.iter().map(|p| format!("{operation:?} {order:?}: wrong round {p:?}")));
     }
     assert!(judged > 20, "{judged} points judged");
     found
@@ -91,37 +81,6 @@ fn faults(a: &Mesh, b: &Mesh, are_convex: bool, seed: u64) -> Vec<String> {
 fn surface_of(mesh: &Mesh) -> (bool, bool) {
     let properties = surface::Properties::of(mesh);
     (properties.closed, properties.manifold)
-}
-
-/// Points beside the smaller operand, and beside what is new, from its size down to a few roundings.
-fn points(a: &Mesh, b: &Mesh, results: &[Mesh], seed: u64) -> Vec<Point> {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let size = |mesh: &Mesh| {
-        let [low, high] = crate::judge::vector::extent(&mesh.positions);
-        (0..3).map(|k| high[k] - low[k]).fold(0.0f64, f64::max)
-    };
-    let small = if size(a) <= size(b) { a } else { b };
-    let scale = size(small);
-    let near: Vec<&Mesh> =
-        std::iter::once(small).chain(results.iter().filter(|r| !r.triangles.is_empty())).collect();
-    (0..24)
-        .map(|index| {
-            let mesh = near[index % near.len()];
-            let corners = mesh.triangles[random.random_range(0..mesh.triangles.len())];
-            let [p, q, r] = corners.map(|corner| mesh.positions[corner as usize]);
-            let at = if index % 3 == 0 {
-                p
-            } else {
-                let middle = |k: usize| 0.5 * p[k] + 0.25 * q[k] + 0.25 * r[k];
-                [0, 1, 2].map(middle)
-            };
-            let normal = unit(cross(unit(minus(q, p)), unit(minus(r, p))));
-            let aside = [0; 3].map(|_| random.random_range(-0.5..0.5));
-            let step = scale * 10f64.powf(random.random_range(-12.0..0.0));
-            plus(at, plus(normal, aside, 1.0), if random.random() { step } else { -step })
-        })
-        .filter(|p| p.iter().all(|x| x.is_finite()))
-        .collect()
 }
 
 fn assert_right(cases: impl IntoIterator<Item = (String, Mesh, Mesh, bool)>) {

@@ -7,6 +7,7 @@ use crate::judge::contacts::{self, Parted, Topology};
 use crate::judge::oracle;
 use crate::judge::surface::Properties;
 use crate::judge::vector::extent;
+use crate::judge::wide;
 use trisect::{BooleanOptions, Control, Mesh, Operation, Solid};
 
 /// The topology of a mesh with its contacts parted. Vertices nearer than a part of its size are one: on the grid 1e-9, less
@@ -141,6 +142,9 @@ pub(crate) fn examine(seed: u64, case: &Case, points: usize) -> Found {
             found.faults |= fault;
         }
     }
+    if case.family == Family::Apart {
+        return apart(seed, case, &mesh, points, &properties, found);
+    }
     let verdict = oracle::judge(case.operation, &[&case.a, &case.b], &mesh, points, seed);
     found.identity_error = identity_error(case, properties.volume);
     // Not "greater": a panic of the other operation leaves no number.
@@ -156,6 +160,46 @@ pub(crate) fn examine(seed: u64, case: &Case, points: usize) -> Found {
         judged: verdict.judged,
         mistakes: verdict.mistakes.len(),
         farthest_rounded: verdict.farthest_rounded,
+        ..found
+    }
+}
+
+/// The judgement of a case whose sizes are so far apart that the volume of the box says nothing, and products overflow: volumes
+/// and points exactly, at the scale of the smaller operand.
+fn apart(seed: u64, case: &Case, mesh: &Mesh, points: usize, properties: &Properties, mut found: Found) -> Found {
+    // Measures that overflow say nothing.
+    if !(properties.volume.is_finite() && properties.area.is_finite()) {
+        found.faults &= !CERTIFICATE;
+    }
+    let at = wide::points_beside(&case.a, &case.b, std::slice::from_ref(mesh), points, seed);
+    let (judged, mistakes) = wide::judge(case.operation, [&case.a, &case.b], mesh, &at);
+    let other = match case.operation {
+        Operation::Intersection => Operation::Difference,
+        _ => Operation::Intersection,
+    };
+    let second = attempt(&Case { operation: other, ..case.clone() }).0;
+    let is_right = second.is_some_and(|second| {
+        let [a, b, this, that] = [&case.a, &case.b, mesh, &second].map(wide::six_volumes);
+        let error = match case.operation {
+            Operation::Union => this + that - a - b,
+            Operation::SymmetricDifference => this + &that + that - a - b,
+            _ => this + that - a,
+        };
+        let slack = |of: &Mesh| wide::six_volumes_of_rounding(of, &[&case.a, &case.b], 2);
+        let slack = slack(mesh) + slack(&second) + slack(&second);
+        -&slack <= error && error <= slack
+    });
+    if !is_right {
+        found.faults |= IDENTITY;
+    }
+    Found {
+        volume: properties.volume,
+        area: properties.area,
+        euler: properties.euler,
+        components: properties.components,
+        triangles: mesh.triangles.len(),
+        judged,
+        mistakes: mistakes.len(),
         ..found
     }
 }

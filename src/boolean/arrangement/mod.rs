@@ -9,6 +9,7 @@
 //!
 //! `self_crossings` asks the same predicates of one surface against itself.
 
+mod apart;
 pub(super) mod crossings;
 pub(super) mod curve;
 pub(super) mod cut_edges;
@@ -19,6 +20,7 @@ pub(super) mod location;
 pub(super) mod plane_faces;
 pub(super) mod points;
 mod self_crossings;
+mod self_pairs;
 pub(super) mod sheets;
 mod unrounded;
 

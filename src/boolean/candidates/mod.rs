@@ -111,7 +111,7 @@ impl Candidates {
 }
 
 /// Whether many triangles are needles.
-fn has_needles(triangles: &[u32], corners: impl Fn(u32) -> Corners) -> bool {
+pub(crate) fn has_needles(triangles: &[u32], corners: impl Fn(u32) -> Corners) -> bool {
     let sample = triangles.iter().step_by(triangles.len().div_ceil(SAMPLE).max(1));
     let needles = sample.clone().filter(|&&t| capsule::is_needle(&corners(t))).count();
     needles * NEEDLES_FROM >= sample.len()

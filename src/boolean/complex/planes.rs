@@ -3,7 +3,7 @@
 use super::Complex;
 use super::ids::FaceId;
 use super::origin::Origin;
-use crate::exact::{Projection, Sign, collinear, orient2d, orient3d, orient3d_filter};
+use crate::exact::{PlaneFilter, Projection, Sign, collinear, orient2d, orient3d, orient3d_filter};
 
 impl Complex<'_> {
     /// The corners of the face a triangle comes from, turned over if it was.
@@ -54,4 +54,32 @@ pub(crate) fn look_same_way(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
     let seen = Projection::of(x);
     let [a, b, c] = y.map(|p| seen.project(&p));
     orient2d(a, b, c) == Sign::Positive
+}
+
+/// Whether two triangles that lie in one plane, exactly, have area in common.
+pub(crate) fn overlap(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> bool {
+    if collinear(&a[0], &a[1], &a[2]) || collinear(&b[0], &b[1], &b[2]) {
+        return false;
+    }
+    let seen = Projection::of(a);
+    let upright = |t: &[[f64; 3]; 3]| {
+        let [p, q, r] = t.each_ref().map(|p| seen.project(p));
+        if orient2d(p, q, r) == Sign::Positive { [p, q, r] } else { [p, r, q] }
+    };
+    let (a, b) = (upright(a), upright(b));
+    // Two triangles are apart iff a side of one of them has the whole of the other on its outer side.
+    let separates = |s: &[[f64; 2]; 3], t: &[[f64; 2]; 3]| {
+        (0..3).any(|k| t.iter().all(|&p| orient2d(s[k], s[(k + 1) % 3], p) != Sign::Positive))
+    };
+    !separates(&a, &b) && !separates(&b, &a)
+}
+
+/// Whether two triangles lie in one plane, exactly, and have area in common.
+pub(crate) fn lie_on_each_other(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> bool {
+    let filter = PlaneFilter::new(&a[0], &a[1], &a[2]);
+    let is_off = |p: &[f64; 3]| {
+        let (determinant, bound) = filter.determinant(p);
+        determinant.abs() > bound
+    };
+    !b.iter().any(is_off) && b.iter().all(|p| orient3d(&a[0], &a[1], &a[2], p) == Sign::Zero) && overlap(a, b)
 }

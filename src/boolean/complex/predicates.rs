@@ -82,6 +82,17 @@ impl<'a> Predicates<'a> {
         }
     }
 
+    /// Whether plain coordinates alone tell that some corners lie on one side of a plane; false where they leave that open.
+    pub(crate) fn are_plainly_on_one_side(&self, [a, b, c]: &[Corner; 3], corners: &[Corner]) -> bool {
+        let filter = PlaneFilter::new(&a.position, &b.position, &c.position);
+        let side = |corner: &Corner| {
+            let (determinant, bound) = filter.determinant(&corner.position);
+            (determinant.abs() > bound + self.filter_floor).then_some(determinant > 0.0)
+        };
+        let first = corners.first().and_then(side);
+        first.is_some() && corners.iter().all(|corner| side(corner) == first)
+    }
+
     fn count(&self, answer: Answer) -> bool {
         if answer.is_tie {
             self.ties.fetch_add(1, Ordering::Relaxed);

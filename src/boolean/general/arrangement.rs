@@ -78,11 +78,6 @@ impl Crossed {
         Ok(Self { surfaces, edges, crossings, contacts, bounds, _memory: memory })
     }
 
-    /// Whether no faces cross, and none lie on each other.
-    pub(crate) fn is_embedded(&self) -> bool {
-        self.crossings.segments.is_empty() && self.crossings.touching.is_empty()
-    }
-
     /// The faces that cross others or lie on others, ascending, as triangles of their operands.
     pub(crate) fn troubled(&self) -> Vec<u32> {
         let pairs = self.crossings.segments.iter().map(|segment| &segment.faces);

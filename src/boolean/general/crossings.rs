@@ -10,11 +10,10 @@ use crate::Error;
 use crate::boolean::arrangement::cut_edges::compare_with_plane;
 use crate::boolean::complex::Corner;
 use crate::boolean::complex::ids::{EdgeId, FaceId, NodeId, PointId, SegmentId, VertexId};
+use crate::boolean::complex::planes;
 use crate::boolean::complex::predicates::{Perturbed, Plane, Predicates};
 use crate::exact::order;
-use crate::exact::{
-    FILTER_RANGE, PlaneFilter, Projection, Sign, collinear, orient2d, orient2d_filter, orient3d,
-};
+use crate::exact::{FILTER_RANGE, PlaneFilter, Projection, Sign, orient2d, orient2d_filter, orient3d};
 use crate::mesh::{Bounds, Buckets};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame, self_overlapping_pairs};
@@ -169,16 +168,35 @@ fn separated_in_plane(triangle: &[[f64; 3]; 3], points: &[[f64; 3]; 3], wanted: 
         return false;
     }
     let points = points.map(|p| seen.project(&p));
-    // A vertex that is shared is a corner: only sides through it can have it in their line.
-    let is_beyond = |from: [f64; 2], to: [f64; 2], k: usize| {
-        if wanted[k] {
-            let (determinant, bound) = orient2d_filter(from, to, points[k]);
-            determinant < -bound
-        } else {
-            points[k] == from || points[k] == to
+    let shared = (0..3).find(|&k| !wanted[k]).map(|k| points[k]);
+    (0..3).any(|side| {
+        let (from, to) = (corners[side], corners[(side + 1) % 3]);
+        // A vertex that is shared is a corner: only sides through it can have it in their line.
+        if shared.is_some_and(|v| v != from && v != to) {
+            return false;
         }
-    };
-    (0..3).any(|side| (0..3).all(|k| is_beyond(corners[side], corners[(side + 1) % 3], k)))
+        let is_beyond = |k: usize| {
+            let (determinant, bound) = orient2d_filter(from, to, points[k]);
+            // At a shared vertex a side may go on beyond it.
+            determinant < -bound || shared.is_some_and(|v| goes_on(from, to, v, points[k]))
+        };
+        let mut beyond = (0..3).filter(|&k| wanted[k]);
+        beyond.all(is_beyond)
+            && (0..3).any(|k| {
+                let (determinant, bound) = orient2d_filter(from, to, points[k]);
+                wanted[k] && determinant < -bound
+            })
+    })
+}
+
+/// Whether a point lies in the line of a side, beyond the end of it that is given.
+fn goes_on(from: [f64; 2], to: [f64; 2], end: [f64; 2], point: [f64; 2]) -> bool {
+    let other = if end == from { to } else { from };
+    let k = usize::from(other[0] == end[0]);
+    (point[k] > end[k]) != (other[k] > end[k])
+        && point[k] != end[k]
+        && other[k] != end[k]
+        && orient2d(from, to, point) == Sign::Zero
 }
 
 /// Whether two faces with a common edge lie on each other.
@@ -191,21 +209,7 @@ fn are_folded(surfaces: &Surfaces, f: FaceId, g: FaceId) -> bool {
 
 /// Whether two faces that lie in one plane, exactly, have area in common.
 fn overlap_in_plane(surfaces: &Surfaces, f: FaceId, g: FaceId) -> bool {
-    let (a, b) = (surfaces.positions(f), surfaces.positions(g));
-    if collinear(&a[0], &a[1], &a[2]) || collinear(&b[0], &b[1], &b[2]) {
-        return false;
-    }
-    let seen = Projection::of(&a);
-    let upright = |t: [[f64; 3]; 3]| {
-        let [p, q, r] = t.map(|p| seen.project(&p));
-        if orient2d(p, q, r) == Sign::Positive { [p, q, r] } else { [p, r, q] }
-    };
-    let (a, b) = (upright(a), upright(b));
-    // Two triangles are apart iff a side of one of them has the whole of the other on its outer side.
-    let separates = |s: &[[f64; 2]; 3], t: &[[f64; 2]; 3]| {
-        (0..3).any(|k| t.iter().all(|&p| orient2d(s[k], s[(k + 1) % 3], p) != Sign::Positive))
-    };
-    !separates(&a, &b) && !separates(&b, &a)
+    planes::overlap(&surfaces.positions(f), &surfaces.positions(g))
 }
 
 /// One end of a segment, before nodes are numbered.
@@ -406,20 +410,10 @@ impl Search<'_> {
         } else {
             found.extend(self.cross(pair, [&a, &b]));
         }
-        if self.may_touch(&a, &b) && overlap_in_plane(self.surfaces, pair[0], pair[1]) {
+        let [a, b] = pair.map(|face| self.surfaces.positions(face));
+        if planes::lie_on_each_other(&a, &b) {
             touching.push(pair);
         }
-    }
-
-    /// Whether two faces lie in exactly one plane.
-    fn may_touch(&self, a: &[Corner; 3], b: &[Corner; 3]) -> bool {
-        let [p, q, r] = a.each_ref().map(|corner| &corner.position);
-        let filter = PlaneFilter::new(p, q, r);
-        let is_off = |corner: &Corner| {
-            let (determinant, bound) = filter.determinant(&corner.position);
-            determinant.abs() > bound
-        };
-        !b.iter().any(is_off) && b.iter().all(|corner| orient3d(p, q, r, &corner.position) == Sign::Zero)
     }
 
     /// Where two faces without a common vertex cross: at most ten signs.

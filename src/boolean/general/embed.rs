@@ -54,8 +54,11 @@ const COARSER_FROM: u32 = 2;
 /// by so many bits a round. (With 1, what rounding moves crosses new neighbours in round after round: of 1,200 results of random
 /// bodies on coarse grids, turned and not, five grew without end; see docs/proof.md.)
 const BITS_A_ROUND: u32 = 3;
-/// Where more triangles cross than so many times the fewest so far, it is given up.
-const GROWTH: usize = 4;
+/// Where more triangles cross than so many times the fewest so far, or there are so many times the triangles that there were, it
+/// is given up: bodies that lie flush but for rounding cross in ever more needles.
+const GROWTH: usize = 2;
+/// Triangles that there may be in any case.
+const ALWAYS_ALLOWED: usize = 256;
 
 /// A result that is to be freed of crossings: for each triangle where it came from and its group.
 #[derive(Clone, Debug)]
@@ -80,6 +83,7 @@ pub(crate) fn embed(
     let mut report = Embedding::default();
     let mut troubled: Vec<u32> = Vec::new();
     let mut best: Option<(Parts, Embedding)> = None;
+    let most_triangles = ALWAYS_ALLOWED.max(GROWTH * parts.triangles.len());
     loop {
         // 1. The grid: a coarser one where it goes on too long.
         report.displacement += round(&mut parts, grid, coarser(report.rounds), &troubled);
@@ -93,7 +97,9 @@ pub(crate) fn embed(
         troubled = crossed.troubled();
         report.left = troubled.len();
         let fewest = best.as_ref().map_or(usize::MAX, |(_, report)| report.left);
-        let is_hopeless = report.rounds == MOST_ROUNDS || report.left > GROWTH.saturating_mul(fewest);
+        let is_hopeless = report.rounds == MOST_ROUNDS
+            || report.left > GROWTH.saturating_mul(fewest)
+            || solid.mesh().triangles.len() > most_triangles;
         if report.left < fewest {
             let Mesh { positions, triangles, .. } = solid.mesh().clone();
             let (origins, groups) = (parts.origins.clone(), parts.groups.clone());

@@ -33,7 +33,7 @@ pub(super) fn is_simple(policy: Policy, solid: &Solid, control: &Control) -> Res
     if policy.assume_clean && solid.known_self_crossings().is_none() {
         return Ok(true);
     }
-    Ok(solid.self_crossings(control)?.is_clean())
+    Ok(solid.self_crossings(control)?.is_simple())
 }
 
 /// The expression that an operation on so many operands is.

@@ -167,6 +167,13 @@ impl BooleanOptions {
         expression: &Expression,
         operands: impl IntoIterator<Item = &'a Solid>,
     ) -> Result<Outcome, Error> {
+        let operands: Vec<&Solid> = operands.into_iter().collect();
+        // One operation on operands that do not cross themselves is faster by itself.
+        if let Some((operation, places)) = expression.as_operation()
+            && places.iter().copied().eq(0..operands.len())
+        {
+            return self.run_all(operation, &operands);
+        }
         let mut outcomes = self.evaluate_all(std::slice::from_ref(expression), operands)?;
         Ok(outcomes.swap_remove(0))
     }
@@ -205,7 +212,8 @@ impl BooleanOptions {
     /// # Errors
     /// As [`run`](Self::run).
     pub fn resolve(&self, operand: &Solid) -> Result<Outcome, Error> {
-        self.evaluate(&Expression::Operand(0), [operand])
+        let mut outcomes = self.evaluate_all(&[Expression::Operand(0)], [operand])?;
+        Ok(outcomes.swap_remove(0))
     }
 
     /// Runs on the threads that were asked for.

@@ -3,7 +3,9 @@
 use std::fmt;
 
 use crate::Solid;
+use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::embed::Embedding;
+use crate::boolean::result::near_contacts::NearContacts;
 use crate::exact::collinear;
 
 /// What a result is, and what making it met.
@@ -36,6 +38,8 @@ pub struct Certificate {
     pub largest_rounding: f64,
     /// Decisions that plain coordinates left open, because operands touch or are aligned; the perturbation took them.
     pub contacts: u64,
+    /// Where surfaces of different operands are nearly flush: films, gaps and slivers too thin for single precision.
+    pub nearly_flush: NearContacts,
     /// How often a step of the clean-up near the intersection curve stopped at its bound with work left, over all operations
     /// that led to the result. It is 0 for nearly every result; where it is not, triangles without area, needless vertices or
     /// edges that touch may be left, but the result is as closed as any.
@@ -104,7 +108,7 @@ pub(crate) struct Notes {
 }
 
 impl Certificate {
-    pub(crate) fn new(solid: &Solid, notes: &Notes) -> Self {
+    pub(crate) fn new(solid: &Solid, origins: impl Iterator<Item = Origin>, notes: &Notes) -> Self {
         let mesh = solid.mesh();
         let zero_area = mesh
             .triangles
@@ -130,6 +134,7 @@ impl Certificate {
             inverted: notes.inverted,
             largest_rounding: half_ulp * 3.0f64.sqrt(),
             contacts: notes.contacts,
+            nearly_flush: NearContacts::find(mesh, origins),
             clean_up_stopped: notes.clean_up_stopped,
             three_face_points: notes.three_face_points,
             walls_left: notes.walls_left,
@@ -154,6 +159,9 @@ impl fmt::Display for Certificate {
         }
         if self.inverted > 0 {
             write!(f, ", {} turned over by rounding", self.inverted)?;
+        }
+        if self.nearly_flush.count > 0 {
+            write!(f, ", {} corners nearly flush", self.nearly_flush.count)?;
         }
         Ok(())
     }

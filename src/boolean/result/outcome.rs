@@ -43,10 +43,11 @@ impl Outcome {
         self.list.get_or_init(|| self.origins.iter().collect())
     }
 
-    /// What is known of the result. Computed once, when first asked for; O(n).
+    /// What is known of the result. Computed once, when first asked for; O(n), and O(k log k) for the k triangles where parts of
+    /// different operands are near one another.
     #[must_use]
     pub fn certificate(&self) -> &Certificate {
-        self.certificate.get_or_init(|| Certificate::new(&self.solid, &self.notes))
+        self.certificate.get_or_init(|| Certificate::new(&self.solid, self.origins.iter(), &self.notes))
     }
 
     /// The curves in which surfaces of different operands meet, as chains of vertices of the result; a closed curve ends

@@ -1,5 +1,6 @@
 //! Nodes as meshes: leaves meshed, operations by the exact booleans, functions extracted.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -7,11 +8,25 @@ use glam::{DAffine3, DVec3};
 
 use super::ExtractionReport;
 use super::state::State;
-use crate::boolean::BooleanOptions;
+use crate::boolean::{BooleanOptions, Expression, Operation};
 use crate::field::{Extracted, Extraction, extrude};
 use crate::io::ReadOptions;
 use crate::model::{Kind, Mode};
 use crate::{Error, Mesh, MeshError, Solid};
+
+/// The leaves of a tree of operations, each once.
+#[derive(Default)]
+struct Leaves {
+    solids: Vec<Arc<Solid>>,
+    /// By node.
+    places: BTreeMap<usize, usize>,
+    /// Operations met so far.
+    operations: usize,
+}
+
+/// Operations in one expression at most: a model that names a node again and again may stand for a tree that grows without
+/// bound. What is left is evaluated by itself first.
+const MOST_OPERATIONS: usize = 4096;
 
 impl State<'_> {
     /// The node as a mesh: by the exact booleans where it is an operation.
@@ -38,14 +53,12 @@ impl State<'_> {
                 #[cfg(feature = "subdivision")]
                 Kind::Operation(..) if at.mode == Some(Mode::FreeForm) => self.free_form(node)?,
                 Kind::Operation(operation, operands) => {
-                    let solids = operands
-                        .iter()
-                        .map(|&operand| self.operand_solid(operand))
-                        .collect::<Result<Vec<Arc<Solid>>, Error>>()?;
+                    let mut leaves = Leaves::default();
+                    let expression = self.operation(*operation, operands, &mut leaves)?;
                     let options = BooleanOptions::new().control(control.clone());
-                    let outcome = options.run(*operation, solids.iter().map(Arc::as_ref));
+                    let outcome = options.evaluate(&expression, leaves.solids.iter().map(Arc::as_ref));
                     let outcome = outcome.map_err(|error| error.in_node(label))?;
-                    outcome.into_solid().mesh().clone()
+                    outcome.into_solid().into_mesh()
                 }
                 Kind::Complement(_) => {
                     let what = "a complement is unbounded and has no mesh: use `difference`, or evaluate it as a field";
@@ -89,6 +102,52 @@ impl State<'_> {
             self.warnings.push(format!("{label}: {}", fault.text(one, several, 2)));
         }
         Ok(solid)
+    }
+
+    /// A whole tree of exact operations as one expression of its leaves: nothing is rounded in between.
+    fn operation(
+        &mut self,
+        operation: Operation,
+        operands: &[usize],
+        leaves: &mut Leaves,
+    ) -> Result<Expression, Error> {
+        let sets = operands.iter().map(|&operand| self.set(operand, leaves));
+        let sets = sets.collect::<Result<Vec<Expression>, Error>>()?;
+        Ok(match operation {
+            Operation::Union => Expression::Union(sets),
+            Operation::Intersection => Expression::Intersection(sets),
+            Operation::Difference => Expression::Difference(sets),
+            Operation::SymmetricDifference => Expression::SymmetricDifference(sets),
+        })
+    }
+
+    /// An operand of an operation: an operation of its own, unless it is moved or meshed first, else a leaf.
+    fn set(&mut self, node: usize, leaves: &mut Leaves) -> Result<Expression, Error> {
+        let at = &self.model.nodes[node];
+        leaves.operations += 1;
+        let is_plain = at.extrude.is_none()
+            && at.transform == DAffine3::IDENTITY
+            && leaves.operations <= MOST_OPERATIONS;
+        if is_plain && self.mode(node, Some(Mode::Exact)) == Mode::Exact {
+            match &at.kind {
+                Kind::Operation(operation, operands) => {
+                    let (operation, operands) = (*operation, operands.clone());
+                    return self.operation(operation, &operands, leaves);
+                }
+                Kind::Reference(_, target) => {
+                    let target = *target;
+                    return self.set(target, leaves);
+                }
+                _ => {}
+            }
+        }
+        if let Some(&place) = leaves.places.get(&node) {
+            return Ok(Expression::Operand(place));
+        }
+        let solid = self.operand_solid(node)?;
+        leaves.solids.push(solid);
+        leaves.places.insert(node, leaves.solids.len() - 1);
+        Ok(Expression::Operand(leaves.solids.len() - 1))
     }
 
     fn loaded(&mut self, path: &Path) -> Result<Mesh, Error> {

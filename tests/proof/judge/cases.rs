@@ -20,10 +20,40 @@ pub(crate) enum Family {
     Far,
     /// Models made by others, turned at random.
     Models,
+    /// Sizes apart by 1 to 1e300: half-spaces as people write them, and corners of huge bodies.
+    Apart,
+    /// A million times as long as wide.
+    Needle,
+    /// Thin sheets.
+    Flat,
+    /// Turned, and rounded to single precision.
+    Single,
+    /// Coordinates of 1e12.
+    Far12,
+    /// The result of cuts with turns in between.
+    Chain,
+    /// The same, written and read in between.
+    Files,
 }
 
+/// The seeds from here on are those of [`hard`](super::hard) pairs.
+pub(crate) const HARD_FROM: u64 = 1 << 32;
+
 impl Family {
-    pub(crate) const ALL: [Self; 5] = [Self::Grid, Self::Generic, Self::Near, Self::Far, Self::Models];
+    pub(crate) const ALL: [Self; 12] = [
+        Self::Grid,
+        Self::Generic,
+        Self::Near,
+        Self::Far,
+        Self::Models,
+        Self::Apart,
+        Self::Needle,
+        Self::Flat,
+        Self::Single,
+        Self::Far12,
+        Self::Chain,
+        Self::Files,
+    ];
 }
 
 pub(crate) const OPERATIONS: [Operation; 4] =
@@ -43,6 +73,10 @@ impl Case {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let random = &mut random;
         let operation = OPERATIONS[random.random_range(0..4)];
+        if seed >= HARD_FROM {
+            let (family, a, b) = super::hard::pair(random);
+            return Self { family, operation, a, b };
+        }
         let family = match random.random_range(0..100) {
             0..40 => Family::Grid,
             40..68 => Family::Generic,
@@ -59,7 +93,7 @@ impl Case {
                 let by = [500_000.0, 4_649_776.0, 120.0];
                 (moved(&a, by), moved(&b, by))
             }
-            Family::Models => model_pair(random, models),
+            _ => model_pair(random, models),
         };
         Self { family, operation, a, b }
     }

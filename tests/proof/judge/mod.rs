@@ -6,12 +6,13 @@
 //! - [`contacts`]: the topology a solid has where its surface touches itself;
 //! - [`wide`]: volumes and windings at any size of coordinates, in integers;
 //! - [`minimise`]: a failing pair made small;
-//! - [`shapes`], [`placement`], [`cases`]: pairs of solids and an operation from a seed.
+//! - [`shapes`], [`placement`], [`cases`], [`hard`]: pairs of solids and an operation from a seed.
 
 pub(crate) mod cases;
 pub(crate) mod cells;
 pub(crate) mod contacts;
 pub(crate) mod exact;
+pub(crate) mod hard;
 pub(crate) mod minimise;
 pub(crate) mod oracle;
 pub(crate) mod placement;

@@ -4,9 +4,11 @@ use std::collections::HashSet;
 
 use dashu::base::{Abs, Signed, UnsignedAbs};
 use dashu::integer::IBig;
-use trisect::Mesh;
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+use trisect::{Mesh, Operation};
 
-use super::vector::Point;
+use super::vector::{self, Point};
 
 /// A point, or a vector, in units of 2^-1074.
 type Whole = [IBig; 3];
@@ -153,6 +155,64 @@ impl Surface {
             &height * &height <= &reach * &reach * dot(&normal, &normal)
         })
     }
+}
+
+/// `count` points beside the smaller operand, and beside what is new, from its size down to a few roundings.
+pub(crate) fn points_beside(a: &Mesh, b: &Mesh, results: &[Mesh], count: usize, seed: u64) -> Vec<Point> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let size = |mesh: &Mesh| {
+        let [low, high] = vector::extent(&mesh.positions);
+        (0..3).map(|k| high[k] - low[k]).fold(0.0f64, f64::max)
+    };
+    let small = if size(a) <= size(b) { a } else { b };
+    let scale = size(small);
+    let near: Vec<&Mesh> =
+        std::iter::once(small).chain(results.iter().filter(|r| !r.triangles.is_empty())).collect();
+    (0..count)
+        .map(|index| {
+            let mesh = near[index % near.len()];
+            let corners = mesh.triangles[random.random_range(0..mesh.triangles.len())];
+            let [p, q, r] = corners.map(|corner| mesh.positions[corner as usize]);
+            let at = if index % 3 == 0 {
+                p
+            } else {
+                let middle = |k: usize| 0.5 * p[k] + 0.25 * q[k] + 0.25 * r[k];
+                [0, 1, 2].map(middle)
+            };
+            let normal = vector::unit(vector::cross(
+                vector::unit(vector::minus(q, p)),
+                vector::unit(vector::minus(r, p)),
+            ));
+            let aside = [0; 3].map(|_| random.random_range(-0.5..0.5));
+            let step = scale * 10f64.powf(random.random_range(-12.0..0.0));
+            vector::plus(at, vector::plus(normal, aside, 1.0), if random.random() { step } else { -step })
+        })
+        .filter(|p| p.iter().all(|x| x.is_finite()))
+        .collect()
+}
+
+/// A point no further from a surface than so many units in its own last place may be on either side.
+const ROUNDING_ULPS: u32 = 16;
+
+/// How many points were judged, and those where a result winds otherwise than its operands and the operation say.
+pub(crate) fn judge(
+    operation: Operation,
+    operands: [&Mesh; 2],
+    result: &Mesh,
+    points: &[Point],
+) -> (usize, Vec<Point>) {
+    let (surfaces, outcome) = (operands.map(Surface::new), Surface::new(result));
+    let (mut judged, mut mistakes) = (0, Vec::new());
+    for p in points {
+        let [Some(w), Some(v)] = surfaces.each_ref().map(|surface| surface.winding(p)) else { continue };
+        let Some(found) = outcome.winding(p) else { continue };
+        judged += 1;
+        let is_rounding = || surfaces.iter().any(|surface| surface.is_near_a_plane(p, ROUNDING_ULPS));
+        if found != super::oracle::expected(operation, &[w, v]) && !is_rounding() {
+            mistakes.push(*p);
+        }
+    }
+    (judged, mistakes)
 }
 
 /// The sign of a determinant of three vectors in `f64`, where that is certain.
