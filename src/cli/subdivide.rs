@@ -19,7 +19,7 @@ use super::session::Session;
 
 /// What subdivision gave.
 enum Made {
-    Cage(ControlMesh),
+    Cage(Box<ControlMesh>),
     Mesh(Mesh),
 }
 
@@ -88,7 +88,7 @@ fn write(
 ) -> Result<Vec<Value>, Fault> {
     let start = Instant::now();
     let cage = match made {
-        Made::Cage(cage) => Some(cage),
+        Made::Cage(cage) => Some(&**cage),
         Made::Mesh(_) => None,
     };
     let documents = cage
@@ -114,6 +114,6 @@ fn make(arguments: &Subdivide, cage: &ControlMesh) -> Result<Made, Error> {
     Ok(match arguments.tolerance {
         Some(tolerance) => Made::Mesh(cage.limit_mesh(tolerance)?.mesh().clone()),
         None if arguments.limit => Made::Mesh(cage.limit_mesh_of_steps(levels)?.mesh().clone()),
-        None => Made::Cage(cage.subdivided(levels)?),
+        None => Made::Cage(Box::new(cage.subdivided(levels)?)),
     })
 }

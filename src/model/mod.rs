@@ -136,7 +136,7 @@ enum Kind {
     Parametric(Parametric),
     /// A cage: the solid of its limit surface.
     #[cfg_attr(not(feature = "subdivision"), allow(dead_code, reason = "there are no cages in such a build"))]
-    Cage(Cage),
+    Cage(Box<Cage>),
     /// A leaf of a kind of the caller's own.
     Custom {
         kind: String,

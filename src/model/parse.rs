@@ -327,7 +327,7 @@ impl ModelReader<'_> {
     /// A cage of the node's own keys, or of a file.
     #[cfg(feature = "subdivision")]
     fn cage(&self, object: Map<String, Value>) -> Result<Kind, Error> {
-        super::cage::Cage::of_node(object, self.folder).map(Kind::Cage)
+        super::cage::Cage::of_node(object, self.folder).map(Box::new).map(Kind::Cage)
     }
 
     #[cfg(not(feature = "subdivision"))]

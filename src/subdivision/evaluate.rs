@@ -38,7 +38,7 @@ pub(crate) struct Surface {
 #[derive(Debug)]
 enum Node {
     /// The polynomial, and a bound on its distance from its triangle.
-    Regular(Patch, f64),
+    Regular(Box<Patch>, f64),
     /// Its four quarters, and the faces around them after one step.
     Split([OnceLock<Box<Node>>; 4], Box<Region>),
     /// At the end of the way: limits and normals of the corners.
@@ -97,7 +97,7 @@ impl Node {
         if let Some(points) = regular_points(level, positions, face) {
             let patch = Patch::new(&points);
             let flatness = patch.flatness();
-            return Self::Regular(patch, flatness);
+            return Self::Regular(Box::new(patch), flatness);
         }
         if depth == DEEPEST {
             let corners = level.faces[face as usize];

@@ -19,7 +19,7 @@ pub(crate) fn next(h: u32) -> u32 {
 
 /// The half-edge before h in its face.
 pub(crate) fn previous(h: u32) -> u32 {
-    if h % 3 == 0 { h + 2 } else { h - 1 }
+    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
 }
 
 /// How wide a sector opens, and how strongly it is flattened.

@@ -233,3 +233,50 @@ fn limit_meshes_are_closed_and_within_their_tolerance() {
         }
     }
 }
+
+/// Sound files with bytes changed at random: a cage or a reason, never a panic, and what is read can be used.
+#[test]
+fn damaged_files_are_read_or_refused() {
+    let sound = cage(4, Rules::Loop, 2, true);
+    let mut files = vec![sound.to_obj().into_bytes()];
+    #[cfg(feature = "formats")]
+    files.push(sound.to_json().into_bytes());
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let mut read = 0;
+    for file in &files {
+        for _ in 0..600 {
+            let mut bytes = file.clone();
+            for _ in 0..random.random_range(1..4) {
+                let at = random.random_range(0..bytes.len());
+                bytes[at] = b"0123456789-+.e/ \n[],x"[random.random_range(0..21)];
+            }
+            let obj = ControlMesh::from_obj(&bytes, Rules::Loop).ok().map(|(cage, _)| cage);
+            #[cfg(feature = "formats")]
+            let obj = obj.or_else(|| ControlMesh::from_json(&bytes).ok());
+            if let Some(cage) = obj {
+                assert!(cage.subdivided(1).is_ok());
+                let _ = cage.limit_mesh_of_steps(1);
+                read += 1;
+            }
+        }
+    }
+    assert!(read > 100, "{read}");
+}
+
+/// Coordinates at the ends of the range of numbers: a result or a reason.
+#[test]
+fn huge_and_tiny_cages_do_no_harm() {
+    for scale in [1e-300, 1e-160, 1e150, 1e300, 1.7e308] {
+        let plain = cage(5, Rules::Loop, 1, true);
+        let scaled = |way: f64| {
+            let positions =
+                plain.positions().iter().map(|p| [p[0] * scale + way * scale, p[1] * scale, p[2] * scale]);
+            let tags = plain.tags().clone();
+            ControlMesh::new(positions.collect(), plain.faces().to_vec(), tags, Rules::Loop)
+        };
+        let (Ok(a), Ok(b)) = (scaled(0.0), scaled(-0.5)) else { continue };
+        let _ = a.limit_mesh_of_steps(2);
+        let _ = a.limit_mesh(0.01 * scale);
+        let _ = crate::subdivision::FreeForm::new().attempts(0).run(crate::Operation::Union, &a, &b);
+    }
+}

@@ -24,7 +24,7 @@ impl State<'_> {
     fn cage(&mut self, node: usize) -> Result<Cage, Error> {
         let at = &self.model.nodes[node];
         let cage = match &at.kind {
-            Kind::Cage(cage) => cage.clone(),
+            Kind::Cage(cage) => Cage::clone(cage),
             Kind::Reference(_, target) => self.cage(*target)?,
             Kind::Operation(..) if at.mode.is_none_or(|mode| mode == Mode::FreeForm) => {
                 self.operation_cage(node)?

@@ -83,7 +83,7 @@ impl State<'_> {
                 #[cfg(feature = "subdivision")]
                 Kind::Cage(cage) => self.limit_mesh(node, cage)?,
                 #[cfg(not(feature = "subdivision"))]
-                Kind::Cage(none) => match *none {},
+                Kind::Cage(none) => match **none {},
                 Kind::Custom { kind, value } => {
                     let Some(handler) = self.settings.kinds.get(kind) else {
                         let what = format!("nodes of the kind `{kind}` cannot be evaluated here");

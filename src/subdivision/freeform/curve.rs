@@ -171,7 +171,7 @@ impl Chain {
             let half = 0.5 * (self.lengths[i] - self.lengths[i - 1]);
             let mut apart = (mid - near).abs();
             if self.closed {
-                apart = apart % total;
+                apart %= total;
                 apart = apart.min(total - apart);
             }
             if apart > reach + half {
