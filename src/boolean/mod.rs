@@ -15,7 +15,9 @@
 //! - `cut`: kept pieces of cut faces become triangles (step 7);
 //! - `tidy`: what touches separates; triangles without area and needless vertices go (step 8);
 //! - `result`: untouched triangles keep their order, and vertices their bits (step 9);
-//! - `pair`: all steps for two operands; `many`: which pairs are combined in which order.
+//! - `pair`: all steps for two operands; `many`: which pairs are combined in which order;
+//! - `general`: the same for any number of surfaces that may cross and touch themselves, and any `expression` of them, in one
+//!   arrangement.
 //!
 //! **Guaranteed** for any closed operands: the result is closed; it is the exact boolean with every new coordinate correctly
 //! rounded; operands that touch resolve as regularised set operations do; the same input gives the same bits on any number of

@@ -11,7 +11,7 @@ const MEANT: [(&[&str], &str); 7] = [
     (&["split"], "see `intersection` and `difference` with a body that covers one side"),
     (
         &["repair", "fix", "heal"],
-        "see `check`, which says what is wrong, and `convert` with --weld or --orient",
+        "see `check`, which says what is wrong, `resolve` for what crosses itself, and `convert` with --weld or --orient",
     ),
     (&["hull", "offset", "minkowski", "decimate"], "there is no such operation"),
 ];

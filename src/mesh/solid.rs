@@ -56,6 +56,8 @@ pub struct Solid {
     pub(super) self_crossings: OnceLock<SelfCrossings>,
     /// Whether an operation made it so that it crosses itself no deeper than rounding.
     pub(super) made_clean: bool,
+    /// Whether all shells face the right way.
+    pub(super) well_nested: OnceLock<bool>,
 }
 
 /// What was left out or joined to make a [`Solid`] of a mesh.
@@ -150,6 +152,11 @@ impl Solid {
     /// to touch itself.
     pub(crate) fn is_known_clean(&self) -> bool {
         self.made_clean || self.self_crossings.get().is_some_and(SelfCrossings::is_simple)
+    }
+
+    /// Whether no shell faces the wrong way: outwards inside another, or inwards by itself. Computed once; O(n).
+    pub(crate) fn is_well_nested(&self) -> bool {
+        self.made_clean || *self.well_nested.get_or_init(|| self.inside_out_shells().is_none())
     }
 
     /// Notes that an operation made this so that it crosses itself no deeper than rounding.
