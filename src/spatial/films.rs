@@ -202,7 +202,7 @@ impl Tree {
             let (inner_a, inner_b) = (a < self.leaves - 1, b < self.leaves - 1);
             match (inner_a, inner_b) {
                 (true, _) if a == b => {
-                    stack.extend([(2 * a + 1, 2 * a + 1), (2 * a + 1, 2 * a + 2), (2 * a + 2, 2 * a + 2)])
+                    stack.extend([(2 * a + 1, 2 * a + 1), (2 * a + 1, 2 * a + 2), (2 * a + 2, 2 * a + 2)]);
                 }
                 // Both are at the same depth but for leaves, and all leaves are.
                 (true, true) => stack.extend(

@@ -35,11 +35,10 @@ impl Labels {
         entries.retain(|&(_, winding)| winding != 0);
         let label = entries.into_boxed_slice();
         let next = LabelId::new(self.labels.len() as u32);
-        let number = *self.numbers.entry(label).or_insert_with_key(|label| {
+        *self.numbers.entry(label).or_insert_with_key(|label| {
             self.labels.push(label.clone());
             next
-        });
-        number
+        })
     }
 
     /// The label with the winding number of one operand changed.

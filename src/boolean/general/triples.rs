@@ -122,9 +122,9 @@ impl Search<'_> {
 /// Where a three-face point is, correctly rounded.
 pub(crate) fn locate(surfaces: &Surfaces, triple: &Triple) -> [f64; 3] {
     let positions = triple.faces.map(|face| surfaces.positions(face));
-    planes::meeting_filter(positions.each_ref().map(|face| face.each_ref())).unwrap_or_else(|| {
+    planes::meeting_filter(positions.each_ref().map(<[_; 3]>::each_ref)).unwrap_or_else(|| {
         let faces = perturbed(surfaces, triple);
-        planes::meeting(faces.each_ref().map(|face| face.each_ref()))
+        planes::meeting(faces.each_ref().map(<[_; 3]>::each_ref))
     })
 }
 

@@ -44,7 +44,7 @@ impl Made {
     pub(super) fn finish(mut self, policy: Policy, runner: Runner<'_>) -> Result<Outcome, Error> {
         match policy.embed {
             Embed::WhereNeeded if self.may_cross && self.is_clean => {
-                self.embed(Grid::Double, policy, runner)?
+                self.embed(Grid::Double, policy, runner)?;
             }
             Embed::OnGrid(grid) => self.embed(grid, policy, runner)?,
             Embed::Never | Embed::WhereNeeded => {}

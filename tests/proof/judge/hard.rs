@@ -154,5 +154,6 @@ fn through(mesh: &Mesh, format: Format) -> Option<Mesh> {
 /// Whether a mesh is an operand that does not cross itself.
 fn sound(mesh: &Mesh) -> bool {
     let Ok(solid) = Solid::try_from(mesh.clone()) else { return false };
-    !solid.is_empty() && solid.self_crossings(&Control::new()).is_ok_and(|found| found.is_clean())
+    !solid.is_empty()
+        && solid.self_crossings(&Control::new()).is_ok_and(trisect::mesh::SelfCrossings::is_clean)
 }

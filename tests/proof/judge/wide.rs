@@ -223,8 +223,11 @@ fn certain_sign(u: Point, v: Point, w: Point) -> Option<i32> {
         sum += w[k] * (u[i] * v[j] - u[j] * v[i]);
         permanent += w[k].abs() * ((u[i] * v[j]).abs() + (u[j] * v[i]).abs());
     }
-    (permanent.is_finite() && permanent > 1e-250 && sum.abs() > 1e-14 * permanent)
-        .then(|| if sum > 0.0 { 1 } else { -1 })
+    (permanent.is_finite() && permanent > 1e-250 && sum.abs() > 1e-14 * permanent).then_some(if sum > 0.0 {
+        1
+    } else {
+        -1
+    })
 }
 
 fn sign(x: &IBig) -> i32 {
