@@ -26,6 +26,9 @@ pub struct SelfCrossings {
     pub count: usize,
     /// Pairs that cross no deeper than rounding; every computed mesh may have some. They are tolerated.
     pub tolerated: usize,
+    /// Those of the `count` pairs that are no deeper than 64 times what is tolerated, and not flat: what a chain of operations
+    /// may leave. The multiplicities of the boolean of two operands carry them.
+    pub shallow: usize,
     /// Pairs that lie on each other in one plane, with area in common: bodies that touch face to face, or sheets without
     /// thickness.
     pub touching: usize,
@@ -45,6 +48,11 @@ impl SelfCrossings {
 }
 
 impl SelfCrossings {
+    /// Whether the surface crosses itself nowhere deeper than a few roundings, nor lies on itself.
+    pub(crate) fn is_nearly_simple(&self) -> bool {
+        self.count == self.shallow && self.touching == 0
+    }
+
     /// Whether the surface neither crosses itself, except by rounding, nor lies on itself anywhere.
     #[must_use]
     pub fn is_simple(&self) -> bool {

@@ -296,7 +296,7 @@ fn bad_models_are_refused_by_name_and_place() {
     fails(r#"{"kind": "formula", "formula": "1", "bounds": [[1, 0, 0], [0, 1, 1]]}"#, &["`bounds`"]);
     fails(r#"{"kind": "sphere", "radius": 1, "transform": [{"scale": 0}]}"#, &["flattens space"]);
     fails(r#"{"kind": "sphere", "radius": 1, "transform": [{"turn": 3}]}"#, &["unknown variant `turn`"]);
-    fails(r#"{"kind": "sphere", "radius": 1, "evaluate": "maybe"}"#, &["`exact` or `field`"]);
+    fails(r#"{"kind": "sphere", "radius": 1, "evaluate": "maybe"}"#, &["`exact`, `field`", "not `maybe`"]);
     fails(
         r#"{"kind": "sphere", "radius": 1, "evaluate": "field", "tolerance": 0}"#,
         &["`tolerance` must be positive"],

@@ -24,13 +24,13 @@ pub(super) struct Wanted<'a> {
     pub(super) policy: Policy,
 }
 
-/// Whether an operand neither crosses nor touches itself and all its shells face the right way, so that the steps for two
+/// Whether an operand neither crosses itself, except by a few roundings, nor touches itself and all its shells face the right way, so that the steps for two
 /// operands are right for it. It is looked through if that is not known, unless the policy says what to take for granted.
 pub(super) fn is_simple(policy: Policy, solid: &Solid, control: &Control) -> Result<bool, Error> {
     if policy.assume_clean && solid.known_self_crossings().is_none() {
         return Ok(true);
     }
-    let is_clean = solid.is_known_clean() || solid.self_crossings(control)?.is_simple();
+    let is_clean = solid.is_known_clean() || solid.self_crossings(control)?.is_nearly_simple();
     Ok(is_clean && solid.is_well_nested())
 }
 
