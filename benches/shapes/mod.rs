@@ -214,7 +214,7 @@ pub(crate) fn urchins(level: u32) -> Vec<Solid> {
 /// A cylinder with caps fanned from their centres.
 pub(crate) fn fan_cylinder(sides: u32) -> Solid {
     let rim = (0..sides).flat_map(|k| {
-        let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
+        let angle = TAU * f64::from(k) / f64::from(sides);
         [0.0, 1.0].map(|z| [angle.cos(), angle.sin(), z])
     });
     let positions = [[0.0; 3], [0.0, 0.0, 1.0]].into_iter().chain(rim).collect();

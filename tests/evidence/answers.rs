@@ -69,7 +69,7 @@ fn every_file_gets_the_right_answer_and_leaves_nothing_behind() {
         folder.write("old.obj", "precious");
         let before = folder.names();
         let ran = united_with_a_cube(&folder, &path, &[]);
-        let said = if ran.err.is_empty() { ran.out.clone() } else { ran.err.clone() };
+        let said = format!("{}{}", ran.err, ran.out);
         let answer = ANSWERS.iter().find(|answer| answer.0 == name);
         if let Some(Answer(_, code, words)) = answer {
             known += 1;
