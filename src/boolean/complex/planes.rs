@@ -26,11 +26,7 @@ impl Complex<'_> {
 
     /// Whether two sources lie in the same plane, exactly; false for triangles without area.
     pub(crate) fn are_coplanar(&self, x: Origin, y: Origin) -> bool {
-        let ([a, b, c], other) = (self.source(x), self.source(y));
-        // Nearly always they have corners in common, and those need no test.
-        other.iter().filter(|d| ![a, b, c].contains(d)).all(|d| orient3d(&a, &b, &c, d) == Sign::Zero)
-            && !collinear(&a, &b, &c)
-            && !collinear(&other[0], &other[1], &other[2])
+        lie_in_one_plane(&self.source(x), &self.source(y))
     }
 
     /// Whether two faces of an operand are mergeable; fast where they are visibly not coplanar, as nearly all are.
@@ -47,6 +43,15 @@ impl Complex<'_> {
     fn group(&self, origin: Origin) -> u32 {
         self.groups[origin.operand as usize].get(origin.triangle as usize).copied().unwrap_or(0)
     }
+}
+
+/// Whether two triangles lie in the same plane, exactly; false for triangles without area.
+pub(crate) fn lie_in_one_plane(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
+    let [a, b, c] = x;
+    // Nearly always they have corners in common, and those need no test.
+    y.iter().filter(|d| !x.contains(d)).all(|d| orient3d(a, b, c, d) == Sign::Zero)
+        && !collinear(a, b, c)
+        && !collinear(&y[0], &y[1], &y[2])
 }
 
 /// Whether the normals of two triangles of one plane point the same way.

@@ -4,9 +4,8 @@ use super::arrangement::General;
 use crate::boolean::arrangement::points::{AddedPoint, SheetCrossing};
 use crate::boolean::complex::ids::{FaceId, LabelId, PointId};
 use crate::boolean::complex::origin::Origin;
-use crate::boolean::complex::planes::look_same_way;
+use crate::boolean::complex::planes::{lie_in_one_plane, look_same_way};
 use crate::exact::position::{Unrounded, on_one_line};
-use crate::exact::{Sign, collinear, orient3d};
 use crate::mesh::BitSet;
 
 /// What of a face counts: what the result keeps as it is, what it turns over, or both with their signs.
@@ -219,10 +218,7 @@ impl<'a> Shape<'a> {
 
     /// Whether two sources lie in the same plane, exactly; false for triangles without area.
     pub(crate) fn are_coplanar(&self, x: Origin, y: Origin) -> bool {
-        let ([a, b, c], other) = (self.source(x), self.source(y));
-        other.iter().filter(|d| ![a, b, c].contains(d)).all(|d| orient3d(&a, &b, &c, d) == Sign::Zero)
-            && !collinear(&a, &b, &c)
-            && !collinear(&other[0], &other[1], &other[2])
+        lie_in_one_plane(&self.source(x), &self.source(y))
     }
 
     /// Whether three points lay on one line before they were rounded; false if one of them is a copy.
