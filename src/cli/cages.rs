@@ -12,10 +12,11 @@ use super::argument_groups::Drawing;
 use super::cage_arguments::Cages;
 use super::documents::Document;
 use super::fault::Fault;
-use super::operands;
 use super::output;
-use super::requests::{self, Request, STANDARD, Transform};
+use super::reading;
+use super::requests::{self, Request, Transform};
 use super::session::Session;
+use super::stream::STANDARD;
 
 /// A cage that was read.
 pub(crate) struct Read {
@@ -43,7 +44,7 @@ pub(crate) fn read(
 }
 
 fn one(request: &Request, choice: Cages, session: &Session<'_>) -> Result<(ControlMesh, Vec<String>), Error> {
-    let text = operands::text(&request.path, &session.limits)?;
+    let text = reading::text(&request.path, &session.limits)?;
     let rules = choice.rules.rules();
     let is_json =
         has_ending(&request.path, "json") || (request.is_standard() && text.trim_start().starts_with('{'));

@@ -8,13 +8,15 @@ use trisect::{Error, MeshError};
 use super::arguments::Check;
 use super::fault::{self, Exit, Fault};
 use super::json::json_of;
-use super::operands::{self, Crossings, Input, Unusable, Usable};
-use super::repairs::Remedy;
+use super::mended;
+use super::reading::{self, Input};
+use super::remedy::Remedy;
 use super::report::{self, Measures, into_map};
 use super::requests::{self, Request};
 use super::selection;
 use super::session::Session;
 use super::stream;
+use super::usable::{self, Crossings, Unusable, Usable};
 use trisect::mesh::diagnose;
 
 /// What `check` found out about one file.
@@ -57,7 +59,7 @@ pub(crate) fn run(arguments: &Check, matches: &ArgMatches, session: &mut Session
 fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<Verdict, Fault> {
     let control = session.control();
     let name = request.name();
-    let input = match operands::read(request, &session.limits, &control) {
+    let input = match reading::read(request, &session.limits, &control) {
         Ok(input) => input,
         Err(error) => return refused(&name, error, None, None),
     };
@@ -67,7 +69,7 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
     object.insert("format".into(), format.extension().into());
     object.insert("warnings".into(), json!(warnings));
     object.insert("diagnosis".into(), json_of(&diagnosis));
-    let usable = operands::usable(mesh, request.repairs, arguments.inputs.using.assume_clean, &control);
+    let usable = usable::usable(mesh, request.repairs, arguments.inputs.using.assume_clean, &control);
     let Usable { solid, crossings } = match usable {
         Ok(usable) => usable,
         Err(unusable) => {
@@ -78,8 +80,8 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
             return Ok(Verdict { warnings, ..verdict });
         }
     };
-    warnings.extend(operands::left_out(solid.mending()));
-    warnings.extend(operands::nothing_left(&solid));
+    warnings.extend(mended::left_out(solid.mending()));
+    warnings.extend(usable::nothing_left(&solid));
     object.insert("warnings".into(), json!(warnings));
     let mending = solid.mending();
     let measures = Measures::of_solid(&solid);
@@ -89,13 +91,13 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
         "file": name,
         "usable": true,
         "turned": mending.turned > 0,
-        "welded": report::welded_vertices(mending),
+        "welded": mended::welded_vertices(mending),
         "cleaning": cleaned,
         "mending": json_of(mending),
         "self_crossings": crossings.as_ref().map(|crossings| &crossings.object),
     })));
-    let mut text = format!("{name}: usable: {}{}\n", measures.line(), report::mending_in_line(mending));
-    text.push_str(&indented(&report::mended(mending).join("\n")));
+    let mut text = format!("{name}: usable: {}{}\n", measures.line(), mended::in_line(mending));
+    text.push_str(&indented(&mended::listed(mending).join("\n")));
     if let Some(crossings) = &crossings {
         text.push_str(&indented(&crossing_lines(crossings)));
         if crossings.count > 0 {

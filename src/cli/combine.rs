@@ -10,6 +10,7 @@ use trisect::{BooleanOptions, Embed, Grid, Operation, Outcome, Solid};
 use super::argument_groups::Colours;
 use super::arguments::{Combination, Combine};
 use super::fault::{Exit, Fault};
+use super::mended;
 use super::operands::{self, Operand};
 use super::output::{self, Product, Target};
 use super::recenter;
@@ -18,6 +19,7 @@ use super::requests::{self, Request};
 use super::selection;
 use super::session::Session;
 use super::task::Task;
+use super::words;
 
 /// Runs a boolean of the inputs.
 pub(crate) fn run(
@@ -141,12 +143,12 @@ fn tell(name: &str, outcome: &Outcome, targets: &[Target], seconds: f64, session
         session.warn(warning);
     }
     if let Some(left) = certificate.embedding.map(|done| done.left).filter(|&left| left > 0) {
-        let triangles = report::counted(left, "triangle");
+        let triangles = words::counted(left, "triangle");
         session.warn(format!("{name}: {triangles} still cross others or lie on them after rounding"));
     }
     let names: Vec<String> = targets.iter().map(Target::name).collect();
     let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
-    session.console.say(&format!("{name}: {} ({}){arrow}", measures.line(), report::time(seconds)));
+    session.console.say(&format!("{name}: {} ({}){arrow}", measures.line(), words::time(seconds)));
     session.console.detail(&certificate.to_string());
     result.into()
 }
@@ -215,7 +217,7 @@ fn describe(operands: &[Operand], session: &mut Session<'_>) {
         if let (Some(cleaning), _) = report::cleaning(&operand.solid) {
             session.console.detail(&format!("  {cleaning}"));
         }
-        for line in report::mended(operand.solid.mending()) {
+        for line in mended::listed(operand.solid.mending()) {
             session.console.detail(&format!("  {line}"));
         }
         for transform in &operand.request.transforms {
@@ -265,8 +267,8 @@ fn announce(task: &Task, operands: &[Operand], targets: &[Target], session: &mut
     session.console.say(&format!(
         "dry run: would take {} of {} with {} and write {writing}",
         task.words(),
-        report::counted(operands.len(), "operand"),
-        report::counted(triangles, "triangle"),
+        words::counted(operands.len(), "operand"),
+        words::counted(triangles, "triangle"),
     ));
     let outputs: Vec<Value> = targets
         .iter()

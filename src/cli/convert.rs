@@ -12,13 +12,16 @@ use trisect::{Error, Mesh};
 use super::argument_groups::{Colours, Writing};
 use super::arguments::Convert;
 use super::fault::{Exit, Fault};
-use super::operands::{self, Input};
+use super::mended;
 use super::output::{self, Product, Target};
+use super::reading::{self, Input};
 use super::recenter;
 use super::report::{self, Measures};
 use super::requests::{self, Request};
 use super::selection;
 use super::session::Session;
+use super::usable;
+use super::words;
 
 /// Converts one input.
 pub(crate) fn run(
@@ -65,9 +68,9 @@ fn read(request: &Request, session: &mut Session<'_>) -> Result<Read, Fault> {
     session.console.stage(&format!("reading {}", request.name()), 0.0);
     let request = &selection::together(request.clone(), &session.limits, &control).map_err(of_input)?;
     let Input { mesh, format, warnings, reserved } =
-        operands::read(request, &session.limits, &control).map_err(of_input)?;
-    let (mesh, welded) = operands::welded(mesh, request.repairs.weld).map_err(of_input)?;
-    let (mesh, turned) = if request.repairs.orient { operands::oriented(mesh) } else { (mesh, false) };
+        reading::read(request, &session.limits, &control).map_err(of_input)?;
+    let (mesh, welded) = usable::welded(mesh, request.repairs.weld).map_err(of_input)?;
+    let (mesh, turned) = if request.repairs.orient { usable::oriented(mesh) } else { (mesh, false) };
     let seconds = session.took("read", start);
     for warning in &warnings {
         session.warn(format!("{}: {warning}", request.name()));
@@ -85,10 +88,10 @@ fn read(request: &Request, session: &mut Session<'_>) -> Result<Read, Fault> {
     let line = format!(
         "{} ({format}): {}{}{} ({})",
         request.name(),
-        report::counted(mesh.triangles.len(), "triangle"),
-        report::welded(welded),
+        words::counted(mesh.triangles.len(), "triangle"),
+        mended::welded(welded),
         if turned { ", turned outwards" } else { "" },
-        report::time(seconds)
+        words::time(seconds)
     );
     Ok(Read { mesh, format, line, _reserved: reserved })
 }

@@ -6,7 +6,7 @@ use trisect::io::{self, Rounding};
 use trisect::{Error, Solid};
 
 use super::limits::Limits;
-use super::report::counted;
+use super::words::counted;
 
 /// What is said of a file whose surface crosses itself, though what was written does not.
 ///

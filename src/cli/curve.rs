@@ -10,9 +10,9 @@ use super::curve_text::{self, JoinArguments};
 use super::documents::{self, Document};
 use super::fault::{Exit, Fault};
 use super::field_arguments::{CurveConvert, CurveDraw, CurveJoin, CurveMesh, CurveVerb, Metric};
-use super::operands;
-use super::report;
+use super::reading;
 use super::session::Session;
+use super::words;
 
 /// Runs a verb on curves.
 pub(crate) fn run(verb: &CurveVerb, session: &mut Session<'_>) -> Result<Exit, Fault> {
@@ -27,7 +27,7 @@ pub(crate) fn run(verb: &CurveVerb, session: &mut Session<'_>) -> Result<Exit, F
 /// An input's text; faults name the input.
 fn read(files: &[&PathBuf], session: &Session<'_>) -> Result<Vec<String>, Fault> {
     let text = |(index, path): (usize, &&PathBuf)| {
-        operands::text(path, &session.limits)
+        reading::text(path, &session.limits)
             .map_err(|error| Fault::from(error.of_operand(index, path.display().to_string())))
     };
     files.iter().enumerate().map(text).collect()
@@ -78,7 +78,7 @@ fn mesh(arguments: &CurveMesh, session: &mut Session<'_>) -> Result<Exit, Fault>
             .map_err(|error| named(error, &arguments.file))?;
     let seconds = session.took("run", start);
     session.note("nodes", nodes);
-    let said = format!("{} ({})", report::counted(nodes, "node"), report::time(seconds));
+    let said = format!("{} ({})", words::counted(nodes, "node"), words::time(seconds));
     write(&[json_document(&arguments.output, &polyline)], &said, session)
 }
 
@@ -97,7 +97,7 @@ fn draw(arguments: &CurveDraw, session: &mut Session<'_>) -> Result<Exit, Fault>
     let texts = read(&files, session)?;
     let names: Vec<String> = arguments.files.iter().map(|path| path.display().to_string()).collect();
     let bytes = curve_text::draw(&texts, &names)?.into_bytes();
-    let said = format!("{} drawn", report::counted(texts.len(), "curve"));
+    let said = format!("{} drawn", words::counted(texts.len(), "curve"));
     write(&[Document { path: arguments.output.clone(), format: "svg", bytes }], &said, session)
 }
 

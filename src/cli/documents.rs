@@ -9,9 +9,9 @@ use serde_json::{Value, json};
 use super::argument_groups::Common;
 use super::fault::Fault;
 use super::limits::Limits;
-use super::requests::STANDARD;
 use super::stage::{self, Stage};
 use super::stream;
+use super::stream::STANDARD;
 
 /// A file to be written, or standard output.
 pub(crate) struct Document {

@@ -12,12 +12,13 @@ use super::argument_groups::Colours;
 use super::documents::{self, Document};
 use super::fault::{Exit, Fault};
 use super::field_arguments::Eval;
-use super::operands;
 use super::output::{self, Product, Target};
+use super::reading;
 use super::recenter;
-use super::report::{self, Measures};
-use super::requests::STANDARD;
+use super::report::Measures;
 use super::session::Session;
+use super::stream::STANDARD;
+use super::words;
 
 /// Evaluates a model.
 pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, Fault> {
@@ -69,7 +70,7 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
         .chain(drawn.iter().map(|document| document.path.display().to_string()))
         .collect();
     let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
-    session.console.say(&format!("{name}: {} ({}){arrow}", parts.join("; "), report::time(seconds)));
+    session.console.say(&format!("{name}: {} ({}){arrow}", parts.join("; "), words::time(seconds)));
     if let Some(extracted) = found.as_ref().and_then(|found| found.extraction) {
         session.console.detail(&format!(
             "extracted over {} cells; largest deviation found {:.3e}, tolerance {:.3e}",
@@ -87,7 +88,7 @@ fn read(path: &Path, session: &mut Session<'_>) -> Result<(Model, String), Fault
     session.console.stage(&format!("reading {name}"), 0.0);
     let folder = path.parent().filter(|_| !standard).unwrap_or(Path::new(""));
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let model = Model::parse(&operands::text(path, &session.limits)?, folder)?;
+    let model = Model::parse(&reading::text(path, &session.limits)?, folder)?;
     session.took("read", start);
     let files: Vec<String> = model.files().iter().map(|file| file.display().to_string()).collect();
     session
@@ -101,9 +102,9 @@ fn note_contours(contours: &Contours, height: f64, session: &mut Session<'_>) ->
     session.note("contours", json!({ "height": height, "count": count, "points": points, "area": area }));
     format!(
         "{} of {}, area {}",
-        report::counted(count, "contour"),
-        report::counted(points, "point"),
-        report::short(area)
+        words::counted(count, "contour"),
+        words::counted(points, "point"),
+        words::short(area)
     )
 }
 
@@ -130,8 +131,8 @@ fn dry_run(model: &Model, name: &str, session: &mut Session<'_>) -> Result<Exit,
     session.note("dry_run", true);
     session.console.say(&format!(
         "dry run: {name} is a model with {} and {}",
-        report::counted(model.names().count(), "named node"),
-        report::counted(model.files().len(), "mesh file"),
+        words::counted(model.names().count(), "named node"),
+        words::counted(model.files().len(), "mesh file"),
     ));
     Ok(Exit::Fine)
 }

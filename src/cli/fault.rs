@@ -7,7 +7,7 @@ use trisect::io::FormatError;
 use trisect::{Error, Failure, FileAction, MeshError};
 
 use super::json::json_of;
-use super::repairs::Remedy;
+use super::remedy::Remedy;
 
 /// The version of the JSON objects' layout. It rises when a key changes its meaning or goes; new keys may come
 /// without.

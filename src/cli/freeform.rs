@@ -12,8 +12,8 @@ use super::cage_arguments::FreeFormVerb;
 use super::cages::{self, Read};
 use super::fault::{Exit, Fault};
 use super::output::{self, Product};
-use super::report;
 use super::session::Session;
+use super::words;
 
 /// Combines cages.
 pub(crate) fn run(
@@ -182,13 +182,13 @@ fn described(found: &FreeFormReport) -> Value {
 fn say(found: &FreeFormReport, seconds: f64, session: &mut Session<'_>) {
     session.console.say(&format!(
         "cage: {}, {} ({} added, {} moved, {} as they were), within {} of the exact result ({})",
-        report::counted(found.vertices, "control point"),
-        report::counted(found.faces, "face"),
+        words::counted(found.vertices, "control point"),
+        words::counted(found.faces, "face"),
         found.added,
         found.fitted,
         found.unchanged,
-        report::short(found.errors.largest()),
-        report::time(seconds)
+        words::short(found.errors.largest()),
+        words::time(seconds)
     ));
     session.note("result", described(found));
 }

@@ -9,9 +9,9 @@ use trisect::field::{Grid, GridFormat};
 use super::documents::{self, Document};
 use super::fault::{Exit, Fault};
 use super::field_arguments::SampleGrid;
-use super::report;
 use super::session::Session;
 use super::source;
+use super::words;
 
 /// Samples a grid.
 pub(crate) fn run(
@@ -57,7 +57,7 @@ pub(crate) fn run(
     session.console.say(&format!(
         "{}: {nx} x {ny} x {nz} values ({}) -> {}",
         field.name,
-        report::time(seconds),
+        words::time(seconds),
         arguments.output.display()
     ));
     Ok(Exit::Fine)

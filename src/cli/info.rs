@@ -11,12 +11,13 @@ use trisect::{Error, Mesh};
 use super::arguments::Info;
 use super::fault::{Exit, Fault};
 use super::json::json_of;
-use super::operands::{self, Input};
-use super::report::{Measures, counted};
+use super::reading::{self, Input};
+use super::report::Measures;
 use super::requests::{self, Request};
 use super::selection;
 use super::session::Session;
 use super::stream;
+use super::words::counted;
 
 /// Names deeper than this are not indented further.
 const DEEPEST: usize = 20;
@@ -36,7 +37,7 @@ pub(crate) fn run(arguments: &Info, matches: &ArgMatches, session: &mut Session<
         session.console.stage(&format!("reading {name}"), 0.0);
         let (request, parts) = selection::whole(request, &session.limits, &control).map_err(of_this)?;
         let Input { mesh, format, warnings, reserved: _reserved } =
-            operands::read(&request, &session.limits, &control).map_err(of_this)?;
+            reading::read(&request, &session.limits, &control).map_err(of_this)?;
         let (text, object) = describe(&request, &mesh, format, &warnings, &parts);
         if !session.common.json {
             session.console.pause(|| stream::print(&text))?;

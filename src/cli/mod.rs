@@ -7,6 +7,7 @@ mod cage_arguments;
 #[cfg(feature = "subdivision")]
 mod cages;
 mod check;
+mod chosen;
 mod color;
 mod combine;
 mod convert;
@@ -25,10 +26,13 @@ mod grid;
 mod info;
 mod json;
 mod limits;
+mod mended;
 mod operands;
 mod output;
 mod progress;
+mod reading;
 mod recenter;
+mod remedy;
 mod repairs;
 mod report;
 mod requests;
@@ -41,8 +45,10 @@ mod stream;
 #[cfg(feature = "subdivision")]
 mod subdivide;
 mod task;
+mod usable;
 mod values;
 mod verbs;
+mod words;
 
 use std::any::Any;
 use std::io::Write as _;

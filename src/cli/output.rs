@@ -15,8 +15,8 @@ use super::documents::{self, Document};
 use super::fault::Fault;
 use super::json::json_of;
 use super::limits::Limits;
-use super::requests::STANDARD;
 use super::stage::{self, Stage};
+use super::stream::STANDARD;
 use super::stream::is_device;
 
 /// Where one output goes.

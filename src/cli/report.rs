@@ -4,8 +4,10 @@ use serde_json::{Map, Value, json};
 use trisect::{Certificate, Mesh, OperandState, Solid};
 
 use super::json::json_of;
-use super::operands::{self, Operand};
-use trisect::mesh::{Bounds, Fault, Mending};
+use super::mended;
+use super::operands::Operand;
+use super::words::{counted, short, time};
+use trisect::mesh::Bounds;
 
 /// Measures of a mesh. Those that only a closed surface has are absent for the others.
 #[derive(Clone, Debug)]
@@ -142,7 +144,7 @@ pub(crate) fn operand_json(operand: &Operand, index: usize, measures: &Measures)
         "format": operand.format.extension(),
         "transforms": transforms,
         "turned": operand.solid.mending().turned > 0,
-        "welded": welded_vertices(operand.solid.mending()),
+        "welded": mended::welded_vertices(operand.solid.mending()),
         "cleaning": cleaning(&operand.solid).1,
         "mending": json_of(operand.solid.mending()),
         "self_crossings": operand.crossings.as_ref().map(|crossings| &crossings.object),
@@ -156,7 +158,7 @@ pub(crate) fn operand_json(operand: &Operand, index: usize, measures: &Measures)
 /// The summary line of an operand.
 pub(crate) fn operand_line(operand: &Operand, measures: &Measures) -> String {
     let mut line = format!("{}: {}", operand.request.name(), measures.line());
-    line.push_str(&mending_in_line(operand.solid.mending()));
+    line.push_str(&mended::in_line(operand.solid.mending()));
     match &operand.crossings {
         None => line.push_str(", not checked for self-crossings"),
         Some(crossings) if crossings.count > 0 => {
@@ -177,41 +179,6 @@ pub(crate) fn operand_line(operand: &Operand, measures: &Measures) -> String {
         Some(_) => {}
     }
     format!("{line} ({})", time(operand.seconds))
-}
-
-/// How many vertices `--weld` joined.
-pub(crate) fn welded_vertices(mending: &Mending) -> usize {
-    if mending.distance.is_some() { mending.seams.count } else { 0 }
-}
-
-/// What a summary line says of mending.
-pub(crate) fn mending_in_line(mending: &Mending) -> String {
-    let mut line = String::new();
-    let mut done = mending.clone();
-    done.turned = 0;
-    if !done.is_none() {
-        line.push_str(&format!(", mended: {}", operands::effect(&done)));
-    }
-    if mending.turned > 0 {
-        line.push_str(", turned outwards");
-    }
-    line
-}
-
-/// A line for each kind of what was mended, with its first places.
-pub(crate) fn mended(mending: &Mending) -> Vec<String> {
-    let kinds = mending.sewn().into_iter().chain(mending.left_out());
-    let line = |(one, several, fault): (&str, &str, &Fault)| fault.text(one, several, usize::MAX);
-    kinds.map(line).collect()
-}
-
-/// What a summary line says of `--weld` where nothing else is mended.
-pub(crate) fn welded(vertices: usize) -> String {
-    match vertices {
-        0 => String::new(),
-        1 => ", 1 vertex welded".into(),
-        several => format!(", {several} vertices welded"),
-    }
 }
 
 /// The certificate of a result as JSON.
@@ -263,45 +230,9 @@ pub(crate) fn into_map(object: Value) -> Map<String, Value> {
     }
 }
 
-/// A number of things.
-pub(crate) fn counted(count: usize, thing: &str) -> String {
-    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
-}
-
-/// A number with at most ten significant digits.
-pub(crate) fn short(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return value.abs().to_string();
-    }
-    let scientific = format!("{value:.9e}");
-    let rounded: f64 = scientific.parse().unwrap_or(value);
-    if (1e-5..1e12).contains(&rounded.abs()) { rounded.to_string() } else { format!("{rounded:e}") }
-}
-
-/// A duration.
-pub(crate) fn time(seconds: f64) -> String {
-    match seconds {
-        ..0.01 => format!("{:.1} ms", seconds * 1e3),
-        ..1.0 => format!("{:.0} ms", seconds * 1e3),
-        _ => format!("{seconds:.2} s"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_are_short_but_right() {
-        assert_eq!(short(0.875), "0.875");
-        assert_eq!(short(0.1 + 0.2), "0.3");
-        assert_eq!(short(-0.0), "0");
-        assert_eq!(short(347_866.25), "347866.25");
-        assert_eq!(short(1.0 / 3.0), "0.3333333333");
-        assert_eq!(short(1.5e-7), "1.5e-7");
-        assert_eq!(short(2.5e15), "2.5e15");
-        assert_eq!(short(f64::NAN), "NaN");
-    }
 
     #[test]
     fn measures_of_an_open_mesh_leave_out_what_it_does_not_have() {
@@ -321,12 +252,5 @@ mod tests {
         assert_eq!(object["volume"], Value::Null);
         assert_eq!(measures.line(), "2 triangles, not closed");
         assert_eq!(Measures::of_mesh(&Mesh::default()).line(), "empty");
-    }
-
-    #[test]
-    fn durations_read_well() {
-        assert_eq!(time(0.000_34), "0.3 ms");
-        assert_eq!(time(0.0123), "12 ms");
-        assert_eq!(time(12.345), "12.35 s");
     }
 }

@@ -8,12 +8,10 @@ use clap::ArgMatches;
 use trisect::io::Format;
 use trisect::{Mesh, MeshError, Rule};
 
+use super::chosen::{self, Chosen};
 use super::fault::Fault;
 use super::repairs::Repairs;
-use super::selection::{self, Chosen};
-
-/// The name that stands for standard input and output.
-pub(crate) const STANDARD: &str = "-";
+use super::stream::STANDARD;
 
 /// A transform of an input.
 #[derive(Clone, Debug, PartialEq)]
@@ -129,7 +127,7 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     for (_, item) in items {
         match (item, requests.last_mut()) {
             (Item::File(path), _) => {
-                let (path, part) = selection::split(path);
+                let (path, part) = chosen::split(path);
                 let (format, chosen, transforms) = (None, None, Vec::new());
                 let (repairs, rule) = (Repairs::default(), rule_for_all);
                 requests.push(Request { path, part, chosen, format, expansion, transforms, repairs, rule });

@@ -10,8 +10,8 @@ use super::fault::{Exit, Fault, SCHEMA};
 use super::limits::Limits;
 use super::output;
 use super::progress::Console;
-use super::report::counted;
 use super::stream;
+use super::words::counted;
 
 /// What every verb works with.
 pub(crate) struct Session<'a> {

@@ -9,9 +9,9 @@ use trisect::field::Section;
 use super::documents::{self, Document};
 use super::fault::{Exit, Fault};
 use super::field_arguments::{Axis, Slice};
-use super::report;
 use super::session::Session;
 use super::source;
+use super::words;
 
 /// Draws a section.
 pub(crate) fn run(arguments: &Slice, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
@@ -54,10 +54,10 @@ pub(crate) fn run(arguments: &Slice, matches: &ArgMatches, session: &mut Session
     session.console.say(&format!(
         "{}: section at {name} = {}, {} x {} pixels ({}) -> {}",
         field.name,
-        report::short(position),
+        words::short(position),
         picture.width(),
         picture.height(),
-        report::time(seconds),
+        words::time(seconds),
         arguments.output.display()
     ));
     Ok(Exit::Fine)

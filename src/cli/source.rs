@@ -10,7 +10,7 @@ use trisect::{Control, Solid};
 
 use super::fault::Fault;
 use super::field_arguments::{self, Rule, Source};
-use super::operands;
+use super::reading;
 use super::requests;
 use super::selection;
 use super::session::Session;
@@ -59,7 +59,7 @@ pub(crate) fn field(
         let request = requests.pop().ok_or_else(|| Fault::usage("a file or --formula is needed"))?;
         let of_input = |error: trisect::Error| error.of_operand(0, request.name());
         let request = selection::together(request.clone(), &session.limits, control).map_err(of_input)?;
-        let input = operands::read(&request, &session.limits, control)
+        let input = reading::read(&request, &session.limits, control)
             .map_err(|error| error.of_operand(0, request.name()))?;
         for warning in &input.warnings {
             session.warn(format!("{}: {warning}", request.name()));

@@ -6,6 +6,9 @@ use std::path::Path;
 
 use super::fault::Fault;
 
+/// The name that stands for standard input and output.
+pub(crate) const STANDARD: &str = "-";
+
 /// An existing thing that is not a file: writing beside it and renaming would destroy it.
 pub(crate) fn is_device(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|what| !what.is_file() && !what.is_dir())

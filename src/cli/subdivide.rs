@@ -14,8 +14,9 @@ use super::cages;
 use super::documents;
 use super::fault::{Exit, Fault};
 use super::output::{self, Product, Target};
-use super::report::{self, Measures};
+use super::report::Measures;
 use super::session::Session;
+use super::words;
 
 /// What subdivision gave.
 enum Made {
@@ -70,9 +71,9 @@ pub(crate) fn run(
     session.console.say(&format!(
         "{}: {} -> {} ({})",
         input.name,
-        report::counted(input.cage.faces().len(), "face"),
-        report::counted(mesh.triangles.len(), "triangle"),
-        report::time(seconds)
+        words::counted(input.cage.faces().len(), "face"),
+        words::counted(mesh.triangles.len(), "triangle"),
+        words::time(seconds)
     ));
     Ok(Exit::Fine)
 }
