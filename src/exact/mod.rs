@@ -16,12 +16,14 @@ mod double_double;
 mod filter;
 mod integer;
 mod lattice;
+mod near;
 pub(crate) mod order;
 mod orient;
 pub(crate) mod perturbed;
 pub(crate) mod planes;
 pub(crate) mod position;
 mod projection;
+pub(crate) mod unrounded;
 
 pub(crate) use filter::{FILTER_RANGE, PlaneFilter, orient2d_filter, orient3d_filter};
 pub use orient::{Sign, collinear, orient2d, orient3d};

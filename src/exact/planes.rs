@@ -18,8 +18,8 @@ use super::Sign;
 use super::double_double::DoubleDouble;
 use super::integer::Integer;
 use super::lattice::Lattice;
+use super::near::{Near, round};
 use super::perturbed::{POWERS, PerturbedPoint};
-use super::position::{Near, round};
 
 /// The corners of a triangle.
 type Triangle<'a> = [&'a PerturbedPoint; 3];

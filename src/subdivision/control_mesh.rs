@@ -10,6 +10,7 @@ use super::error::CageError;
 use super::evaluate::Surface;
 use super::level::Level;
 use super::limit_mesh::{LimitMesh, most_steps};
+use super::place::{LimitPoint, Place};
 use super::rules::Rules;
 use super::tags::{Crease, Tags};
 use crate::{Error, Mesh};
@@ -31,28 +32,6 @@ pub struct ControlMesh {
     level: Level,
     tags: Tags,
     details: Vec<Details>,
-}
-
-/// Where on a cage: weights of the corners of a control face, which sum to 1.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// The control face.
-    pub face: u32,
-    /// The weights of its corners.
-    pub weights: [f64; 3],
-}
-
-/// A point of the limit surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LimitPoint {
-    /// Where it is.
-    pub position: [f64; 3],
-    /// The derivative along the weight of the face's second corner, taken from the first one's.
-    pub du: [f64; 3],
-    /// The same for the third corner.
-    pub dv: [f64; 3],
-    /// The normal, outwards; zero where there is no tangent plane.
-    pub normal: [f64; 3],
 }
 
 impl ControlMesh {

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::control_mesh::Place;
 use super::evaluate::Surface;
 use super::level::NONE;
+use super::place::Place;
 use crate::{Error, Mesh, Solid};
 
 /// How often a face is split at most: 4^8 = 65,536 triangles.

@@ -27,16 +27,18 @@ mod limit;
 mod limit_mesh;
 mod obj;
 mod patch;
+mod place;
 mod polygons;
 mod refine;
 mod rules;
 mod tags;
 
-pub use control_mesh::{ControlMesh, Evaluator, LimitPoint, Place};
+pub use control_mesh::{ControlMesh, Evaluator};
 pub use details::{Details, DomainVertex};
 pub use error::CageError;
 pub use freeform::{Errors, FreeForm, FreeFormOutcome, FreeFormReport, VertexOrigin};
 pub use limit_mesh::LimitMesh;
+pub use place::{LimitPoint, Place};
 pub use rules::Rules;
 pub use tags::{Corner, Crease, INFINITE_SHARPNESS, Sector, Tags};
 

@@ -4,7 +4,7 @@ use super::Arrangement;
 use super::location::perturbed_points;
 use super::points::{AddedPoint, Point};
 use crate::boolean::complex::ids::PointId;
-use crate::exact::position::{Unrounded, on_one_line};
+use crate::exact::unrounded::{Unrounded, on_one_line};
 
 impl Arrangement<'_> {
     /// Whether three points lay on one line before they were rounded; false where one of them is a copy, or has no number

@@ -5,7 +5,7 @@ use crate::boolean::arrangement::points::{AddedPoint, SheetCrossing};
 use crate::boolean::complex::ids::{FaceId, LabelId, PointId};
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::planes::{lie_in_one_plane, look_same_way};
-use crate::exact::position::{Unrounded, on_one_line};
+use crate::exact::unrounded::{Unrounded, on_one_line};
 use crate::mesh::BitSet;
 
 /// What of a face counts: what the result keeps as it is, what it turns over, or both with their signs.

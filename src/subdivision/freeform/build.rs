@@ -9,7 +9,42 @@ use super::operand::Operand;
 use super::sizes::Sizes;
 use super::start::Start;
 use super::work::{Sharp, Vertex, Work, key};
+use crate::subdivision::error::CageError;
 use crate::subdivision::level::{Kind, NONE};
+
+/// The working mesh, with every vertex that is to stay marked.
+pub(super) fn work(
+    start: &Start<'_>,
+    chains: &[Chain],
+    sizes: &Sizes,
+    steps: &[Vec<u32>; 2],
+) -> Result<Work, CageError> {
+    let active = [0, 1].map(|o| start.active(o, &steps[o]));
+    let mut builder = Builder::new(start);
+    // 1. Control faces that stay, with the points that faces beside them need.
+    for o in 0..2 {
+        for f in 0..active[o].len() as u32 {
+            if !active[o][f as usize] && start.whole[o][f as usize] {
+                builder.add_whole(o, f, &active[o]);
+            }
+        }
+    }
+    // 2. All other triangles of the result.
+    let mesh = start.outcome.solid().mesh();
+    for (t, &corners) in mesh.triangles.iter().enumerate() {
+        let o = start.outcome.origins()[t].operand as usize;
+        let f = start.face_of[t] as usize;
+        if active[o][f] || !start.whole[o][f] {
+            let corners = corners.map(|v| builder.vertex(v));
+            builder.work.add_face(corners, o as u8, None);
+        }
+    }
+    builder.describe(&active, steps, sizes);
+    builder.tag(&active);
+    builder.mark_chains(chains, sizes);
+    builder.fix();
+    Ok(builder.work)
+}
 
 /// A working mesh that is being put together.
 pub(super) struct Builder<'s, 'a> {

@@ -1,9 +1,9 @@
 //! Details: where the cage is still too far, vertices after one, two, ... subdivisions are fitted, and what that moves them is
 //! kept as displacements in frames of the surface.
 
+use super::attempt::Attempt;
 use super::fit::Fit;
 use super::measure::{Measure, Region, affected};
-use super::run::Attempt;
 use crate::Error;
 use crate::subdivision::details::{Details, analysed, synthesised};
 

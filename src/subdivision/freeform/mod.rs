@@ -13,6 +13,7 @@
 //!    faces of half the size beside the curve; the best is returned.
 
 mod assemble;
+mod attempt;
 mod build;
 mod coarsen;
 mod curve;

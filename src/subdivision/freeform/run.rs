@@ -5,14 +5,15 @@ use std::time::Instant;
 use glam::DVec3;
 
 use super::assemble::{Draft, assemble};
+use super::attempt::Attempt;
 use super::curve::Chain;
 use super::fit::Fit;
-use super::measure::{Errors, Measure, Region};
+use super::measure::Measure;
 use super::operand::Operand;
 use super::report::FreeFormReport;
 use super::sizes::Sizes;
 use super::start::Start;
-use super::{FreeForm, FreeFormOutcome, VertexOrigin, coarsen, details, relax};
+use super::{FreeForm, FreeFormOutcome, VertexOrigin, build, coarsen, details, relax};
 use crate::subdivision::control_mesh::ControlMesh;
 use crate::subdivision::error::CageError;
 use crate::subdivision::tags::Tags;
@@ -43,17 +44,6 @@ pub(super) struct Run<'s> {
     tolerance: f64,
     report: FreeFormReport,
     start: Instant,
-}
-
-/// What one size of faces gave.
-pub(super) struct Attempt {
-    pub(super) draft: Draft,
-    pub(super) errors: Errors,
-    /// The largest distance over each face.
-    pub(super) of_face: Vec<f64>,
-    pub(super) region: Region,
-    refined: u32,
-    left_over: usize,
 }
 
 impl<'s> Run<'s> {
@@ -197,7 +187,7 @@ impl<'s> Run<'s> {
         // 1. The cage's faces.
         let sizes = Sizes::new(chains, start.curve_sizes(chains, refined));
         let steps = start.steps(&sizes);
-        let mut work = start.work(chains, &sizes, &steps)?;
+        let mut work = build::work(start, chains, &sizes, &steps)?;
         let left_over = coarsen::coarsen(&mut work);
         relax::polish(&mut work, chains);
         relax::relax(&mut work, chains, operands, start.reversed);

@@ -3,15 +3,12 @@
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::build::Builder;
 use super::curve::Chain;
 use super::operand::{Operand, weights_in};
 use super::sizes::Sizes;
-use super::work::Work;
 use crate::Outcome;
-use crate::subdivision::control_mesh::Place;
-use crate::subdivision::error::CageError;
 use crate::subdivision::level::NONE;
+use crate::subdivision::place::Place;
 
 /// A place is on an edge of its face when the third weight is below this: rounding of points on the curve.
 const ON_EDGE: f64 = 1e-7;
@@ -173,42 +170,8 @@ impl<'a> Start<'a> {
         })
     }
 
-    /// The working mesh, with every vertex that is to stay marked.
-    pub(super) fn work(
-        &self,
-        chains: &[Chain],
-        sizes: &Sizes,
-        steps: &[Vec<u32>; 2],
-    ) -> Result<Work, CageError> {
-        let active = [0, 1].map(|o| self.active(o, &steps[o]));
-        let mut builder = Builder::new(self);
-        // 1. Control faces that stay, with the points that faces beside them need.
-        for o in 0..2 {
-            for f in 0..active[o].len() as u32 {
-                if !active[o][f as usize] && self.whole[o][f as usize] {
-                    builder.add_whole(o, f, &active[o]);
-                }
-            }
-        }
-        // 2. All other triangles of the result.
-        let mesh = self.outcome.solid().mesh();
-        for (t, &corners) in mesh.triangles.iter().enumerate() {
-            let o = self.outcome.origins()[t].operand as usize;
-            let f = self.face_of[t] as usize;
-            if active[o][f] || !self.whole[o][f] {
-                let corners = corners.map(|v| builder.vertex(v));
-                builder.work.add_face(corners, o as u8, None);
-            }
-        }
-        builder.describe(&active, steps, sizes);
-        builder.tag(&active);
-        builder.mark_chains(chains, sizes);
-        builder.fix();
-        Ok(builder.work)
-    }
-
     /// Which faces enter as fine triangles: those that are cut or to be split, and whole ones with three such neighbours.
-    fn active(&self, o: usize, steps: &[u32]) -> Vec<bool> {
+    pub(super) fn active(&self, o: usize, steps: &[u32]) -> Vec<bool> {
         let level = &self.operands[o].surface.level;
         let mut active: Vec<bool> = (0..steps.len()).map(|f| !self.whole[o][f] || steps[f] > 0).collect();
         // A whole face between three active ones has points on all its sides: its own triangles serve.
