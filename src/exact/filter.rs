@@ -70,7 +70,7 @@ impl PlaneFilter {
 
 /// As [`orient3d_filter`], for `orient2d`; never wrong for any finite coordinates.
 #[inline(always)]
-pub(crate) fn orient2d_filter(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> (f64, f64) {
+pub(super) fn orient2d_filter(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> (f64, f64) {
     let left = (a[0] - c[0]) * (b[1] - c[1]);
     let right = (a[1] - c[1]) * (b[0] - c[0]);
     (left - right, ORIENT2D_BOUND * (left.abs() + right.abs()) + UNDERFLOW_FLOOR)

@@ -25,7 +25,7 @@ pub(crate) mod position;
 mod projection;
 pub(crate) mod unrounded;
 
-pub(crate) use filter::{FILTER_RANGE, PlaneFilter, orient2d_filter, orient3d_filter};
+pub(crate) use filter::{FILTER_RANGE, PlaneFilter, orient3d_filter};
 pub use orient::{Sign, collinear, orient2d, orient3d};
 pub use perturbed::orient3d_perturbed;
 pub(crate) use projection::Projection;

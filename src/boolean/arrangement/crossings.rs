@@ -8,6 +8,7 @@ use std::ops::Index;
 use crate::Error;
 use crate::boolean::candidates::Candidates;
 use crate::boolean::complex::ids::{FaceId, NodeId, SegmentId, VertexId};
+use crate::boolean::complex::meeting::Meeting;
 use crate::boolean::complex::predicates::{KnownSides, Plane, Predicates};
 use crate::boolean::complex::{Complex, Corner};
 use crate::parallel::Runner;
@@ -176,21 +177,13 @@ impl Search<'_> {
     #[inline]
     fn intersect(&self, triangles: [u32; 2], corners: &[[Corner; 3]; 2]) -> Option<PairCrossing> {
         let [a, b] = corners;
-        // 1. Each triangle must have corners on both sides of the other's plane; one of them is alone on its side.
+        // 1. How they meet.
         let a_inside = self.inside(1, triangles[1], b, a);
-        let alone_a = odd_one_out(a_inside)?;
-        let b_inside = self.inside(0, triangles[0], a, b);
-        let alone_b = odd_one_out(b_inside)?;
-        let [p, q, r] = [0, 1, 2].map(|i| &a[(alone_a + i) % 3]);
-        let [u, v, w] = [0, 1, 2].map(|i| &b[(alone_b + i) % 3]);
-        // 2. Both triangles cut the line in which their planes meet in an interval, bounded by their edges at the corner
-        //    that is alone. An edge crosses the other triangle iff it passes that one's two edges on different sides.
-        let (pqu, pru) = (Plane::new(p, q, u), Plane::new(p, r, u));
-        let qv = self.predicates.is_inside(&pqu, v);
-        let qw = self.predicates.is_inside(&pqu, w);
-        let rv = self.predicates.is_inside(&pru, v);
-        let rw = self.predicates.is_inside(&pru, w);
-        // 3. The crossings, directed: along the boundary of its own triangle an edge of A that leaves B ends the segment,
+        let Meeting { alone, inside: [p_inside, u_inside], pierces } =
+            Meeting::of(&self.predicates, a, b, a_inside, || self.inside(0, triangles[0], a, b))?;
+        let [p, q, r] = [0, 1, 2].map(|k| &a[(alone[0] + k) % 3]);
+        let [u, v, w] = [0, 1, 2].map(|k| &b[(alone[1] + k) % 3]);
+        // 2. The crossings, directed: along the boundary of its own triangle an edge of A that leaves B ends the segment,
         //    one of B that leaves A starts it.
         let faces = [0, 1].map(|operand| self.complex.face(operand, triangles[operand]));
         let crossing = |x: &Corner, y: &Corner, x_inside: bool, face: FaceId| {
@@ -201,17 +194,17 @@ impl Search<'_> {
         let mut place = |crossing: Crossing, is_head: bool| {
             *(if is_head { &mut head } else { &mut tail }) = Some(crossing);
         };
-        let (p_inside, u_inside) = (a_inside[alone_a], b_inside[alone_b]);
-        if qv != qw {
+        let [[by_pq, by_pr], [by_uv, by_uw]] = pierces;
+        if by_pq {
             place(crossing(p, q, p_inside, faces[1]), p_inside);
         }
-        if rv != rw {
+        if by_pr {
             place(crossing(p, r, p_inside, faces[1]), !p_inside);
         }
-        if qv != rv {
+        if by_uv {
             place(crossing(u, v, u_inside, faces[0]), !u_inside);
         }
-        if qw != rw {
+        if by_uw {
             place(crossing(u, w, u_inside, faces[0]), u_inside);
         }
         debug_assert_eq!(
@@ -238,17 +231,6 @@ impl Search<'_> {
         let plane = Plane::new(a, b, c);
         let [u, v, w] = others;
         [u, v, w].map(|other| self.predicates.is_inside(&plane, other))
-    }
-}
-
-/// The index of the one that differs from the other two.
-#[inline]
-fn odd_one_out(inside: [bool; 3]) -> Option<usize> {
-    match inside {
-        [a, b, c] if a == b && b == c => None,
-        [a, b, _] if a == b => Some(2),
-        [a, _, c] if a == c => Some(1),
-        _ => Some(0),
     }
 }
 

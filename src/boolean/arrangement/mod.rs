@@ -9,7 +9,7 @@
 //!
 //! `self_crossings` asks the same predicates of one surface against itself.
 
-mod apart;
+pub(super) mod apart;
 pub(super) mod crossings;
 pub(super) mod curve;
 pub(super) mod cut_edges;

@@ -6,9 +6,7 @@
 //! whose winding number is neither 0 nor 1; else it is what rounding does to every computed mesh, and the multiplicities
 //! of the boolean carry it.
 
-use smallvec::SmallVec;
-
-use super::apart::{are_apart, meet_in_corner_alone};
+use super::apart::{are_plainly_apart, common_corners};
 use super::self_pairs::self_pairs;
 use crate::boolean::complex::ids::VertexId;
 use crate::boolean::complex::planes;
@@ -143,7 +141,7 @@ impl<'a> Surface<'a> {
     /// The crossing of a pair of triangles, if they cross.
     fn examine(&self, pair: [u32; 2]) -> Option<Found> {
         let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t));
-        if self.are_plainly_apart(&a, &b) {
+        if are_plainly_apart(&self.predicates, &a, &b) {
             return None;
         }
         if let Some(crossing) = self.examine_closely(pair, &a, &b) {
@@ -157,20 +155,6 @@ impl<'a> Surface<'a> {
         let Operand { positions, triangles } = self.complex.operands[0];
         let [a, b] = pair.map(|t| triangles[t as usize].map(|v| positions[v as usize]));
         planes::lie_on_each_other(&a, &b)
-    }
-
-    /// Whether two triangles plainly have nothing in common but a corner. Nearly all pairs are apart, and most ties are of faces
-    /// in one plane: those are told apart in the plane.
-    fn are_plainly_apart(&self, a: &[Corner; 3], b: &[Corner; 3]) -> bool {
-        let beside = |plane, corners: &[Corner]| self.predicates.are_plainly_on_one_side(plane, corners);
-        match common_corners(a, b).as_slice() {
-            [] => beside(b, a) || beside(a, b) || are_apart(a, b),
-            &[(i, j)] => {
-                let others = |t: &[Corner; 3], k: usize| [t[(k + 1) % 3], t[(k + 2) % 3]];
-                (beside(b, &others(a, i)) && beside(a, &others(b, j))) || meet_in_corner_alone(a, i, b, j)
-            }
-            _ => false,
-        }
     }
 
     fn examine_closely(&self, pair: [u32; 2], a: &[Corner; 3], b: &[Corner; 3]) -> Option<Crossing> {
@@ -208,7 +192,7 @@ impl<'a> Surface<'a> {
         for (t, inside, plane) in [(a, a_inside, b), (b, b_inside, a)] {
             for k in 0..3 {
                 let (p, q) = (&t[k], &t[(k + 1) % 3]);
-                if inside[k] != inside[(k + 1) % 3] && self.passes(p, q, plane) {
+                if inside[k] != inside[(k + 1) % 3] && self.predicates.passes(p, q, plane) {
                     ends.push(meeting(&p.position, &q.position, plane));
                 }
             }
@@ -227,18 +211,11 @@ impl<'a> Surface<'a> {
         for (t, k, plane) in [(a, i, b), (b, j, a)] {
             let (p, q) = (&t[(k + 1) % 3], &t[(k + 2) % 3]);
             let inside = |x: &Corner| self.predicates.is_positive(&plane[0], &plane[1], &plane[2], x);
-            if inside(p) != inside(q) && self.passes(p, q, plane) {
+            if inside(p) != inside(q) && self.predicates.passes(p, q, plane) {
                 return Some([t[k].position, meeting(&p.position, &q.position, plane)]);
             }
         }
         None
-    }
-
-    /// Whether a line through a plane passes the triangle in it.
-    fn passes(&self, p: &Corner, q: &Corner, t: &[Corner; 3]) -> bool {
-        let first = self.predicates.is_positive(p, q, &t[0], &t[1]);
-        self.predicates.is_positive(p, q, &t[1], &t[2]) == first
-            && self.predicates.is_positive(p, q, &t[2], &t[0]) == first
     }
 
     /// Whether some point beside a shallow crossing, clear of the surface, has a winding number other than 0 and 1.
@@ -299,12 +276,6 @@ impl<'a> Surface<'a> {
         });
         clear
     }
-}
-
-/// The corners that two triangles have in common, by their places in both.
-fn common_corners(a: &[Corner; 3], b: &[Corner; 3]) -> SmallVec<[(usize, usize); 3]> {
-    let places = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
-    places.filter(|&(i, j)| a[i].id == b[j].id).collect()
 }
 
 /// How far a triangle reaches to the shorter side of another's plane.

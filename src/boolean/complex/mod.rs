@@ -10,11 +10,13 @@
 //! - `ids`: the numbers of things;
 //! - `directions`: where each vertex of A moves;
 //! - `predicates`: the one question every decision asks;
+//! - `meeting`: how two triangles meet;
 //! - `rays`: how often a surface winds around a point;
 //! - `planes`: which faces lie in one plane.
 
 pub(super) mod directions;
 pub(super) mod ids;
+pub(super) mod meeting;
 pub(super) mod operation;
 pub(super) mod origin;
 pub(super) mod planes;

@@ -62,7 +62,7 @@ pub(crate) fn look_same_way(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
 }
 
 /// Whether two triangles that lie in one plane, exactly, have area in common.
-pub(crate) fn overlap(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> bool {
+fn overlap(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> bool {
     if collinear(&a[0], &a[1], &a[2]) || collinear(&b[0], &b[1], &b[2]) {
         return false;
     }

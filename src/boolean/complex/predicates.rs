@@ -93,6 +93,12 @@ impl<'a> Predicates<'a> {
         first.is_some() && corners.iter().all(|corner| side(corner) == first)
     }
 
+    /// Whether a line through a triangle's plane passes the triangle.
+    pub(crate) fn passes(&self, p: &Corner, q: &Corner, [a, b, c]: &[Corner; 3]) -> bool {
+        let first = self.is_positive(p, q, a, b);
+        self.is_positive(p, q, b, c) == first && self.is_positive(p, q, c, a) == first
+    }
+
     fn count(&self, answer: Answer) -> bool {
         if answer.is_tie {
             self.ties.fetch_add(1, Ordering::Relaxed);

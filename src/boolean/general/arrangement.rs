@@ -1,8 +1,9 @@
 //! The general arrangement as one value, built step by step.
 
-use super::crossings::{self, Crossings};
+use super::crossings::Crossings;
 use super::edges::{Edges, MOST_FACES};
 use super::lines::Lines;
+use super::pairs::FaceBoxes;
 use super::segment_labels::SegmentLabels;
 use super::surfaces::Surfaces;
 use super::walk::FaceLabels;
@@ -35,13 +36,13 @@ pub(crate) struct General {
 }
 
 /// Surfaces with their crossings: the first steps, which tell whether there is anything to resolve.
-#[derive(Debug)]
 pub(crate) struct Crossed {
     surfaces: Surfaces,
     edges: Edges,
     crossings: Crossings,
     contacts: u64,
     bounds: Bounds,
+    boxes: FaceBoxes,
     _memory: Reservation,
 }
 
@@ -50,12 +51,7 @@ impl Crossed {
     ///
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where faces or points cannot be numbered.
-    pub(crate) fn new(
-        operands: &[&Solid],
-        groups: &[Vec<u32>],
-        simple: &[bool],
-        runner: Runner<'_>,
-    ) -> Result<Self, Error> {
+    pub(crate) fn new(operands: &[&Solid], groups: &[Vec<u32>], runner: Runner<'_>) -> Result<Self, Error> {
         let triangles: usize = operands.iter().map(|solid| solid.mesh().triangles.len()).sum();
         let vertices: usize = operands.iter().map(|solid| solid.mesh().positions.len()).sum();
         if triangles >= MOST_FACES || vertices >= MOST_FACES {
@@ -69,13 +65,14 @@ impl Crossed {
         let (mut surfaces, mut edges) = Surfaces::new(operands, groups);
         let bounds = operands.iter().filter_map(|solid| solid.bounds());
         let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
-        let pairs = crossings::find_pairs(&surfaces, &bounds, simple, runner)?;
+        let boxes = FaceBoxes::new(&surfaces, &bounds);
+        let pairs = boxes.pairs(&surfaces, runner)?;
         surfaces.set_near(&pairs);
         let contacts = seeds::sort_radially(&surfaces, &mut edges);
         // 2. Which faces cross.
         let crossings = Crossings::find(&surfaces, &edges, &pairs, runner)?;
         let contacts = contacts + crossings.contacts;
-        Ok(Self { surfaces, edges, crossings, contacts, bounds, _memory: memory })
+        Ok(Self { surfaces, edges, crossings, contacts, bounds, boxes, _memory: memory })
     }
 
     /// The faces that cross others or lie on others, ascending, as triangles of their operands.
@@ -95,14 +92,14 @@ impl General {
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where points cannot be numbered.
     pub(crate) fn new(crossed: Crossed, fuse: bool, runner: Runner<'_>) -> Result<Self, Error> {
-        let Crossed { surfaces, edges, crossings, mut contacts, bounds, _memory } = crossed;
+        let Crossed { surfaces, edges, crossings, mut contacts, bounds, boxes, _memory } = crossed;
         let cut: Vec<FaceId> = surfaces.faces().filter(|&face| !crossings.of_face(face).is_empty()).collect();
         // 3. Three-face points.
         let (triples, contacts_of_triples) = triples::find(&surfaces, &edges, &crossings, &cut, runner)?;
         // 4. Where all points are, and their order.
         let lines = Lines::new(&surfaces, &edges, &crossings, triples, runner)?;
         // 5. Labels.
-        let (seeds, contacts_of_seeds) = seeds::find(&surfaces, &edges, &bounds, runner)?;
+        let (seeds, contacts_of_seeds) = seeds::find(&surfaces, &edges, &bounds, &boxes, runner)?;
         let control = runner.control;
         let mut faces = FaceLabels::new(&surfaces, &edges, &crossings, &lines, &seeds, control)?;
         let segment_labels = SegmentLabels::new(&surfaces, &edges, &crossings, &lines, &mut faces, control)?;

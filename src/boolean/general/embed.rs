@@ -93,7 +93,7 @@ pub(crate) fn embed(
         // 2. What crosses.
         let mesh = Mesh::new(std::mem::take(&mut parts.positions), std::mem::take(&mut parts.triangles));
         let solid = Solid::from_closed_unchecked(compact(mesh));
-        let crossed = Crossed::new(&[&solid], std::slice::from_ref(&parts.groups), &[false], runner)?;
+        let crossed = Crossed::new(&[&solid], std::slice::from_ref(&parts.groups), runner)?;
         troubled = crossed.troubled();
         report.left = troubled.len();
         let fewest = best.as_ref().map_or(usize::MAX, |(_, report)| report.left);

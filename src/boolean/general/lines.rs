@@ -5,7 +5,8 @@
 
 use std::cmp::Ordering;
 
-use super::crossings::{Crossings, Node, compare_on_edge};
+use super::cross::Node;
+use super::crossings::{Crossings, compare_on_edge};
 use super::edges::Edges;
 use super::surfaces::Surfaces;
 use super::triples::{self, Triple};

@@ -2,7 +2,7 @@
 //! expressions of them, evaluated at once from the original operands and rounded once.
 //!
 //! 1. `surfaces`, `edges`: all operands under one numbering, in general position;
-//! 2. `crossings`: which faces cross, and where their edges do;
+//! 2. `pairs`, `cross`, `crossings`: which faces cross, and where their edges do;
 //! 3. `triples`: points in which three faces meet;
 //! 4. `lines`: where all points are, in order along edges and segments;
 //! 5. `labels`, `seeds`, `walk`, `segment_labels`: winding numbers of all operands beside every piece;
@@ -20,12 +20,14 @@
 //! double faces. So the pieces of faces that touch in a plane are added up (`cut::plane_sums`).
 
 pub(crate) mod arrangement;
+pub(crate) mod cross;
 pub(crate) mod crossings;
 pub(crate) mod edges;
 pub(crate) mod embed;
 pub(crate) mod evaluate;
 pub(crate) mod labels;
 pub(crate) mod lines;
+pub(crate) mod pairs;
 pub(crate) mod seeds;
 pub(crate) mod segment_labels;
 pub(crate) mod shape;

@@ -5,6 +5,7 @@
 //! of v that is met has this label on the side from which it is met.
 
 use super::edges::{Edges, Side};
+use super::pairs::FaceBoxes;
 use super::surfaces::Surfaces;
 use crate::Error;
 use crate::boolean::complex::Corner;
@@ -15,7 +16,6 @@ use crate::exact::Sign;
 use crate::exact::perturbed::{self, PerturbedPoint, jitter};
 use crate::mesh::{Bounds, Buckets};
 use crate::parallel::Runner;
-use crate::spatial::{BoxTree, Frame};
 
 /// The label on the outer side of a face at one end of an edge of it.
 #[derive(Clone, Debug)]
@@ -68,6 +68,7 @@ pub(crate) fn find(
     surfaces: &Surfaces,
     edges: &Edges,
     bounds: &Bounds,
+    boxes: &FaceBoxes,
     runner: Runner<'_>,
 ) -> Result<(Vec<Seed>, u64), Error> {
     // 1. The last vertex of each piece in x.
@@ -90,11 +91,6 @@ pub(crate) fn find(
     let at_last: Vec<(u32, EdgeId)> = at_last.flatten().collect();
     let at_last = Buckets::new(count, at_last.into_iter());
     // 3. A ray from each.
-    let frame = Frame::of(bounds.low, bounds.high);
-    let tree = (count > 1).then(|| {
-        let all: Vec<u32> = (0..surfaces.face_count()).collect();
-        BoxTree::new(&all, |t| frame.triangle(surfaces.positions(FaceId::new(t)).each_ref()))
-    });
     let predicates = Predicates::new(surfaces);
     let search = Search { surfaces, edges, predicates };
     let end_x = coordinate_past(bounds.low[0], bounds.high[0]);
@@ -102,17 +98,17 @@ pub(crate) fn find(
         let component = range.start;
         // Pieces without faces are vertices that only left-out triangles had.
         let vertex = last[component].filter(|_| !at_last.get(component).is_empty())?;
-        let around = tree.as_ref().map_or_else(Vec::new, |tree| {
+        let mut crossed = Vec::new();
+        if count > 1 {
             let start = surfaces.corner(vertex);
             let id = VertexId::new(surfaces.vertex_count() + component as u32);
             let end = Corner { id, position: [end_x, start.position[1], start.position[2]] };
             let ray = Ray { start, end };
-            let query = frame.triangle([&ray.start.position, &ray.start.position, &ray.end.position]);
-            let mut crossed = Vec::new();
-            tree.meeting(&query, |t| crossed.extend(search.crossed(FaceId::new(t), &ray, component as u32)));
-            crossed
-        });
-        Some(search.seed(vertex, at_last.get(component), around))
+            boxes.meeting([&ray.start.position, &ray.end.position], |face| {
+                crossed.extend(search.crossed(face, &ray, component as u32));
+            });
+        }
+        Some(search.seed(vertex, at_last.get(component), crossed))
     })?;
     Ok((seeds.into_iter().flatten().collect(), search.predicates.into_contacts()))
 }

@@ -66,9 +66,8 @@ pub(super) fn run(
     let groups = merged_groups(operands);
     let of_triangles: Vec<Vec<u32>> =
         operands.iter().enumerate().map(|(i, solid)| groups.of_operand(i, solid)).collect();
-    let simple = vec![false; operands.len()];
     let fuse = wanted.policy.contact == Contact::Fuse;
-    let crossed = Crossed::new(operands, &of_triangles, &simple, runner)?;
+    let crossed = Crossed::new(operands, &of_triangles, runner)?;
     let general = General::new(crossed, fuse, runner)?;
     // 2. Each expression.
     let arranged =
