@@ -29,22 +29,26 @@ mod classify;
 mod complex;
 mod cut;
 mod expression;
+mod expression_text;
 mod general;
 mod many;
 mod pair;
 mod result;
 mod rounding;
+mod rule;
 mod tidy;
 
 pub use complex::operation::{Contact, Operation, UnknownName};
 pub use complex::origin::Origin;
-pub use expression::{Expression, ExpressionError, Rule};
+pub use expression::Expression;
+pub use expression_text::ExpressionError;
 pub use general::embed::{Embedding, Grid};
-pub use many::made::Embed;
 pub use many::options::BooleanOptions;
+pub use many::policy::Embed;
 pub use result::certificate::{Certificate, OperandState};
 pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;
+pub use rule::Rule;
 
 use crate::{Error, Solid};
 

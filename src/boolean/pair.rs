@@ -33,6 +33,8 @@ pub(super) struct Settings<'a> {
     pub(super) glue: bool,
     /// Whether vertices that nobody needs are removed.
     pub(super) remove_vertices: bool,
+    /// Whether it is asked if rounding may have made something cross.
+    pub(super) find_low: bool,
     /// The result's group of each triangle of A and of B; empty if there are no groups.
     pub(super) groups: [&'a [u32]; 2],
 }
@@ -128,8 +130,8 @@ fn build(
     let body = Body { arrangement, windings, parts };
     let assembled = assemble(body, &pieces, replaced.as_ref(), runner)?;
     let has_inverted = cut.has_inverted;
-    let may_cross =
-        has_inverted || rounding.has_low(&pieces, |point| body.arrangement.points.position(point));
+    let may_cross = settings.find_low
+        && (has_inverted || rounding.has_low(&pieces, |point| body.arrangement.points.position(point)));
     Ok(Assembled { has_inverted, may_cross, clean_up_stopped, ..assembled })
 }
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::Value;
 use trisect::io::Format;
-use trisect::{BooleanOptions, Embed, Grid, Operation, Outcome, Solid};
+use trisect::{BooleanOptions, Embed, Grid, OperandState, Operation, Outcome, Rule, Solid};
 
 use super::argument_groups::Colours;
 use super::arguments::{Combination, Combine};
@@ -54,7 +54,7 @@ pub(crate) fn run_resolve(
     if requests.len() > 1 {
         return Err(Fault::usage("resolve takes one input; union unites several, each resolved first"));
     }
-    run_task(&Task::resolve(), requests, arguments, session)
+    run_task(&Task::Resolve, requests, arguments, session)
 }
 
 fn run_task(
@@ -100,20 +100,39 @@ fn run_task(
     let outcomes = task.run(&options, &solids)?;
     let seconds = session.took("run", start);
 
+    if let Some(outcome) = outcomes.first() {
+        warn_of_inward(outcome, &operands, session);
+    }
     let format = operands.first().map(|operand| operand.format);
+    finish(arguments, &outcomes, &targets, &suffixes, format, seconds, session)?;
+    Ok(Exit::Fine)
+}
+
+/// Writes all results and says what they are.
+fn finish(
+    arguments: &Combine,
+    outcomes: &[Outcome],
+    targets: &[Vec<Target>],
+    suffixes: &[&'static str],
+    format: Option<Format>,
+    seconds: f64,
+    session: &mut Session<'_>,
+) -> Result<(), Fault> {
     let mut results = Vec::new();
     let mut outputs = Vec::new();
-    for ((outcome, targets), suffix) in outcomes.iter().zip(&targets).zip(suffixes) {
-        let name = if suffix.is_empty() { "result" } else { &suffix[1..] };
+    for ((outcome, targets), suffix) in outcomes.iter().zip(targets).zip(suffixes) {
+        let name = suffix.strip_prefix('-').unwrap_or("result");
         outputs.extend(write(arguments, targets, outcome, format, session)?);
         results.push(tell(name, outcome, targets, seconds, session));
     }
-    session.note("result", results[0].clone());
+    if let Some(first) = results.first() {
+        session.note("result", first.clone());
+    }
     if results.len() > 1 {
         session.note("results", results);
     }
     session.note("outputs", outputs);
-    Ok(Exit::Fine)
+    Ok(())
 }
 
 /// How the operands are combined.
@@ -130,6 +149,24 @@ fn options(
     match session.common.threads {
         Some(threads) => options.threads(usize::from(threads)),
         None => options,
+    }
+}
+
+/// Warns of inverted bodies of operands that the rule leaves out.
+fn warn_of_inward(outcome: &Outcome, operands: &[Operand], session: &mut Session<'_>) {
+    for (index, (state, operand)) in outcome.certificate().operands.iter().zip(operands).enumerate() {
+        if let OperandState::Resolved { inward_volume, .. } = *state
+            && inward_volume > 0.0
+            && operand.request.rule == Rule::Positive
+        {
+            session.warn(format!(
+                "operand {} ({}): a volume of {} is wound around inwards, which is no material by the rule positive; --rule \
+                 nonzero makes it some, and --orient turns shells that face inwards",
+                index + 1,
+                operand.request.name(),
+                words::short(inward_volume),
+            ));
+        }
     }
 }
 

@@ -135,9 +135,6 @@ impl Fault {
                 Error::Mesh(MeshError::InsideOutShells(shells)) => {
                     object.insert("inside_out_shells".into(), json_of(shells));
                 }
-                Error::Mesh(MeshError::SelfCrossing(crossings)) => {
-                    object.insert("self_crossings".into(), json_of(crossings));
-                }
                 _ => {}
             }
         }

@@ -186,11 +186,12 @@ pub(crate) fn certificate(certificate: &Certificate) -> Value {
     let operands = certificate.operands.iter().map(|state| match state {
         OperandState::Clean { tolerated } => json!({ "self_crossings": 0, "tolerated": tolerated }),
         OperandState::Crossing { count } => json!({ "self_crossings": count }),
-        OperandState::Resolved { crossings, touching, winding_volume } => json!({
+        OperandState::Resolved { crossings, touching, winding_volume, inward_volume } => json!({
             "resolved": true,
             "self_crossings": crossings,
             "self_touching": touching,
             "winding_volume": winding_volume,
+            "inward_volume": inward_volume,
         }),
         _ => json!({ "self_crossings": null }),
     });

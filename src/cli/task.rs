@@ -10,6 +10,8 @@ use super::requests::Request;
 #[derive(Clone, Debug)]
 pub(crate) enum Task {
     Operation(Operation),
+    /// What the surface of one input winds around.
+    Resolve,
     /// What each of some expressions is, in words, and what its outputs' names end with.
     Expressions(Vec<Part>),
 }
@@ -24,12 +26,6 @@ pub(crate) struct Part {
 }
 
 impl Task {
-    /// What a surface winds around.
-    pub(crate) fn resolve() -> Self {
-        let expression = Expression::Operand(0);
-        Self::Expressions(vec![Part { name: "what is inside".into(), suffix: "", expression }])
-    }
-
     /// What `combine` asks for, of so many inputs. Takes the names of operands off the paths.
     pub(crate) fn of(combination: &Combination, requests: &mut [Request]) -> Result<Self, Fault> {
         let names = names(requests);
@@ -75,6 +71,7 @@ impl Task {
     pub(crate) fn words(&self) -> String {
         match self {
             Self::Operation(operation) => format!("the {operation}"),
+            Self::Resolve => "what is inside".into(),
             Self::Expressions(parts) => {
                 parts.iter().map(|part| part.name.as_str()).collect::<Vec<_>>().join(", ")
             }
@@ -84,7 +81,7 @@ impl Task {
     /// How many inputs there must be.
     pub(crate) fn least_inputs(&self) -> usize {
         match self {
-            Self::Operation(Operation::Union) | Self::Expressions(_) => 1,
+            Self::Operation(Operation::Union) | Self::Resolve | Self::Expressions(_) => 1,
             Self::Operation(_) => 2,
         }
     }
@@ -97,7 +94,7 @@ impl Task {
     /// The ends of the names of outputs.
     pub(crate) fn suffixes(&self) -> Vec<&'static str> {
         match self {
-            Self::Operation(_) => vec![""],
+            Self::Operation(_) | Self::Resolve => vec![""],
             Self::Expressions(parts) => parts.iter().map(|part| part.suffix).collect(),
         }
     }
@@ -107,6 +104,15 @@ impl Task {
         let all = operands.iter().copied();
         match self {
             Self::Operation(operation) => Ok(vec![options.run(*operation, all)?]),
+            Self::Resolve => Ok(operands
+                .first()
+                .map(|operand| options.resolve(operand))
+                .transpose()?
+                .into_iter()
+                .collect()),
+            Self::Expressions(parts) if parts.len() == 1 => {
+                Ok(vec![options.evaluate(&parts[0].expression, all)?])
+            }
             Self::Expressions(parts) => {
                 let expressions: Vec<Expression> = parts.iter().map(|part| part.expression.clone()).collect();
                 options.evaluate_all(&expressions, all)

@@ -1,6 +1,6 @@
 //! What can be wrong with a mesh, with the data a caller needs to act on it.
 
-use super::{Diagnosis, Fault, SelfCrossings};
+use super::{Diagnosis, Fault};
 
 /// A mesh that is not what an operation needs, or an argument that has no meaning for it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -39,9 +39,6 @@ pub enum MeshError {
          bodies that lie inside others one by one", .0.count, first_place(.0)
     )]
     InsideOutShells(Box<Fault>),
-    /// The surface crosses itself.
-    #[error("the surface crosses itself: {0}; unite its parts one by one, or repair it")]
-    SelfCrossing(Box<SelfCrossings>),
     /// There are more vertices or triangles than can be numbered.
     #[error("too large: {vertices} vertices, {triangles} triangles")]
     TooLarge {

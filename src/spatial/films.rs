@@ -46,8 +46,7 @@ pub(crate) struct LostFilms {
 }
 
 /// Looks for films and gaps between `triangles` that were there with the vertices at `before` and are not at `after`, no
-/// coordinate being moved by more than half a `step`. O(n log n), about 0.1 us a triangle where many vertices move, less
-/// where few do.
+/// coordinate being moved by more than half a `step`. O(n log n).
 ///
 /// # Errors
 /// The limits of `control`.

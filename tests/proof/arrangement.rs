@@ -428,3 +428,21 @@ fn a_solid_that_lies_on_itself_is_resolved_without_being_asked() {
         OperandState::Resolved { touching: 1.., crossings: 0, .. }
     ));
 }
+
+#[test]
+fn what_is_wound_around_inwards_is_told() {
+    // A box, one that overlaps it, and far away one that is turned inside out: by the rule positive that is no material.
+    let mut mesh = primitives::cuboid([0.0; 3], [2.0; 3]).unwrap();
+    let other = primitives::cuboid([1.0; 3], [3.0; 3]).unwrap();
+    append(&mut mesh, other.positions, &other.triangles);
+    let inverted = primitives::cuboid([5.0; 3], [6.0; 3]).unwrap().reversed();
+    append(&mut mesh, inverted.positions, &inverted.triangles);
+    let solid = Solid::try_from(mesh).unwrap();
+    for (rule, volume) in [(Rule::Positive, 15.0), (Rule::NonZero, 16.0), (Rule::EvenOdd, 15.0)] {
+        let outcome = BooleanOptions::new().rule(rule).resolve(&solid).unwrap();
+        assert_eq!(outcome.solid().volume(), volume, "{rule}");
+        let state = outcome.certificate().operands[0];
+        let OperandState::Resolved { winding_volume, inward_volume, .. } = state else { panic!("{state:?}") };
+        assert_eq!((winding_volume, inward_volume), (15.0, 1.0));
+    }
+}

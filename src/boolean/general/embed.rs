@@ -6,7 +6,7 @@
 use rustc_hash::FxHashMap;
 
 use super::arrangement::{Crossed, General};
-use super::evaluate::evaluate;
+use super::evaluate::{Finish, evaluate};
 use super::labels::winding;
 use crate::boolean::complex::origin::Origin;
 use crate::parallel::Runner;
@@ -114,7 +114,8 @@ pub(crate) fn embed(
         let inside: Vec<bool> =
             general.faces.labels.all().iter().map(|label| winding(label, 0) > 0).collect();
         let unit = grid.unit() * f64::from(coarser(report.rounds)).exp2();
-        let arrays = evaluate(&general, &inside, remove_vertices, unit, runner)?.arrays;
+        let arrays =
+            evaluate(&general, &inside, Finish { remove_vertices, unit, find_low: false }, runner)?.arrays;
         let before = &parts;
         let origins = arrays.origins.iter().map(|origin| {
             let source = before.origins[origin.triangle as usize];

@@ -31,19 +31,28 @@ pub(crate) struct Evaluated {
     pub(crate) walls_left: u64,
 }
 
-/// The surface of the set of all labels that are `inside`. `unit`: the distance from 1 to the next number that coordinates are
-/// rounded to; what is thinner is cleaned up.
+/// How a result is finished.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Finish {
+    /// Whether vertices that nobody needs are left out.
+    pub(crate) remove_vertices: bool,
+    /// The distance from 1 to the next number that coordinates are rounded to; what is thinner is cleaned up.
+    pub(crate) unit: f64,
+    /// Whether it is asked if rounding may have made something cross.
+    pub(crate) find_low: bool,
+}
+
+/// The surface of the set of all labels that are `inside`.
 ///
 /// # Errors
 /// Only limits.
 pub(crate) fn evaluate(
     general: &General,
     inside: &[bool],
-    remove_vertices: bool,
-    unit: f64,
+    finish: Finish,
     runner: Runner<'_>,
 ) -> Result<Evaluated, Error> {
-    let rounding = Rounding::up_to(general.surfaces.largest_coordinate()).in_units_of(unit);
+    let rounding = Rounding::up_to(general.surfaces.largest_coordinate()).in_units_of(finish.unit);
     let mut shape = Shape::new(general, inside);
     // 1. Sheets are added up.
     let mut sums = add_up(&mut shape, runner)?;
@@ -52,7 +61,7 @@ pub(crate) fn evaluate(
     sums.pieces.extend(cut.pieces);
     // 3. Tidying.
     let settings = tidy::Settings {
-        remove_vertices,
+        remove_vertices: finish.remove_vertices,
         rounding,
         glue: false,
         contacts: general.contacts,
@@ -71,7 +80,8 @@ pub(crate) fn evaluate(
     };
     let arrays = assemble(&shape, &pieces, replaced.as_ref());
     let has_inverted = cut.has_inverted;
-    let may_cross = has_inverted || rounding.has_low(&pieces, |point| shape.position(point));
+    let may_cross =
+        finish.find_low && (has_inverted || rounding.has_low(&pieces, |point| shape.position(point)));
     let arrays = Assembled { has_inverted, may_cross, clean_up_stopped, ..arrays };
     Ok(Evaluated { arrays, walls_left: sums.declined })
 }

@@ -109,12 +109,7 @@ impl Lines {
         for (key, points) in on_segments.into_iter().flatten() {
             lines.on_segments.get_mut(key).copy_from_slice(&points);
         }
-        lines.places = vec![0; nodes.len()];
-        for nodes in lines.on_edges.each() {
-            for (place, node) in (0..).zip(nodes) {
-                lines.places[node.index()] = place;
-            }
-        }
+        lines.places = places(&lines.on_edges, nodes.len());
         Ok(lines)
     }
 
@@ -165,6 +160,15 @@ impl Lines {
     pub(crate) fn triple_of(&self, point: PointId) -> Option<TripleId> {
         point.number().checked_sub(self.first_triple).map(TripleId::new)
     }
+}
+
+/// By node, its place on its edge.
+fn places(on_edges: &Buckets<NodeId>, count: usize) -> Vec<u32> {
+    let mut places = vec![0; count];
+    for nodes in on_edges.each() {
+        (0..).zip(nodes).for_each(|(place, node)| places[node.index()] = place);
+    }
+    places
 }
 
 /// Where a node is, correctly rounded.

@@ -1,16 +1,19 @@
 //! Expressions of any number of operands, in one arrangement.
 
+use super::groups::{MergedGroups, merged_groups};
 use super::made::Made;
-use super::{MergedGroups, Policy, merged_groups, no_operands};
+use super::policy::{Embed, Policy, no_operands};
+use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::operation::{Contact, Operation};
-use crate::boolean::expression::{Expression, Rule};
+use crate::boolean::expression::Expression;
 use crate::boolean::general::arrangement::{Crossed, General};
-use crate::boolean::general::evaluate::evaluate;
+use crate::boolean::general::evaluate::{Finish, evaluate};
 use crate::boolean::general::labels::winding;
 use crate::boolean::result::certificate::{Notes, OperandState};
+use crate::boolean::result::inverted::count_inverted;
 use crate::boolean::result::outcome::Outcome;
+use crate::boolean::rule::Rule;
 use crate::control::Control;
-use crate::exact::{Projection, Sign, orient2d};
 use crate::mesh::FaceGroups;
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
@@ -70,8 +73,14 @@ pub(super) fn run(
     let crossed = Crossed::new(operands, &of_triangles, runner)?;
     let general = General::new(crossed, fuse, runner)?;
     // 2. Each expression.
-    let arranged =
-        Arranged { general: &general, wanted, operands, groups: &groups, of_triangles: &of_triangles };
+    let arranged = Arranged {
+        general: &general,
+        wanted,
+        operands,
+        states: states(&general, operands, runner)?,
+        groups: &groups,
+        of_triangles: &of_triangles,
+    };
     wanted.expressions.iter().map(|expression| arranged.outcome(expression, runner)).collect()
 }
 
@@ -80,6 +89,7 @@ struct Arranged<'a> {
     general: &'a General,
     wanted: &'a Wanted<'a>,
     operands: &'a [&'a Solid],
+    states: Vec<OperandState>,
     groups: &'a MergedGroups,
     /// By operand, the result's group of each triangle.
     of_triangles: &'a [Vec<u32>],
@@ -97,7 +107,12 @@ impl Arranged<'_> {
         let inside: Vec<bool> =
             self.general.faces.labels.all().iter().map(|label| is_inside(label)).collect();
         // 2. Their surface.
-        let made = evaluate(self.general, &inside, policy.remove_vertices, f64::EPSILON, runner)?;
+        let finish = Finish {
+            remove_vertices: policy.remove_vertices,
+            unit: f64::EPSILON,
+            find_low: policy.embed == Embed::WhereNeeded,
+        };
+        let made = evaluate(self.general, &inside, finish, runner)?;
         // 3. What is known of it.
         let arrays = made.arrays;
         let mut of_triangle = Vec::new();
@@ -107,14 +122,18 @@ impl Arranged<'_> {
             of_triangle = arrays.origins.iter().map(group).collect();
         }
         let solid = Solid::from_closed_unchecked(Mesh::new(arrays.positions, arrays.triangles));
-        let inverted = if arrays.has_inverted { self.count_inverted(&solid, &arrays.origins) } else { 0 };
+        let inverted = if arrays.has_inverted {
+            count_inverted(solid.mesh(), &arrays.origins, self.operands)
+        } else {
+            0
+        };
         let notes = Notes {
             contacts: self.general.contacts,
             inverted,
             clean_up_stopped: arrays.clean_up_stopped,
             three_face_points: self.general.lines.triples.len() as u64,
             walls_left: made.walls_left,
-            operands: self.states(),
+            operands: self.states.clone(),
             ..Notes::default()
         };
         let made = Made {
@@ -127,37 +146,40 @@ impl Arranged<'_> {
         };
         made.finish(policy, runner)
     }
+}
 
-    /// What is known of each operand.
-    fn states(&self) -> Vec<OperandState> {
-        let surfaces = &self.general.surfaces;
-        let mut counts = vec![[0; 2]; self.operands.len()];
-        let mut count = |faces: [crate::boolean::complex::ids::FaceId; 2], kind: usize| {
-            let [x, y] = faces.map(|face| surfaces.owner(face));
-            if x == y {
-                counts[x as usize][kind] += 1;
-            }
-        };
-        self.general.crossings.segments.iter().for_each(|segment| count(segment.faces, 0));
-        self.general.crossings.touching.iter().for_each(|&faces| count(faces, 1));
-        let state = |(solid, [crossings, touching]): (&&Solid, [usize; 2])| OperandState::Resolved {
+/// What is known of each operand.
+fn states(general: &General, operands: &[&Solid], runner: Runner<'_>) -> Result<Vec<OperandState>, Error> {
+    let surfaces = &general.surfaces;
+    let mut counts = vec![[0; 2]; operands.len()];
+    let mut count = |faces: [FaceId; 2], kind: usize| {
+        let [x, y] = faces.map(|face| surfaces.owner(face));
+        if x == y {
+            counts[x as usize][kind] += 1;
+        }
+    };
+    general.crossings.segments.iter().for_each(|segment| count(segment.faces, 0));
+    general.crossings.touching.iter().for_each(|&faces| count(faces, 1));
+    let state = |((operand, solid), [crossings, touching]): ((u32, &&Solid), [usize; 2])| {
+        Ok(OperandState::Resolved {
             crossings,
             touching,
             winding_volume: solid.volume(),
-        };
-        self.operands.iter().zip(counts).map(state).collect()
-    }
+            inward_volume: inward_volume(general, operand, runner)?,
+        })
+    };
+    (0..).zip(operands).zip(counts).map(state).collect()
+}
 
-    /// Triangles of a result that look the other way than the faces they were cut from.
-    fn count_inverted(&self, solid: &Solid, origins: &crate::boolean::result::origins::Origins) -> u64 {
-        let corners = |mesh: &Mesh, t: usize| mesh.triangles[t].map(|v| mesh.positions[v as usize]);
-        let is_inverted = |(t, origin): (usize, crate::Origin)| {
-            let source = corners(self.operands[origin.operand as usize].mesh(), origin.triangle as usize);
-            let seen = Projection::of(&source);
-            let seen = if origin.reversed { seen.reversed() } else { seen };
-            let [a, b, c] = corners(solid.mesh(), t).map(|p| seen.project(&p));
-            orient2d(a, b, c) == Sign::Negative
-        };
-        origins.iter().enumerate().filter(|&item| is_inverted(item)).count() as u64
+/// The volume of what an operand winds around more often inwards than outwards: nothing, nearly always, and that is told by the
+/// labels.
+fn inward_volume(general: &General, operand: u32, runner: Runner<'_>) -> Result<f64, Error> {
+    let labels = general.faces.labels.all();
+    let inwards: Vec<bool> = labels.iter().map(|label| winding(label, operand) < 0).collect();
+    if !inwards.contains(&true) {
+        return Ok(0.0);
     }
+    let finish = Finish { remove_vertices: true, unit: f64::EPSILON, find_low: false };
+    let arrays = evaluate(general, &inwards, finish, runner)?.arrays;
+    Ok(Mesh::new(arrays.positions, arrays.triangles).volume())
 }

@@ -1,6 +1,6 @@
 //! The last step of every result: crossings that rounding made are resolved, and the outcome is put together.
 
-use super::Policy;
+use super::policy::{Embed, Policy};
 use crate::Error;
 use crate::Solid;
 use crate::boolean::general::embed::{Grid, Parts, embed};
@@ -9,23 +9,6 @@ use crate::boolean::result::origins::Origins;
 use crate::boolean::result::outcome::Outcome;
 use crate::mesh::FaceGroups;
 use crate::parallel::Runner;
-
-/// What becomes of crossings that rounding makes. Every new point is rounded once, so that parts of a result that are closer to
-/// each other than rounding may cross by as much.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
-#[non_exhaustive]
-pub enum Embed {
-    /// They stay: every new coordinate is the exact one, rounded to nearest.
-    #[default]
-    Never,
-    /// They are looked for where new triangles are no higher than rounding, and resolved.
-    WhereNeeded,
-    /// All coordinates are numbers of a grid, and what crosses on it is resolved: the result does not cross itself when it is
-    /// written in a format with such numbers. Always looked for, about a microsecond a triangle.
-    OnGrid(Grid),
-}
 
 /// A result, but for crossings that rounding made.
 pub(super) struct Made {

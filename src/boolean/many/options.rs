@@ -1,11 +1,12 @@
 //! Settings of a boolean.
 
 use super::expressions::{self, Wanted};
-use super::made::Embed;
-use super::{Policy, run};
+use super::policy::{Embed, Policy};
+use super::run;
 use crate::boolean::complex::operation::{Contact, Operation};
-use crate::boolean::expression::{Expression, Rule};
+use crate::boolean::expression::Expression;
 use crate::boolean::result::outcome::Outcome;
+use crate::boolean::rule::Rule;
 use crate::control::Control;
 use crate::parallel::Runner;
 #[cfg(feature = "parallel")]

@@ -80,6 +80,9 @@ pub enum OperandState {
         touching: usize,
         /// What the surface encloses as it was given: regions count as often as it winds around them.
         winding_volume: f64,
+        /// The volume of what it winds around more often inwards than outwards: inverted bodies, which are no material by the
+        /// rule [`Positive`](crate::Rule::Positive).
+        inward_volume: f64,
     },
 }
 

@@ -2,6 +2,7 @@
 
 pub(super) mod assemble;
 pub(super) mod certificate;
+pub(super) mod inverted;
 pub(super) mod near_contacts;
 pub(super) mod numbers;
 pub(super) mod origins;

@@ -53,12 +53,8 @@ impl State<'_> {
                 #[cfg(feature = "subdivision")]
                 Kind::Operation(..) if at.mode == Some(Mode::FreeForm) => self.free_form(node)?,
                 Kind::Operation(operation, operands) => {
-                    let mut leaves = Leaves::default();
-                    let expression = self.operation(*operation, operands, &mut leaves)?;
-                    let options = BooleanOptions::new().control(control.clone());
-                    let outcome = options.evaluate(&expression, leaves.solids.iter().map(Arc::as_ref));
-                    let outcome = outcome.map_err(|error| error.in_node(label))?;
-                    outcome.into_solid().into_mesh()
+                    let (operation, operands) = (*operation, operands.clone());
+                    self.of_tree(operation, &operands, &label)?
                 }
                 Kind::Complement(_) => {
                     let what = "a complement is unbounded and has no mesh: use `difference`, or evaluate it as a field";
@@ -102,6 +98,15 @@ impl State<'_> {
             self.warnings.push(format!("{label}: {}", fault.text(one, several, 2)));
         }
         Ok(solid)
+    }
+
+    /// What an exact operation gives.
+    fn of_tree(&mut self, operation: Operation, operands: &[usize], label: &str) -> Result<Mesh, Error> {
+        let mut leaves = Leaves::default();
+        let expression = self.operation(operation, operands, &mut leaves)?;
+        let options = BooleanOptions::new().control(self.settings.control.clone());
+        let outcome = options.evaluate(&expression, leaves.solids.iter().map(Arc::as_ref));
+        Ok(outcome.map_err(|error| error.in_node(label))?.into_solid().into_mesh())
     }
 
     /// A whole tree of exact operations as one expression of its leaves: nothing is rounded in between.

@@ -1,0 +1,213 @@
+//! Operands that do not cross themselves: which pairs are combined in which order.
+//!
+//! A union merges neighbours first (space is halved again and again), so that most merges are local and pieces vanish
+//! early; a difference takes the union of all tools off the first operand in one step; an intersection starts with the
+//! smallest operands; a symmetric difference goes from left to right.
+
+use std::borrow::Cow;
+
+use super::groups::{MergedGroups, merged_groups};
+use super::made::Made;
+use super::merge_order;
+use super::policy::{Embed, Policy, no_operands};
+use crate::boolean::complex::operation::{Contact, Operation};
+use crate::boolean::complex::origin::Origin;
+use crate::boolean::pair::{self, Combined, Settings};
+use crate::boolean::result::certificate::{Notes, OperandState};
+use crate::boolean::result::inverted::count_inverted;
+use crate::boolean::result::origins::Origins;
+use crate::boolean::result::outcome::Outcome;
+use crate::mesh::FaceGroups;
+use crate::parallel::Runner;
+use crate::{Error, Mesh, Solid};
+
+/// From this many triangles on, threads are worth waking.
+const PARALLEL_FROM: usize = 4_096;
+
+/// An operand, or what some of them have become.
+struct Partial<'a> {
+    solid: Cow<'a, Solid>,
+    /// Where each triangle came from.
+    origins: Origins,
+    /// The result's group of each triangle; empty if no operand has groups.
+    groups: Vec<u32>,
+    /// How many decisions on the way plain coordinates left open.
+    contacts: u64,
+    /// Whether rounding turned over some triangle on the way.
+    may_be_inverted: bool,
+    /// Whether rounding may have made something cross on the way.
+    may_cross: bool,
+    /// How often a step of the clean-up stopped at its bound on the way.
+    clean_up_stopped: u64,
+}
+
+impl<'a> Partial<'a> {
+    fn new(solid: Cow<'a, Solid>, origins: Origins, groups: Vec<u32>) -> Self {
+        Self {
+            solid,
+            origins,
+            groups,
+            contacts: 0,
+            may_be_inverted: false,
+            may_cross: false,
+            clean_up_stopped: 0,
+        }
+    }
+
+    /// The middle of its box.
+    fn centre(&self) -> [f64; 3] {
+        self.solid.bounds().map_or([0.0; 3], |b| std::array::from_fn(|k| 0.5 * b.low[k] + 0.5 * b.high[k]))
+    }
+}
+
+/// Runs an operation over operands that do not cross themselves.
+pub(super) fn run(
+    policy: Policy,
+    operation: Operation,
+    operands: &[&Solid],
+    runner: Runner<'_>,
+) -> Result<Outcome, Error> {
+    // 1. Every operand as a 2-manifold, with the origins and groups of its triangles.
+    let groups = merged_groups(operands);
+    let mut partials = manifold_partials(operands, &groups);
+    // 2. Pair by pair.
+    let engine = Engine { policy, runner };
+    let result = match operation {
+        Operation::Union => engine.union(partials)?,
+        Operation::Difference => {
+            let first = partials.remove(0);
+            if partials.is_empty() {
+                first
+            } else {
+                engine.combine(Operation::Difference, &first, &engine.union(partials)?)?
+            }
+        }
+        Operation::Intersection => {
+            // Smallest first; the order of equal ones is that of the arguments.
+            partials.sort_by_key(|partial| partial.solid.mesh().triangles.len());
+            engine.fold(Operation::Intersection, partials)?
+        }
+        Operation::SymmetricDifference => engine.fold(Operation::SymmetricDifference, partials)?,
+    };
+    // 3. What is known of the result.
+    let notes = Notes {
+        contacts: result.contacts,
+        inverted: if result.may_be_inverted {
+            count_inverted(result.solid.mesh(), &result.origins, operands)
+        } else {
+            0
+        },
+        clean_up_stopped: result.clean_up_stopped,
+        operands: operands.iter().map(|solid| OperandState::of(solid)).collect(),
+        ..Notes::default()
+    };
+    let is_clean = policy.contact == Contact::Fuse && operands.iter().all(|solid| solid.is_known_clean());
+    let made = Made {
+        may_cross: result.may_cross,
+        origins: result.origins,
+        groups: FaceGroups { list: groups.list, of_triangle: result.groups },
+        solid: result.solid.into_owned(),
+        notes,
+        is_clean,
+    };
+    made.finish(policy, runner)
+}
+
+/// Every operand as a 2-manifold, with the origins and groups of its triangles.
+fn manifold_partials<'a>(operands: &[&'a Solid], groups: &MergedGroups) -> Vec<Partial<'a>> {
+    operands
+        .iter()
+        .enumerate()
+        .map(|(i, solid)| {
+            if solid.is_edge_manifold() {
+                let groups = groups.of_operand(i, solid);
+                let origins = Origins::of_operand(i as u32, solid.mesh().triangles.len());
+                return Partial::new(Cow::Borrowed(*solid), origins, groups);
+            }
+            // The perturbation moves vertices: surfaces that touch in one need a vertex each.
+            let (solid, source) = solid.separated();
+            let groups = groups.of_operand(i, &solid);
+            let origin = |&triangle: &u32| Origin { operand: i as u32, triangle, reversed: false };
+            Partial::new(Cow::Owned(solid), source.iter().map(origin).collect(), groups)
+        })
+        .collect()
+}
+
+struct Engine<'o> {
+    policy: Policy,
+    runner: Runner<'o>,
+}
+
+impl Engine<'_> {
+    fn fold<'a>(&self, operation: Operation, partials: Vec<Partial<'a>>) -> Result<Partial<'a>, Error> {
+        let count = partials.len() as f64;
+        let mut partials = partials.into_iter();
+        let mut result = partials.next().ok_or_else(no_operands)?;
+        for (i, partial) in partials.enumerate() {
+            self.runner.control.report("combining", i as f64 / count)?;
+            result = self.combine(operation, &result, &partial)?;
+        }
+        Ok(result)
+    }
+
+    /// Merges neighbours, round by round.
+    fn union<'a>(&self, partials: Vec<Partial<'a>>) -> Result<Partial<'a>, Error> {
+        let centres: Vec<[f64; 3]> = partials.iter().map(Partial::centre).collect();
+        let mut places: Vec<Option<Partial<'a>>> = partials.into_iter().map(Some).collect();
+        let (merges, mut done) = (places.len().saturating_sub(1), 0);
+        for pairs in merge_order::halving(&centres) {
+            self.runner.control.report("uniting", done as f64 / merges as f64)?;
+            // Whole merges side by side while there are enough of them, else parallel inside each.
+            let inside = if pairs.len() >= 8 { self.runner.serial() } else { self.runner };
+            let engine = Engine { policy: self.policy, runner: inside };
+            let merged = self.runner.pieces(pairs.len(), 1, |range| {
+                let [x, y] = pairs[range.start].map(|place| places[place].as_ref());
+                let both = x.zip(y).expect("a place is taken until it is merged into another");
+                engine.combine(Operation::Union, both.0, both.1)
+            })?;
+            done += merged.len();
+            for (&[x, y], merged) in pairs.iter().zip(merged) {
+                (places[x], places[y]) = (Some(merged?), None);
+            }
+        }
+        places.into_iter().flatten().next().ok_or_else(no_operands)
+    }
+
+    fn combine<'a>(
+        &self,
+        operation: Operation,
+        a: &Partial<'_>,
+        b: &Partial<'_>,
+    ) -> Result<Partial<'a>, Error> {
+        let settings = Settings {
+            fuse: self.policy.contact == Contact::Fuse,
+            glue: operation == Operation::SymmetricDifference,
+            remove_vertices: self.policy.remove_vertices,
+            find_low: self.policy.embed == Embed::WhereNeeded,
+            groups: [&a.groups, &b.groups],
+        };
+        let triangles = a.solid.mesh().triangles.len() + b.solid.mesh().triangles.len();
+        let runner = if triangles < PARALLEL_FROM { self.runner.serial() } else { self.runner };
+        let Combined { arrays: made, contacts } =
+            pair::combine(operation, &a.solid, &b.solid, settings, runner)?;
+        let sources = [a, b];
+        let groups = if a.groups.is_empty() {
+            Vec::new()
+        } else {
+            made.origins
+                .iter()
+                .map(|origin| sources[origin.operand as usize].groups[origin.triangle as usize])
+                .collect()
+        };
+        let origins = made.origins.compose([&a.origins, &b.origins]);
+        Ok(Partial {
+            solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(made.positions, made.triangles))),
+            origins,
+            groups,
+            contacts: a.contacts + b.contacts + contacts,
+            may_be_inverted: a.may_be_inverted || b.may_be_inverted || made.has_inverted,
+            may_cross: a.may_cross || b.may_cross || made.may_cross,
+            clean_up_stopped: a.clean_up_stopped + b.clean_up_stopped + made.clean_up_stopped,
+        })
+    }
+}
