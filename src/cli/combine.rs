@@ -206,7 +206,7 @@ fn parts(task: &Task, mut requests: Vec<Request>, session: &Session<'_>) -> Resu
         return Ok(requests);
     }
     let control = session.control();
-    if let Task::Expressions(_) = task {
+    if task.numbers_inputs() {
         let together = |(index, request): (usize, Request)| {
             let name = request.name();
             selection::together(request, &session.limits, &control)

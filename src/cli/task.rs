@@ -91,6 +91,14 @@ impl Task {
         matches!(self, Self::Operation(Operation::Difference))
     }
 
+    /// Whether inputs are known by their places, so that each must stay one operand.
+    pub(crate) fn numbers_inputs(&self) -> bool {
+        match self {
+            Self::Operation(_) => false,
+            Self::Resolve | Self::Expressions(_) => true,
+        }
+    }
+
     /// The ends of the names of outputs.
     pub(crate) fn suffixes(&self) -> Vec<&'static str> {
         match self {
@@ -104,12 +112,12 @@ impl Task {
         let all = operands.iter().copied();
         match self {
             Self::Operation(operation) => Ok(vec![options.run(*operation, all)?]),
-            Self::Resolve => Ok(operands
-                .first()
-                .map(|operand| options.resolve(operand))
-                .transpose()?
-                .into_iter()
-                .collect()),
+            Self::Resolve => match operands {
+                [operand] => Ok(vec![options.resolve(operand)?]),
+                _ => {
+                    Err(Error::InvalidArgument(format!("resolve takes one operand, not {}", operands.len())))
+                }
+            },
             Self::Expressions(parts) if parts.len() == 1 => {
                 Ok(vec![options.evaluate(&parts[0].expression, all)?])
             }

@@ -54,7 +54,7 @@ impl State<'_> {
                 Kind::Operation(..) if at.mode == Some(Mode::FreeForm) => self.free_form(node)?,
                 Kind::Operation(operation, operands) => {
                     let (operation, operands) = (*operation, operands.clone());
-                    self.of_tree(operation, &operands, &label)?
+                    self.of_tree(operation, &operands, label)?
                 }
                 Kind::Complement(_) => {
                     let what = "a complement is unbounded and has no mesh: use `difference`, or evaluate it as a field";
