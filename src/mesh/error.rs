@@ -50,6 +50,14 @@ pub enum MeshError {
     /// The groups do not fit the triangles.
     #[error("face groups: {0}")]
     Groups(GroupFault),
+    /// An attribute does not fit the triangles, or is none.
+    #[error("attribute {name:?}: {fault}")]
+    Attribute {
+        /// Its name.
+        name: String,
+        /// What is wrong.
+        fault: AttributeFault,
+    },
     /// A distance to weld by that is negative or not finite.
     #[error("the welding distance must be finite and not negative, not {0}")]
     WeldingDistance(f64),
@@ -79,6 +87,63 @@ pub enum GroupFault {
         group: u32,
         /// Number of groups.
         groups: usize,
+    },
+}
+
+/// Why an attribute does not fit the triangles of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum AttributeFault {
+    /// A name that says nothing.
+    #[error(
+        "the name is neither NORMAL, TANGENT, TEXCOORD_n, COLOR_n, JOINTS_n nor WEIGHTS_n; one of its own begins with an \
+         underscore"
+    )]
+    Name,
+    /// Another attribute has the same name.
+    #[error("another attribute has the same name")]
+    Twice,
+    /// A number of numbers to a value that its name does not allow.
+    #[error("{components} numbers to a value are not what the name says")]
+    Components {
+        /// Numbers to a value.
+        components: usize,
+    },
+    /// The table does not come out even, or is longer than can be numbered.
+    #[error("{numbers} numbers are no whole number of values of {components} numbers that 32 bits can count")]
+    Values {
+        /// Numbers in the table.
+        numbers: usize,
+        /// Numbers to a value.
+        components: usize,
+    },
+    /// Not every corner says which value it has.
+    #[error("it is given for {corners} corners, but there are {triangles} triangles with three corners each")]
+    Count {
+        /// Corners it is given for.
+        corners: usize,
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// A corner names a value that does not exist.
+    #[error("corner {corner} of triangle {triangle} names value {value}, but there are only {values} values")]
+    OutOfRange {
+        /// Index of the triangle.
+        triangle: usize,
+        /// Which of its corners: 0, 1 or 2.
+        corner: usize,
+        /// The value it names.
+        value: u32,
+        /// Number of values.
+        values: usize,
+    },
+    /// A value is not finite.
+    #[error("value {value} is not finite: {number}")]
+    NotFinite {
+        /// Index of the value.
+        value: usize,
+        /// The number.
+        number: f64,
     },
 }
 

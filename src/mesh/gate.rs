@@ -7,7 +7,7 @@ use super::clean::{self, Cleaned, Weld};
 use super::diagnose::diagnose_tried;
 use super::measure::signed_volume;
 use super::mend::{self, Leave, Mending};
-use super::{Bounds, Cleaning, Mesh, MeshError, Solid, UnionFind, chain, orient, shells};
+use super::{Bounds, Cleaning, Mesh, MeshError, Solid, UnionFind, attributes, chain, orient, shells};
 use crate::parallel::join;
 
 /// What a mesh may be taken through to become a [`Solid`]. As made by [`new`](Self::new) it does what
@@ -109,11 +109,12 @@ impl Gate {
     /// The mesh, unchanged, with
     /// [`MeshError::IndexOutOfRange`], [`MeshError::NotFinite`], [`MeshError::NotClosed`], [`MeshError::InsideOut`];
     /// [`MeshError::TooLarge`] beyond 2^31 vertices or 2^32/3 triangles; [`MeshError::Groups`] if the face groups
-    /// do not fit the triangles; [`MeshError::WeldingDistance`] unless it is finite and not negative.
+    /// do not fit the triangles, [`MeshError::Attribute`] if an attribute does not; [`MeshError::WeldingDistance`] unless it is finite and not negative.
     pub fn solid(&self, mut mesh: Mesh) -> Result<Solid, Box<Refusal>> {
         if let Err(error) = self.check(&mesh) {
             return Err(Box::new(Refusal { mesh, error }));
         }
+        let given = if self.orient { mesh.attributes.clone() } else { Vec::new() };
         let turned = if self.orient { orient::turn(&mut mesh) } else { Vec::new() };
         let solid = closed_by_indices(mesh).or_else(|open| {
             let (mesh, error) = *open;
@@ -131,9 +132,12 @@ impl Gate {
                 Ok(if self.single_shells { single_shells(solid) } else { solid })
             }
             Err(mut refusal) => {
-                for triangle in turned {
+                for &triangle in &turned {
                     let corners = &mut refusal.mesh.triangles[triangle as usize];
                     *corners = orient::reversed(*corners);
+                }
+                if self.orient {
+                    refusal.mesh.attributes = given;
                 }
                 Err(refusal)
             }
@@ -150,6 +154,7 @@ impl Gate {
         {
             return Err(MeshError::WeldingDistance(distance));
         }
+        attributes::check(&mesh.attributes, triangles)?;
         mesh.groups.fault(triangles).map_or(Ok(()), |fault| Err(MeshError::Groups(fault)))
     }
 
@@ -265,7 +270,11 @@ fn assemble(
     if !is_own {
         groups.select(&source);
     }
-    let mut mesh = Mesh { positions, triangles, groups };
+    let mut attributes = mesh.attributes.clone();
+    if !is_own {
+        attributes::keep(&mut attributes, &source);
+    }
+    let mut mesh = Mesh { positions, triangles, groups, attributes };
     if orient && let Some(mending) = &mut mending {
         // Which way is out shows only now that the surface is closed.
         mending.turned += orient::turn(&mut mesh).len();
@@ -328,9 +337,11 @@ fn single_shells(solid: Solid) -> Solid {
     let positions = clean::compact(&mesh.positions, &mut triangles);
     let mut groups = mesh.groups.clone();
     groups.select(&kept);
+    let mut attributes = mesh.attributes.clone();
+    attributes::keep(&mut attributes, &kept);
     Solid {
         bounds: Bounds::of(&positions),
-        mesh: Mesh { positions, triangles, groups },
+        mesh: Mesh { positions, triangles, groups, attributes },
         source: Some(kept.iter().map(|&triangle| solid.source_triangle(triangle)).collect()),
         cleaning: solid.cleaning,
         mending: Some(mending),

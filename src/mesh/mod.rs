@@ -3,6 +3,7 @@
 //! [`Mesh`] holds positions and triangles and promises nothing. [`Solid::try_from`] is the gate: it checks a mesh,
 //! mends what can be mended without guessing, and otherwise tells what is wrong and where ([`Diagnosis`]).
 
+mod attributes;
 mod bit_set;
 mod bounds;
 mod buckets;
@@ -37,12 +38,13 @@ mod union_find;
 mod weighted_union_find;
 mod weld;
 
+pub use attributes::{Attribute, AttributeKind};
 pub(crate) use bit_set::BitSet;
 pub use bounds::Bounds;
 pub(crate) use buckets::Buckets;
 pub use diagnose::diagnose;
 pub use diagnosis::Diagnosis;
-pub use error::{GroupFault, MeshError, TransformFault};
+pub use error::{AttributeFault, GroupFault, MeshError, TransformFault};
 pub use gate::{Gate, Refusal, Welding};
 pub use groups::{FaceGroup, FaceGroups};
 pub(crate) use manifold::{HalfEdges, Surface, make_manifold};
@@ -74,13 +76,16 @@ pub struct Mesh {
     /// Named groups and materials of the triangles.
     #[cfg_attr(feature = "serde", serde(default))]
     pub groups: FaceGroups,
+    /// Values at the corners of the triangles: texture coordinates, normals, colours and others.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub attributes: Vec<Attribute>,
 }
 
 impl Mesh {
     /// A mesh from positions and triangles, all in one unnamed group.
     #[must_use]
     pub fn new(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
-        Self { positions, triangles, groups: FaceGroups::default() }
+        Self { positions, triangles, groups: FaceGroups::default(), attributes: Vec::new() }
     }
 
     /// Whether there are no triangles.
@@ -89,7 +94,14 @@ impl Mesh {
         self.triangles.is_empty()
     }
 
-    /// Appends the vertices, triangles and groups of `other`; its vertices stay apart from those here.
+    /// The attribute of that name, if the mesh has it.
+    #[must_use]
+    pub fn attribute(&self, name: &str) -> Option<&Attribute> {
+        self.attributes.iter().find(|attribute| attribute.name == name)
+    }
+
+    /// Appends the vertices, triangles, groups and attributes of `other`; its vertices stay apart from those here.
+    /// Attributes of one name become one; corners of a side that does not have it get no value.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`] if there are more vertices than 32 bits can name; this mesh is then as before.
@@ -101,6 +113,12 @@ impl Mesh {
             return Err(MeshError::TooLarge { vertices, triangles });
         }
         self.groups.append(self.triangles.len(), &other.groups, other.triangles.len());
+        attributes::append(
+            &mut self.attributes,
+            self.triangles.len(),
+            &other.attributes,
+            other.triangles.len(),
+        );
         self.positions.extend_from_slice(&other.positions);
         // An index out of range stays out of range instead of naming something else.
         let shifted = |corner: u32| corner.saturating_add(first as u32);
@@ -138,6 +156,7 @@ impl Mesh {
             self.positions = clean::compact(&self.positions, &mut triangles);
             self.triangles = triangles;
             self.groups.select(&cleaned.source);
+            attributes::keep(&mut self.attributes, &cleaned.source);
         }
         Ok(self)
     }

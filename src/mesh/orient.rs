@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use super::clean::{self, Cleaned, Weld};
 use super::edges::EdgeTable;
 use super::patches::Patches;
-use super::{Bounds, Mesh, measure, nesting};
+use super::{Bounds, Mesh, attributes, measure, nesting};
 
 /// Which patches face the wrong way, seen from the orientation that [`Patches::reverse`] gives them.
 pub(super) struct Facing {
@@ -48,17 +48,19 @@ pub(super) fn reversed([a, b, c]: [u32; 3]) -> [u32; 3] {
 }
 
 impl Mesh {
-    /// The mesh with every triangle facing the other way.
+    /// The mesh with every triangle facing the other way, and the normals with them.
     #[must_use]
     pub fn reversed(mut self) -> Self {
         for triangle in &mut self.triangles {
             *triangle = reversed(*triangle);
         }
+        attributes::reverse(&mut self.attributes);
         self
     }
 
     /// The mesh with its faces turned to bound what it encloses: a repair for faces that point at random, or a
-    /// mesh that is inside out. Nothing but the orientation of triangles changes.
+    /// mesh that is inside out. Nothing but the orientation of triangles changes, and with it
+    /// their normals.
     ///
     /// The surface is cut along the edges that have not exactly two triangles (seams of equal coordinates count as
     /// sewn). In each patch the triangles are made to agree, the fewer giving way. A patch that is closed by itself
@@ -89,6 +91,7 @@ pub(super) fn turn(mesh: &mut Mesh) -> Vec<u32> {
             turned.push(index);
         }
     }
+    attributes::reverse_some(&mut mesh.attributes, &turned);
     turned
 }
 

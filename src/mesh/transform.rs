@@ -1,6 +1,7 @@
 //! Moving, turning and scaling meshes.
 
-use super::{Mesh, MeshError, TransformFault};
+use super::orient::reversed;
+use super::{Mesh, MeshError, TransformFault, attributes};
 use crate::exact::{Sign, orient3d};
 
 impl Mesh {
@@ -30,7 +31,8 @@ impl Mesh {
             }
         }
         let mirrored = factors.iter().filter(|&&factor| factor < 0.0).count() % 2 == 1;
-        Ok(if mirrored { self.reversed() } else { self })
+        let [x, y, z] = factors;
+        Ok(self.with_directions_moved(&[[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]], mirrored))
     }
 
     /// The mesh turned by `degrees` about the line through the origin along `axis`, counter-clockwise seen from
@@ -55,7 +57,7 @@ impl Mesh {
             [off(x, y, z), diagonal(y), off(y, z, -x), 0.0],
             [off(x, z, -y), off(y, z, x), diagonal(z), 0.0],
         ];
-        Ok(self.mapped(&matrix))
+        Ok(self.mapped(&matrix, false))
     }
 
     /// The mesh with every position p replaced by M p + t, where `matrix` holds the rows of [M | t], row by row:
@@ -95,14 +97,23 @@ impl Mesh {
         if determinant == Sign::Zero {
             return refuse(TransformFault::MatrixSingular);
         }
-        let mapped = self.mapped(&rows);
-        Ok(if determinant == Sign::Negative { mapped.reversed() } else { mapped })
+        Ok(self.mapped(&rows, determinant == Sign::Negative))
     }
 
-    fn mapped(mut self, matrix: &[[f64; 4]; 3]) -> Self {
+    fn mapped(mut self, matrix: &[[f64; 4]; 3], mirrored: bool) -> Self {
         for position in &mut self.positions {
             let [x, y, z] = *position;
             *position = matrix.map(|[a, b, c, d]| a * x + b * y + c * z + d);
+        }
+        self.with_directions_moved(&matrix.map(|[a, b, c, _]| [a, b, c]), mirrored)
+    }
+
+    /// What positions have gone through, for normals and tangents, and triangles turned round in a mirror.
+    fn with_directions_moved(mut self, linear: &[[f64; 3]; 3], mirrored: bool) -> Self {
+        attributes::moved(&mut self.attributes, linear, mirrored);
+        if mirrored {
+            self.triangles.iter_mut().for_each(|triangle| *triangle = reversed(*triangle));
+            attributes::turn_corners(&mut self.attributes);
         }
         self
     }
