@@ -43,6 +43,9 @@ impl Material {
     }
 }
 
+/// An affine map of texture coordinates: two rows of three, the third column added.
+pub type TextureMatrix = [[f64; 3]; 2];
+
 /// How a picture lies on a surface.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -56,13 +59,13 @@ pub struct TextureUse {
     pub wrap: [Wrap; 2],
     /// Whether each pixel is a square of one colour, instead of colours that run into each other.
     pub nearest: bool,
-    /// What texture coordinates (u, v) become before the picture is looked up: two rows of three, the third column added.
-    pub transform: [[f64; 3]; 2],
+    /// What texture coordinates (u, v) become before the picture is looked up.
+    pub transform: TextureMatrix,
 }
 
 impl TextureUse {
     /// Coordinates that are not transformed.
-    pub const UNMOVED: [[f64; 3]; 2] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    pub const UNMOVED: TextureMatrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 }
 
 /// What is shown beyond the edges of a picture.
@@ -122,7 +125,7 @@ pub struct Image {
     /// Its MIME type, such as `image/png`; empty if unknown.
     pub mime_type: String,
     /// Its bytes, not decoded; empty if they could not be read.
-    pub bytes: Vec<u8>,
+    pub bytes: Arc<[u8]>,
     /// In glTF what else its JSON object says (`name`, `extras`, `extensions`), or nothing.
     pub text: String,
 }

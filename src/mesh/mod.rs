@@ -38,6 +38,7 @@ mod union_find;
 mod weighted_union_find;
 mod weld;
 
+pub(crate) use attributes::moved as move_attributes;
 pub use attributes::{Attribute, AttributeKind};
 pub(crate) use bit_set::BitSet;
 pub use bounds::Bounds;
@@ -48,7 +49,9 @@ pub use error::{AttributeFault, GroupFault, MeshError, TransformFault};
 pub use gate::{Gate, Refusal, Welding};
 pub use groups::{FaceGroup, FaceGroups};
 pub(crate) use manifold::{HalfEdges, Surface, make_manifold};
-pub use material::{Image, Material, MaterialLanguage, MaterialText, Texture, TextureUse, Wrap};
+pub use material::{
+    Image, Material, MaterialLanguage, MaterialText, Texture, TextureMatrix, TextureUse, Wrap,
+};
 pub(crate) use measure::enclosed_volume;
 pub use mend::Mending;
 pub use places::{Fault, Place};

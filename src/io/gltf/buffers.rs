@@ -98,37 +98,43 @@ impl<'a> Buffers<'a> {
         let data = uri.strip_prefix("data:");
         let source = match data {
             Some(_) => Source::Data(buffer),
-            None => Source::File(percent_decode(uri).map(|name| without_dots(&name)).ok_or_else(|| {
-                self.reader.error(pointer, format!("the URI {:?} has a wrong percent escape", shorten(uri)))
-            })?),
+            None => Source::File(self.file_name(uri, pointer)?),
         };
         if let Some(bytes) = self.fetched.borrow().get(&source) {
             return Ok(Rc::clone(bytes));
         }
         let bytes: Rc<Vec<u8>> = match (&source, data) {
-            (Source::File(name), _) => {
-                let folder = self.options.folder.as_deref().ok_or_else(|| {
-                    self.reader.error(
-                        pointer,
-                        format!(
-                            "is in the file {:?}, but the folder is not known; use a GLB file",
-                            shorten(name)
-                        ),
-                    )
-                })?;
-                let bytes = read_beside(folder, name, u64::from(u32::MAX) * 8).map_err(|reason| {
-                    self.reader.error(pointer, format!("cannot read the file {:?}: {reason}", shorten(name)))
-                })?;
-                self.external.set(self.external.get() + bytes.len() as u64);
-                Rc::new(bytes)
-            }
+            (Source::File(name), _) => Rc::new(self.read_file(name, pointer)?),
             (Source::Data(_), data) => Rc::new(self.decode(data.unwrap_or_default(), pointer)?),
         };
         self.fetched.borrow_mut().insert(source, Rc::clone(&bytes));
         Ok(bytes)
     }
 
-    fn decode(&self, data: &str, pointer: &str) -> Result<Vec<u8>, Error> {
+    /// The name of the file that a URI means.
+    pub(super) fn file_name(&self, uri: &str, pointer: &str) -> Result<String, Error> {
+        percent_decode(uri).map(|name| without_dots(&name)).ok_or_else(|| {
+            self.reader.error(pointer, format!("the URI {:?} has a wrong percent escape", shorten(uri)))
+        })
+    }
+
+    /// Reads a file beside the document.
+    pub(super) fn read_file(&self, name: &str, pointer: &str) -> Result<Vec<u8>, Error> {
+        let folder = self.options.folder.as_deref().ok_or_else(|| {
+            self.reader.error(
+                pointer,
+                format!("is in the file {:?}, but the folder is not known; use a GLB file", shorten(name)),
+            )
+        })?;
+        let bytes = read_beside(folder, name, u64::from(u32::MAX) * 8).map_err(|reason| {
+            self.reader.error(pointer, format!("cannot read the file {:?}: {reason}", shorten(name)))
+        })?;
+        self.external.set(self.external.get() + bytes.len() as u64);
+        Ok(bytes)
+    }
+
+    /// The bytes of a data URI, given what follows "data:".
+    pub(super) fn decode(&self, data: &str, pointer: &str) -> Result<Vec<u8>, Error> {
         let Some((_, text)) = data.split_once(',').filter(|(kind, _)| kind.ends_with(";base64")) else {
             return Err(self.reader.error(pointer, "the data URI is not in base64"));
         };

@@ -16,10 +16,12 @@
 //! So a file of nothing but `{},{},{}` does not grow in memory; `tests/format_memory.rs` measures it.
 
 use std::borrow::Cow;
+use std::fmt;
 
 use gltf::json::Asset;
 use gltf::json::accessor::Type;
 use gltf::json::validation::Checked;
+use serde::de::{IgnoredAny, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
@@ -34,8 +36,8 @@ pub(super) struct Document<'a> {
     pub(super) scenes: Vec<Scene>,
     #[serde(default)]
     pub(super) nodes: Vec<Node>,
-    #[serde(default)]
-    pub(super) meshes: Vec<MeshObject>,
+    #[serde(default, borrow)]
+    pub(super) meshes: Vec<MeshObject<'a>>,
     #[serde(default)]
     pub(super) accessors: Vec<Accessor>,
     #[serde(default)]
@@ -44,6 +46,19 @@ pub(super) struct Document<'a> {
     pub(super) buffers: Vec<Buffer<'a>>,
     #[serde(default, borrow)]
     pub(super) materials: Vec<&'a RawValue>,
+    #[serde(default, borrow)]
+    pub(super) textures: Vec<&'a RawValue>,
+    #[serde(default, borrow)]
+    pub(super) images: Vec<&'a RawValue>,
+    #[serde(default, borrow)]
+    pub(super) samplers: Vec<&'a RawValue>,
+    #[serde(default, borrow)]
+    pub(super) animations: Vec<&'a RawValue>,
+    #[serde(default)]
+    pub(super) cameras: Count,
+    #[serde(default)]
+    pub(super) skins: Count,
+    pub(super) extensions: Option<DocumentExtensions>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -67,6 +82,7 @@ pub(super) struct NodeFields {
     pub(super) rotation: Option<Box<[f64; 4]>>,
     pub(super) scale: Option<Box<[f64; 3]>>,
     pub(super) skin: Option<u32>,
+    pub(super) weights: Option<Box<[f64]>>,
     pub(super) extensions: Option<Box<NodeExtensions>>,
 }
 
@@ -98,34 +114,49 @@ impl<'de> Deserialize<'de> for Node {
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct MeshObject {
+pub(super) struct MeshObject<'a> {
     pub(super) name: Option<Box<str>>,
-    pub(super) primitives: Box<[Primitive]>,
+    #[serde(borrow)]
+    pub(super) primitives: Box<[Primitive<'a>]>,
+    pub(super) weights: Option<Box<[f64]>>,
+    pub(super) extensions: Option<Box<MeshExtensions>>,
 }
 
 #[derive(Debug, Deserialize)]
-pub(super) struct Primitive {
-    pub(super) attributes: Attributes,
+pub(super) struct MeshExtensions {
+    #[serde(rename = "EXT_mesh_manifold")]
+    pub(super) manifold: Option<Manifold>,
+}
+
+/// Which indices of the primitives, one after the other, become which so that the surface is closed.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Manifold {
+    pub(super) merge_indices: Option<u32>,
+    pub(super) merge_values: Option<u32>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Primitive<'a> {
+    /// Names and accessors, as text until the primitive is shown.
+    #[serde(borrow)]
+    pub(super) attributes: &'a RawValue,
     pub(super) indices: Option<u32>,
     pub(super) material: Option<u32>,
     /// One of [`gltf::json::mesh::VALID_MODES`], if the file is right.
     pub(super) mode: Option<u32>,
-    /// Whether there are morph targets.
-    #[serde(default, rename = "targets", deserialize_with = "is_not_empty")]
-    pub(super) morphs: bool,
+    /// Morph targets, as text until the primitive is shown.
+    #[serde(borrow)]
+    pub(super) targets: Option<&'a RawValue>,
+    #[serde(borrow)]
+    pub(super) extras: Option<&'a RawValue>,
     pub(super) extensions: Option<Box<PrimitiveExtensions>>,
-}
-
-#[derive(Debug, Deserialize)]
-pub(super) struct Attributes {
-    #[serde(rename = "POSITION")]
-    pub(super) position: Option<u32>,
 }
 
 #[derive(Debug, Deserialize)]
 pub(super) struct PrimitiveExtensions {
     #[serde(rename = "KHR_draco_mesh_compression")]
-    pub(super) draco: Option<serde::de::IgnoredAny>,
+    pub(super) draco: Option<IgnoredAny>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -201,6 +232,44 @@ pub(super) struct PlainSurface {
     pub(super) base_color: Option<[f32; 4]>,
 }
 
-fn is_not_empty<'de, D: Deserializer<'de>>(deserializer: D) -> Result<bool, D::Error> {
-    Ok(!Vec::<serde::de::IgnoredAny>::deserialize(deserializer)?.is_empty())
+#[derive(Debug, Deserialize)]
+pub(super) struct DocumentExtensions {
+    #[serde(rename = "KHR_lights_punctual")]
+    pub(super) lights: Option<Lights>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Lights {
+    #[serde(default)]
+    pub(super) lights: Count,
+}
+
+/// What has a name.
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct Named {
+    pub(super) name: Option<String>,
+}
+
+/// A list of which nothing but the length is kept.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Count(pub(super) usize);
+
+impl<'de> Deserialize<'de> for Count {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Counter;
+        impl<'de> Visitor<'de> for Counter {
+            type Value = Count;
+            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+                formatter.write_str("a list")
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Count, A::Error> {
+                let mut count = 0;
+                while list.next_element::<IgnoredAny>()?.is_some() {
+                    count += 1;
+                }
+                Ok(Count(count))
+            }
+        }
+        deserializer.deserialize_seq(Counter)
+    }
 }

@@ -5,10 +5,16 @@
 //! the offset of the model in a node (double precision in JSON), so that large coordinates keep their digits.
 
 mod accessor;
+mod budget;
 mod buffers;
 mod container;
+mod corners;
 mod document;
 mod extensions;
+mod json;
+mod manifold;
+mod materials;
+mod morph;
 mod primitive;
 mod scene;
 mod write;

@@ -3,40 +3,41 @@
 use std::collections::HashMap;
 
 use glam::{DAffine3, DVec3};
-use gltf::json;
 use gltf::json::accessor::Type;
 use gltf::json::mesh::{LINE_STRIP, POINTS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 
 use super::super::notes::Notes;
 use super::super::outline::{NOWHERE, Outline};
 use super::super::{ReadOptions, unsupported};
+use super::Reader;
 use super::accessor::Accessors;
+use super::budget::Budget;
 use super::buffers::Buffers;
-use super::document::{Accessor, PlainMaterial, Primitive};
+use super::corners::{Corners, Names, Shown};
+use super::document::{Accessor, MeshObject, Primitive};
 use super::extensions::DRACO_ADVICE;
-use super::{Reader, SMALLEST_LIMIT};
-use crate::control::Reservation;
-use crate::{Error, FaceGroup, FaceGroups, Material, Mesh};
+use super::manifold::Merged;
+use super::materials::Materials;
+use super::morph::Morph;
+use crate::{Error, FaceGroup, FaceGroups, Mesh};
 
 /// Gathers the triangles of a scene.
 pub(super) struct Builder<'a> {
     reader: &'a Reader<'a>,
-    buffers: &'a Buffers<'a>,
     pub(super) accessors: Accessors<'a>,
-    options: &'a ReadOptions,
     pub(super) notes: &'a mut Notes,
-    file_bytes: u64,
-    charged: u64,
-    reserved: u64,
-    reservations: Vec<Reservation>,
+    budget: Budget<'a>,
     mesh: Mesh,
+    corners: Corners,
     groups: FaceGroups,
     /// The first vertex of an accessor under a transform: primitives share their vertices.
     placed: HashMap<(u32, [u64; 12]), u32>,
     /// The group of a node and a material.
-    known: HashMap<(Option<u32>, u32, Option<u32>), u32>,
-    /// The materials shown so far, each read once.
-    materials: HashMap<u32, Material>,
+    known: HashMap<(Option<u32>, u32, Option<u32>, Option<String>), u32>,
+    materials: Materials<'a>,
+    /// Nodes shown with a skeleton, and with morph targets.
+    pub(super) skinned: usize,
+    pub(super) morphed: usize,
     /// The names of nodes, if they are wanted.
     pub(super) outline: Option<Outline>,
 }
@@ -51,45 +52,24 @@ impl<'a> Builder<'a> {
     ) -> Self {
         Self {
             reader,
-            buffers,
             accessors: Accessors { reader, buffers },
-            options,
             notes,
-            file_bytes,
-            charged: 0,
-            reserved: 0,
-            reservations: Vec::new(),
+            budget: Budget::new(buffers, options, file_bytes),
             mesh: Mesh::default(),
+            corners: Corners::default(),
             groups: FaceGroups::default(),
             placed: HashMap::new(),
             known: HashMap::new(),
-            materials: HashMap::new(),
+            materials: Materials::new(reader, buffers),
+            skinned: 0,
+            morphed: 0,
             outline: None,
         }
     }
 
-    /// Accounts for memory about to be used. Counts in accessors and instances of meshes may ask for far more than
-    /// the file has; this is where that ends.
+    /// Accounts for memory about to be used.
     pub(super) fn charge(&mut self, bytes: u64) -> Result<(), Error> {
-        self.charged = self.charged.saturating_add(bytes);
-        let whole = self.file_bytes.saturating_add(self.buffers.external_bytes());
-        let limit = whole.saturating_mul(self.options.expansion).max(SMALLEST_LIMIT);
-        if self.charged > limit {
-            return Err(Error::TooLarge {
-                what: format!(
-                    "the flattened scene needs more than {limit} bytes, {} times its file, the most that was \
-                     allowed",
-                    limit / whole.max(1)
-                ),
-            });
-        }
-        // Instances can make the mesh larger than the file, so this memory is accounted for as it is needed.
-        if self.charged > 2 * whole + self.reserved {
-            let more = self.charged - 2 * whole - self.reserved;
-            self.reservations.push(self.options.control.reserve(more.max(1 << 20))?);
-            self.reserved += more.max(1 << 20);
-        }
-        Ok(self.options.control.check()?)
+        self.budget.charge(bytes)
     }
 
     /// Notes a name for what stands under `parent`, and gives its entry of the outline; the parent's, if there is no name.
@@ -114,13 +94,22 @@ impl<'a> Builder<'a> {
         // A node without a name is called by that of its mesh.
         let nameless = node.and_then(|node| self.node_name(node)).is_none();
         let entry = if nameless { self.enter(object.name.as_deref(), entry)? } else { entry };
+        let weights = node
+            .and_then(|node| self.reader.document.nodes.get(node as usize)?.0.as_ref()?.weights.as_deref());
+        let weights = weights.or(object.weights.as_deref()).unwrap_or_default();
+        let merged = self.merged(object)?;
+        let mut taken = 0;
+        let mut morphed = false;
         for (i, primitive) in object.primitives.iter().enumerate() {
             let pointer = format!("/meshes/{mesh}/primitives/{i}");
             let before = self.mesh.triangles.len();
-            self.primitive(primitive, world, &pointer)?;
+            let merged = merged.as_ref().map(|merged| &merged.indices[taken..]);
+            let (indices, has_targets) = self.primitive(primitive, world, weights, merged, &pointer)?;
+            taken += indices;
+            morphed |= has_targets;
             let added = self.mesh.triangles.len() - before;
             if added > 0 {
-                let group = self.group(node, mesh, primitive.material, &pointer)?;
+                let group = self.group(node, mesh, primitive, &pointer)?;
                 self.groups.of_triangle.resize(before + added, group);
                 if self.outline.is_some() {
                     self.charge(4 * added as u64)?;
@@ -130,15 +119,61 @@ impl<'a> Builder<'a> {
                 }
             }
         }
+        self.morphed += usize::from(morphed);
         Ok(())
     }
 
-    fn primitive(&mut self, primitive: &Primitive, world: &DAffine3, pointer: &str) -> Result<(), Error> {
+    /// The indices of a mesh as those of a closed surface, if it has the extension that says so.
+    fn merged(&mut self, object: &MeshObject<'_>) -> Result<Option<Merged>, Error> {
+        if object.extensions.as_ref().is_none_or(|extensions| extensions.manifold.is_none()) {
+            return Ok(None);
+        }
+        let mut first = None;
+        for primitive in &object.primitives {
+            let position = self.names(primitive, "/meshes")?.get("POSITION").copied();
+            if position.is_none() || first.is_some_and(|first| first != position) {
+                self.notes.add(
+                    "EXT_mesh_manifold ignored: the primitives of a mesh have no positions in common",
+                    1,
+                );
+                return Ok(None);
+            }
+            first = Some(position);
+        }
+        let Some(Some(position)) = first else { return Ok(None) };
+        let count = self.accessors.get(position, Type::Vec3, "/meshes")?.count;
+        self.charge(count.saturating_mul(24))?;
+        let positions = self.accessors.numbers::<3>(position, "/meshes")?;
+        match Merged::read(object, &positions, &self.accessors, &mut self.budget)? {
+            Ok(merged) => Ok(Some(merged)),
+            Err(reason) => {
+                self.notes.add(format!("EXT_mesh_manifold ignored: {reason}"), 1);
+                Ok(None)
+            }
+        }
+    }
+
+    /// The attributes of a primitive: names and accessors.
+    fn names<'b>(&self, primitive: &'b Primitive<'_>, pointer: &str) -> Result<Names<'b>, Error> {
+        serde_json::from_str(primitive.attributes.get())
+            .map_err(|error| self.reader.error(format!("{pointer}/attributes"), error.to_string()))
+    }
+
+    /// Adds a primitive; how many indices it has, and whether it has morph targets. `merged` begins with its indices as those
+    /// of a closed surface.
+    fn primitive(
+        &mut self,
+        primitive: &Primitive<'_>,
+        world: &DAffine3,
+        weights: &[f64],
+        merged: Option<&[u32]>,
+        pointer: &str,
+    ) -> Result<(usize, bool), Error> {
         let mode = primitive.mode.unwrap_or(TRIANGLES);
         match mode {
             POINTS..=LINE_STRIP => {
                 self.notes.add("primitive of points or lines ignored", 1);
-                return Ok(());
+                return Ok((0, false));
             }
             TRIANGLES | TRIANGLE_STRIP | TRIANGLE_FAN => {}
             _ => {
@@ -147,27 +182,39 @@ impl<'a> Builder<'a> {
                     .error(format!("{pointer}/mode"), format!("{mode} is no mode of glTF")));
             }
         }
-        let Some(position) = primitive.attributes.position else {
+        let names = self.names(primitive, pointer)?;
+        let Some(&position) = names.get("POSITION") else {
             self.notes.add("primitive without positions ignored", 1);
-            return Ok(());
+            return Ok((0, false));
         };
-        if primitive.morphs {
-            self.notes.add("mesh with morph targets read in its basic shape", 1);
-        }
+        let (morph, has_targets) = Morph::new(primitive.targets, weights, pointer, &self.accessors)?;
         let here = format!("{pointer}/attributes/POSITION");
         let accessor = self.accessors.get(position, Type::Vec3, &here)?;
         self.refuse_compressed(primitive, accessor, pointer)?;
         let vertices = accessor.count;
-        let first = self.place(position, vertices, world, &here)?;
+        let first = self.place(position, vertices, world, &morph, &here)?;
         let indices = self.indices(primitive, mode, vertices, &format!("{pointer}/indices"))?;
-        self.triangles(mode, &indices, first, is_mirrored(world), pointer);
-        Ok(())
+        let merged = merged.and_then(|merged| merged.get(..indices.len()));
+        let (before, mirrored) = (self.mesh.triangles.len(), is_mirrored(world));
+        let mut corners = Vec::new();
+        self.triangles(mode, &indices, first, mirrored, merged, &mut corners, pointer);
+        if names.len() > 1 {
+            if merged.is_none() {
+                self.budget.charge(12 * (self.mesh.triangles.len() - before) as u64)?;
+                let of_primitive = |triangle: &[u32; 3]| triangle.map(|corner| corner - first);
+                corners = self.mesh.triangles[before..].iter().map(of_primitive).collect();
+            }
+            let corners = &corners;
+            let shown = Shown { pointer, world, mirrored, vertices, morph: &morph, before, corners };
+            self.corners.add(&names, &shown, &self.accessors, &mut self.budget, self.notes)?;
+        }
+        Ok((indices.len(), has_targets))
     }
 
     /// Refuses positions that are there in compressed form only.
     fn refuse_compressed(
         &self,
-        primitive: &Primitive,
+        primitive: &Primitive<'_>,
         accessor: &Accessor,
         pointer: &str,
     ) -> Result<(), Error> {
@@ -185,7 +232,7 @@ impl<'a> Builder<'a> {
     /// each vertex in turn. There is room for their triangles.
     fn indices(
         &mut self,
-        primitive: &Primitive,
+        primitive: &Primitive<'_>,
         mode: u32,
         vertices: u64,
         pointer: &str,
@@ -217,15 +264,41 @@ impl<'a> Builder<'a> {
         Ok(indices)
     }
 
-    /// Adds the triangles that indices make in a mode, the first vertex being `first` of the mesh.
-    fn triangles(&mut self, mode: u32, indices: &[u32], first: u32, mirrored: bool, pointer: &str) {
+    /// Adds the triangles that indices make in a mode, the first vertex being `first` of the mesh. With `merged`, the indices
+    /// of the same corners on a closed surface, those make the triangles, and `corners` gets the ones of the primitive.
+    #[expect(clippy::too_many_arguments, reason = "a primitive has so many sides")]
+    fn triangles(
+        &mut self,
+        mode: u32,
+        indices: &[u32],
+        first: u32,
+        mirrored: bool,
+        merged: Option<&[u32]>,
+        corners: &mut Vec<[u32; 3]>,
+        pointer: &str,
+    ) {
         let mut dropped = 0;
+        let turned = |[a, b, c]: [u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
+        if let Some(merged) = merged {
+            let own = indices.as_chunks::<3>().0;
+            for (own, &closed) in own.iter().zip(merged.as_chunks::<3>().0) {
+                let [a, b, c] = closed.map(|corner| corner + first);
+                if a == b || b == c || c == a {
+                    dropped += 1;
+                } else {
+                    self.mesh.triangles.push(turned([a, b, c]));
+                    corners.push(turned(*own));
+                }
+            }
+            self.notes.add("triangle with a repeated corner dropped", dropped);
+            return;
+        }
         let mut push = |corners: [u32; 3]| {
             let [a, b, c] = corners.map(|corner| corner + first);
             if a == b || b == c || c == a {
                 dropped += 1;
             } else {
-                self.mesh.triangles.push(if mirrored { [a, c, b] } else { [a, b, c] });
+                self.mesh.triangles.push(turned([a, b, c]));
             }
         };
         match mode {
@@ -255,9 +328,16 @@ impl<'a> Builder<'a> {
     }
 
     /// The first of an accessor's vertices under a transform, which are added if they are new.
-    fn place(&mut self, accessor: u32, count: u64, world: &DAffine3, pointer: &str) -> Result<u32, Error> {
+    fn place(
+        &mut self,
+        accessor: u32,
+        count: u64,
+        world: &DAffine3,
+        morph: &Morph<'_>,
+        pointer: &str,
+    ) -> Result<u32, Error> {
         let key = (accessor, world.to_cols_array().map(f64::to_bits));
-        if let Some(&first) = self.placed.get(&key) {
+        if let Some(&first) = self.placed.get(&key).filter(|_| morph.is_none()) {
             return Ok(first);
         }
         let first = self.mesh.positions.len();
@@ -269,6 +349,7 @@ impl<'a> Builder<'a> {
         // Once decoded, once in the mesh.
         self.charge(count.saturating_mul(48))?;
         let mut positions = self.accessors.numbers::<3>(accessor, pointer)?;
+        morph.move_points(&mut positions, &self.accessors, &mut self.budget)?;
         if *world != DAffine3::IDENTITY {
             for position in &mut positions {
                 *position = world.transform_point3(DVec3::from_array(*position)).to_array();
@@ -279,7 +360,9 @@ impl<'a> Builder<'a> {
         } else {
             self.mesh.positions.append(&mut positions);
         }
-        self.placed.insert(key, first as u32);
+        if morph.is_none() {
+            self.placed.insert(key, first as u32);
+        }
         Ok(first as u32)
     }
 
@@ -287,20 +370,26 @@ impl<'a> Builder<'a> {
         &mut self,
         node: Option<u32>,
         mesh: u32,
-        material: Option<u32>,
+        primitive: &Primitive<'_>,
         pointer: &str,
     ) -> Result<u32, Error> {
-        let key = (node, mesh, material);
+        // A mesh that holds all groups of a closed surface tells their names there.
+        let own = primitive.extras.and_then(|extras| serde_json::from_str::<GroupName>(extras.get()).ok());
+        let own = own.and_then(|own| own.group);
+        let key = (node, mesh, primitive.material, own);
         if let Some(&group) = self.known.get(&key) {
             return Ok(group);
         }
         let document = self.reader.document;
-        let name = node.and_then(|node| self.node_name(node));
+        let name = key.3.as_deref().or_else(|| node.and_then(|node| self.node_name(node)));
         let name = name.or_else(|| document.meshes.get(mesh as usize).and_then(|mesh| mesh.name.as_deref()));
         let name = name.unwrap_or_default().to_string();
-        let material = match material {
+        let material = match primitive.material {
             None => None,
-            Some(index) => Some(self.material(index, &format!("{pointer}/material"))?),
+            Some(index) => {
+                let pointer = format!("{pointer}/material");
+                Some(self.materials.get(index, &pointer, &mut self.budget, self.notes)?)
+            }
         };
         let name_bytes = name.len() + material.as_ref().map_or(0, |material| material.name.len());
         self.charge(200 + name_bytes as u64)?;
@@ -315,39 +404,20 @@ impl<'a> Builder<'a> {
         self.reader.document.nodes.get(node as usize)?.0.as_ref()?.name.as_deref()
     }
 
-    /// The material at an index found at `pointer`.
-    fn material(&mut self, index: u32, pointer: &str) -> Result<Material, Error> {
-        if let Some(known) = self.materials.get(&index) {
-            return Ok(known.clone());
-        }
-        let text = self.reader.get(&self.reader.document.materials, "materials", index as usize, pointer)?;
-        let material = match serde_json::from_str::<json::Material>(text.get()) {
-            Ok(material) => Material::plain(
-                material.name.unwrap_or_default(),
-                material.pbr_metallic_roughness.base_color_factor.0,
-            ),
-            Err(error) => {
-                self.notes
-                    .say(format!("of /materials/{index} only the name and the colour are read: {error}"));
-                let plain: PlainMaterial = serde_json::from_str(text.get()).unwrap_or_default();
-                Material::plain(
-                    plain.name.unwrap_or_default(),
-                    plain.surface.and_then(|surface| surface.base_color).unwrap_or([1.0; 4]),
-                )
-            }
-        };
-        self.charge(200 + material.name.len() as u64)?;
-        self.materials.insert(index, material.clone());
-        Ok(material)
-    }
-
     /// The mesh, and the outline if it was wanted.
     pub(super) fn finish(mut self) -> (Mesh, Outline) {
         if self.groups.list.iter().any(|group| *group != FaceGroup::default()) {
             self.mesh.groups = self.groups;
         }
+        self.mesh.attributes = self.corners.finish(self.mesh.triangles.len());
         (self.mesh, self.outline.unwrap_or_default())
     }
+}
+
+/// What the extras of a primitive may say.
+#[derive(serde::Deserialize)]
+struct GroupName {
+    group: Option<String>,
 }
 
 /// Whether a transform turns left hands into right ones.

@@ -50,7 +50,7 @@ pub(super) fn flatten(reader: &Reader<'_>, builder: &mut Builder<'_>) -> Result<
         let entry = builder.enter(node.name.as_deref(), above)?;
         if let Some(mesh) = node.mesh {
             if node.skin.is_some() {
-                builder.notes.add("skinned mesh read in the pose it is stored in", 1);
+                builder.skinned += 1;
             }
             let instancing = node.extensions.as_ref().and_then(|extensions| extensions.instancing.as_ref());
             match instancing {

@@ -86,6 +86,15 @@ pub(in crate::mesh) fn turn_over(kind: AttributeKind, value: &mut [f64]) {
 }
 
 impl Attribute {
+    /// Appends further values, those of no corner yet.
+    pub(crate) fn push_values(&mut self, addition: Self) {
+        if self.values.is_empty() && self.of_corner.iter().all(|&index| index == Self::NONE) {
+            (self.values, self.components) = (addition.values, addition.components);
+        } else {
+            self.append(&addition);
+        }
+    }
+
     fn append(&mut self, addition: &Self) {
         let components = self.components.max(addition.components);
         self.widen(components);

@@ -4,7 +4,8 @@ mod lists;
 mod moved;
 
 pub(super) use lists::{append, keep, reverse, reverse_some};
-pub(super) use moved::{moved, turn_corners};
+pub(crate) use moved::moved;
+pub(super) use moved::turn_corners;
 
 use super::{AttributeFault, MeshError};
 
@@ -73,6 +74,17 @@ pub enum AttributeKind {
 }
 
 impl AttributeKind {
+    /// Whether values of this kind and name may have so many components.
+    pub(crate) fn allows(self, name: &str, components: usize) -> bool {
+        match self {
+            Self::Normal => components == 3,
+            Self::Tangent | Self::Joints | Self::Weights => components == 4,
+            Self::Colour => matches!(components, 3 | 4),
+            Self::Plain if !name.starts_with('_') => components == 2,
+            Self::Plain => components > 0,
+        }
+    }
+
     /// What a name says; `None` for a name that is neither one of glTF nor begins with an underscore.
     #[must_use]
     pub fn of(name: &str) -> Option<Self> {
@@ -138,14 +150,7 @@ impl Attribute {
     pub(crate) fn fault(&self, triangles: usize) -> Option<AttributeFault> {
         let Some(kind) = AttributeKind::of(&self.name) else { return Some(AttributeFault::Name) };
         let components = self.components;
-        let allowed: &[usize] = match kind {
-            AttributeKind::Normal => &[3],
-            AttributeKind::Tangent | AttributeKind::Joints | AttributeKind::Weights => &[4],
-            AttributeKind::Colour => &[3, 4],
-            AttributeKind::Plain if !self.name.starts_with('_') => &[2],
-            AttributeKind::Plain => &[],
-        };
-        if components == 0 || !(allowed.is_empty() || allowed.contains(&components)) {
+        if !kind.allows(&self.name, components) {
             return Some(AttributeFault::Components { components });
         }
         let (numbers, corners) = (self.values.len(), self.of_corner.len());

@@ -3,14 +3,14 @@
 use super::{Attribute, AttributeKind};
 
 /// The linear part of a transform, row by row.
-pub(in crate::mesh) type Linear = [[f64; 3]; 3];
+pub(crate) type Linear = [[f64; 3]; 3];
 
 /// How much a length may be off before it is set right: what a few roundings do, so that quarter turns keep every bit.
 const LENGTH_ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Moves the normals and tangents of `attributes`. `mirrored` says whether the determinant of `linear` is negative; triangles
 /// are then turned round by whoever asks, with [`turn_corners`].
-pub(in crate::mesh) fn moved(attributes: &mut [Attribute], linear: &Linear, mirrored: bool) {
+pub(crate) fn moved(attributes: &mut [Attribute], linear: &Linear, mirrored: bool) {
     let cofactors = cofactors(&scaled(linear));
     // The cofactors are the inverse transpose times the determinant, whose sign has to go.
     let sign = if mirrored { -1.0 } else { 1.0 };
