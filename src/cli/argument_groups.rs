@@ -152,7 +152,7 @@ pub(crate) struct Using {
 }
 
 /// What is written.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Outputs")]
 pub(crate) struct Writing {
     /// Output file; may be repeated; `-` is standard output (with --output-format); *.png draws a picture
@@ -167,6 +167,12 @@ pub(crate) struct Writing {
     /// Round coordinates to single precision
     #[arg(long)]
     pub(crate) single: bool,
+    /// Put the buffer and the pictures of .gltf files into files beside them
+    #[arg(long)]
+    pub(crate) separate: bool,
+    /// Write into glTF files which vertices of seams are one (EXT_mesh_manifold)
+    #[arg(long)]
+    pub(crate) manifold: bool,
     /// Move the outputs so that the middle of their bounds is near the origin
     #[arg(long)]
     pub(crate) recenter: bool,

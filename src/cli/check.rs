@@ -63,7 +63,7 @@ fn check(request: &Request, arguments: &Check, session: &Session<'_>) -> Result<
         Ok(input) => input,
         Err(error) => return refused(&name, error, None, None),
     };
-    let Input { mesh, format, mut warnings, reserved: _reserved } = input;
+    let Input { mesh, format, mut warnings, reserved: _reserved, .. } = input;
     let mut diagnosis = diagnose(&mesh);
     let mut object = Measures::of_mesh(&mesh).to_json();
     object.insert("format".into(), format.extension().into());

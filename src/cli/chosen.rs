@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use trisect::Mesh;
-use trisect::io::Format;
+use trisect::io::{Contents, Format};
 
 use super::stream::STANDARD;
 
@@ -15,6 +15,8 @@ pub(crate) struct Chosen {
     pub(crate) mesh: Mesh,
     pub(crate) format: Format,
     pub(crate) warnings: Vec<String>,
+    /// What the file holds besides the mesh.
+    pub(crate) contents: Contents,
 }
 
 /// The file that a name on the command line means, and the name of a part if it has one after `#`. A file that exists under

@@ -67,8 +67,9 @@ fn read(request: &Request, session: &mut Session<'_>) -> Result<Read, Fault> {
     let start = Instant::now();
     session.console.stage(&format!("reading {}", request.name()), 0.0);
     let request = &selection::together(request.clone(), &session.limits, &control).map_err(of_input)?;
-    let Input { mesh, format, warnings, reserved } =
+    let Input { mesh, format, mut warnings, contents, reserved } =
         reading::read(request, &session.limits, &control).map_err(of_input)?;
+    warnings.extend(contents.not_kept());
     let (mesh, welded) = usable::welded(mesh, request.repairs.weld).map_err(of_input)?;
     let (mesh, turned) = if request.repairs.orient { usable::oriented(mesh) } else { (mesh, false) };
     let seconds = session.took("read", start);

@@ -23,8 +23,7 @@ pub(crate) fn run(
 ) -> Result<Exit, Fault> {
     // 1. Where to: files that hold cages, meshes and pictures of the limit surface, the exact result.
     let (cage_paths, mesh_paths) = cages::sorted(&arguments.output)?;
-    let writing =
-        |output| Writing { output, output_format: None, ascii: false, single: false, recenter: false };
+    let writing = |output| Writing { output, ..Writing::default() };
     let targets = output::targets(&writing(mesh_paths), &arguments.drawing, session.common)?;
     let no_picture = Drawing { png: None, ..arguments.drawing };
     let exact_targets =
@@ -127,8 +126,7 @@ fn write(
         cages::picture(cage, &arguments.drawing)
             .unwrap_or_else(|_| trisect::render::mesh(&mesh, &output::view(&arguments.drawing, None), None))
     };
-    let empty =
-        Writing { output: Vec::new(), output_format: None, ascii: false, single: false, recenter: false };
+    let empty = Writing::default();
     let options = output::write_options(&empty, &session.limits);
     let product = Product { mesh: &mesh, options, picture: &picture, documents: &documents };
     let (written, warnings) = output::write_all(targets, &product, &session.limits)?;

@@ -4,12 +4,13 @@ use std::collections::HashSet;
 
 use clap::ArgMatches;
 use serde_json::{Value, json};
-use trisect::io::{Format, PartName};
+use trisect::io::{Contents, Format, PartName};
 use trisect::mesh::Mending;
 use trisect::{Error, Mesh};
 
 use super::arguments::Info;
 use super::fault::{Exit, Fault};
+use super::held;
 use super::json::json_of;
 use super::reading::{self, Input};
 use super::report::Measures;
@@ -36,9 +37,9 @@ pub(crate) fn run(arguments: &Info, matches: &ArgMatches, session: &mut Session<
         let of_this = |error: Error| error.of_operand(index, name.clone());
         session.console.stage(&format!("reading {name}"), 0.0);
         let (request, parts) = selection::whole(request, &session.limits, &control).map_err(of_this)?;
-        let Input { mesh, format, warnings, reserved: _reserved } =
+        let Input { mesh, format, warnings, contents, reserved: _reserved } =
             reading::read(&request, &session.limits, &control).map_err(of_this)?;
-        let (text, object) = describe(&request, &mesh, format, &warnings, &parts);
+        let (text, object) = describe(&request, &mesh, format, &warnings, &parts, &contents);
         if !session.common.json {
             session.console.pause(|| stream::print(&text))?;
         }
@@ -72,6 +73,7 @@ fn describe(
     format: Format,
     warnings: &[String],
     parts: &[PartName],
+    contents: &Contents,
 ) -> (String, Value) {
     let (measures, state, mending) = match trisect::Solid::try_from(mesh.clone()) {
         Ok(solid) => (Measures::of_solid(&solid), None, solid.mending().clone()),
@@ -98,6 +100,7 @@ fn describe(
     }
 
     text.push_str(&listed(parts, &groups));
+    text.push_str(&held::text(mesh, contents));
 
     let mut object = measures.to_json();
     object.insert("parts".into(), json_of(&parts));
@@ -107,6 +110,7 @@ fn describe(
     object.insert("mending".into(), json_of(&mending));
     object.insert("groups".into(), groups.iter().map(Group::to_json).collect::<Vec<_>>().into());
     object.insert("warnings".into(), json!(warnings));
+    object.extend(held::json(mesh, contents));
     (text, object.into())
 }
 

@@ -23,6 +23,7 @@ mod field_arguments;
 #[cfg(feature = "subdivision")]
 mod freeform;
 mod grid;
+mod held;
 mod info;
 mod json;
 mod limits;

@@ -57,9 +57,11 @@ fn operand(
     control: &Control,
 ) -> Result<Operand, Box<Unusable>> {
     let start = Instant::now();
-    let Input { mesh, format, mut warnings, reserved } = reading::read(&request, limits, control)
-        .map_err(|error| Box::new(Unusable { error, remedy: None }))?;
+    let Input { mesh, format, mut warnings, contents, reserved } =
+        reading::read(&request, limits, control)
+            .map_err(|error| Box::new(Unusable { error, remedy: None }))?;
     let Usable { solid, crossings } = usable::usable(mesh, request.repairs, assume_clean, control)?;
+    warnings.extend(contents.not_kept());
     warnings.extend(mended::left_out(solid.mending()));
     warnings.extend(usable::nothing_left(&solid));
     // What touches itself in single vertices would do so in the result as well.

@@ -165,7 +165,10 @@ fn refuse_terminal(format: Format, ascii: bool) -> Result<(), Fault> {
 
 /// How to write meshes.
 pub(crate) fn write_options(writing: &Writing, limits: &Limits) -> io::WriteOptions {
-    let mut options = io::WriteOptions::new().control(limits.control());
+    let mut options = io::WriteOptions::new()
+        .control(limits.control())
+        .separate(writing.separate)
+        .manifold(writing.manifold);
     if writing.ascii {
         options = options.encoding(io::Encoding::Ascii);
     }
@@ -257,7 +260,12 @@ fn said_of(target: &Target, said: &Written) -> Vec<String> {
 /// Writes a file in its hidden folder.
 fn write_file(target: &Target, path: &Path, product: &Product<'_>) -> Result<Written, Error> {
     match target.kind {
-        Kind::Mesh(_) => io::save_report(product.mesh, path, &product.options),
+        Kind::Mesh(_) => {
+            // Pictures that are beside the output already stay as they are.
+            let place = fs::canonicalize(&target.path).unwrap_or_else(|_| target.path.clone());
+            let folder = place.parent().unwrap_or(Path::new("")).to_path_buf();
+            io::save_report(product.mesh, path, &product.options.clone().destination(folder))
+        }
         Kind::Forced(format) | Kind::Standard(format) => {
             let mut file = File::create(path).map_err(|source| file_error(path, source))?;
             io::write_report(product.mesh, format, &mut file, &product.options)

@@ -4,7 +4,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use trisect::control::Reservation;
-use trisect::io::{self, Format};
+use trisect::io::{self, Contents, Format};
 use trisect::{Control, Error, Mesh};
 
 use super::limits::Limits;
@@ -16,14 +16,18 @@ pub(crate) struct Input {
     pub(crate) mesh: Mesh,
     pub(crate) format: Format,
     pub(crate) warnings: Vec<String>,
+    /// What the file holds besides the mesh.
+    pub(crate) contents: Contents,
     /// The mesh's share of the memory ceiling.
     pub(crate) reserved: Reservation,
 }
 
 /// Reads one input and moves it to its place.
 pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Result<Input, Error> {
-    let (mut mesh, format, warnings) = match &request.chosen {
-        Some(chosen) => (chosen.mesh.clone(), chosen.format, chosen.warnings.clone()),
+    let (mut mesh, format, warnings, contents) = match &request.chosen {
+        Some(chosen) => {
+            (chosen.mesh.clone(), chosen.format, chosen.warnings.clone(), chosen.contents.clone())
+        }
         None => {
             let options = options(request, control);
             let loaded = match request.format {
@@ -33,8 +37,8 @@ pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Res
                 }
                 None => io::load(&request.path, &options),
             };
-            let io::Loaded { mesh, format, warnings, .. } = loaded.map_err(name_option)?;
-            (mesh, format, warnings)
+            let io::Loaded { mesh, format, warnings, contents, .. } = loaded.map_err(name_option)?;
+            (mesh, format, warnings, contents)
         }
     };
     control.check()?;
@@ -49,7 +53,7 @@ pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Res
     }
     let bytes = size_of_val(&*mesh.positions) + size_of_val(&*mesh.triangles);
     let reserved = control.reserve(bytes as u64)?;
-    Ok(Input { mesh, format, warnings, reserved })
+    Ok(Input { mesh, format, warnings, contents, reserved })
 }
 
 /// How an input is read.

@@ -35,8 +35,14 @@ pub(crate) fn each(
         for (number, part) in parts.into_iter().enumerate() {
             // What is to be said of the file is said once.
             let warnings = if number == 0 { file.whole.warnings.clone() } else { Vec::new() };
-            let chosen =
-                Chosen { name: Some(part.name), mesh: part.mesh, format: file.whole.format, warnings };
+            let contents = if number == 0 { file.whole.contents.clone() } else { io::Contents::default() };
+            let chosen = Chosen {
+                name: Some(part.name),
+                mesh: part.mesh,
+                format: file.whole.format,
+                warnings,
+                contents,
+            };
             expanded.push(Request { chosen: Some(Arc::new(chosen)), ..request.clone() });
         }
     }
@@ -49,8 +55,13 @@ pub(crate) fn together(request: Request, limits: &Limits, control: &Control) -> 
     let file = read(&request, limits, control)?;
     let parts = file.select(&pattern)?;
     let mesh = Mesh::merged(parts.iter().map(|part| &part.mesh))?;
-    let chosen =
-        Chosen { name: Some(pattern), mesh, format: file.whole.format, warnings: file.whole.warnings };
+    let chosen = Chosen {
+        name: Some(pattern),
+        mesh,
+        format: file.whole.format,
+        warnings: file.whole.warnings,
+        contents: file.whole.contents,
+    };
     Ok(Request { chosen: Some(Arc::new(chosen)), ..request })
 }
 
@@ -65,8 +76,8 @@ pub(crate) fn whole(
     }
     let file = read(&request, limits, control)?;
     let names = file.names();
-    let io::Loaded { mesh, format, warnings, .. } = file.whole;
-    let chosen = Chosen { name: None, mesh, format, warnings };
+    let io::Loaded { mesh, format, warnings, contents, .. } = file.whole;
+    let chosen = Chosen { name: None, mesh, format, warnings, contents };
     Ok((Request { chosen: Some(Arc::new(chosen)), ..request }, names))
 }
 

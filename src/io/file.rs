@@ -5,7 +5,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::{Format, FormatError, Loaded, ReadOptions, WriteOptions, Written, obj, read, write_report};
+use super::pictures::{self, PictureFile};
+use super::{
+    Format, FormatError, Loaded, ReadOptions, WriteOptions, Written, finish, gltf, obj, read, write_report,
+};
 use crate::{Error, FileAction, Mesh};
 
 impl Mesh {
@@ -78,29 +81,99 @@ pub fn save_report(mesh: &Mesh, path: impl AsRef<Path>, options: &WriteOptions) 
     let format =
         Format::from_path(path).ok_or_else(|| FormatError::Unknown { name: path.display().to_string() })?;
     let mut options = options.clone();
-    let mut library = None;
-    if let (Format::Obj, Some(text)) = (format, obj::library(mesh)) {
-        let name = options.material_library.get_or_insert_with(|| library_name(path));
-        let beside = super::beside::beside(path.parent().unwrap_or(Path::new("")), name)
-            .map_err(|reason| Error::InvalidArgument(format!("the material library {name:?}: {reason}")))?;
-        let mut new = NewFile::create(&beside)?;
-        io::Write::write_all(&mut new.file, &text).map_err(|source| new.error(FileAction::Write, source))?;
-        library = Some(new);
+    let mut beside = Beside::new(mesh, path, format, &options);
+    if format == Format::Obj {
+        beside.add_library(mesh, path, &mut options)?;
     }
     let mut new = NewFile::create(path)?;
-    let written = write_report(mesh, format, &mut new.file, &options).map_err(|error| match error {
+    let named = |error| match error {
         Error::File { action, source, .. } => Error::File { action, path: path.to_path_buf(), source },
         other => other,
-    })?;
-    match library {
-        None => new.commit()?,
-        Some(library) => {
-            let undo = library.commit_with_undo()?;
-            new.commit().inspect_err(|_| undo.undo())?;
-            undo.forget();
+    };
+    let written = match format {
+        Format::Gltf if options.separate => {
+            finish::check_for_writing(mesh)?;
+            let (uri, mut buffer) = beside.buffer(path)?;
+            let aside = gltf::Aside { buffer: (uri, &mut buffer.file), pictures: &beside.pictures };
+            let written = gltf::write(mesh, format, &mut new.file, &options, Some(aside)).map_err(named)?;
+            if !mesh.is_empty() {
+                beside.files.push(buffer);
+            }
+            written
         }
-    }
+        _ => write_report(mesh, format, &mut new.file, &options).map_err(named)?,
+    };
+    beside.write_pictures()?;
+    beside.commit(new)?;
     Ok(written)
+}
+
+/// The files that belong to a model: its material library, its buffer, its pictures.
+struct Beside {
+    folder: PathBuf,
+    pictures: Vec<PictureFile>,
+    files: Vec<NewFile>,
+}
+
+impl Beside {
+    /// Names for the pictures of a model that has them in files of their own.
+    fn new(mesh: &Mesh, path: &Path, format: Format, options: &WriteOptions) -> Self {
+        let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
+        let has_files = format == Format::Obj || format == Format::Gltf && options.separate;
+        let destination = options.destination.as_deref().unwrap_or(&folder);
+        let destination = if destination.as_os_str().is_empty() { Path::new(".") } else { destination };
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+        let pictures = if has_files { pictures::files(mesh, Some(destination), &stem) } else { Vec::new() };
+        Self { folder, pictures, files: Vec::new() }
+    }
+
+    /// Writes the material library of an OBJ, and notes its name.
+    fn add_library(&mut self, mesh: &Mesh, path: &Path, options: &mut WriteOptions) -> Result<(), Error> {
+        let Some(text) = obj::library(mesh, &self.pictures) else { return Ok(()) };
+        let name = options.material_library.get_or_insert_with(|| library_name(path));
+        let path = super::beside::beside(&self.folder, name)
+            .map_err(|reason| Error::InvalidArgument(format!("the material library {name:?}: {reason}")))?;
+        self.add(&path, &text)
+    }
+
+    /// The file of the buffer, and its name.
+    fn buffer(&self, path: &Path) -> Result<(String, NewFile), Error> {
+        let name = Path::new(path.file_name().unwrap_or_default()).with_extension("bin");
+        let file = NewFile::create(&self.folder.join(&name))?;
+        Ok((name.to_string_lossy().into_owned(), file))
+    }
+
+    fn write_pictures(&mut self) -> Result<(), Error> {
+        for picture in std::mem::take(&mut self.pictures).into_iter().filter(|picture| picture.is_new) {
+            let path = self.folder.join(&picture.name);
+            self.add(&path, &picture.image.bytes)?;
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Error> {
+        let mut new = NewFile::create(path)?;
+        io::Write::write_all(&mut new.file, bytes).map_err(|source| new.error(FileAction::Write, source))?;
+        self.files.push(new);
+        Ok(())
+    }
+
+    /// Puts all files in their places, the model last; takes them back if one cannot be.
+    fn commit(self, model: NewFile) -> Result<(), Error> {
+        let mut undone: Vec<Undo> = Vec::new();
+        let placed = (self.files.into_iter()).try_for_each(|file| {
+            undone.push(file.commit_with_undo()?);
+            Ok(())
+        });
+        let placed = placed.and_then(|()| model.commit());
+        for undo in &undone {
+            match placed {
+                Ok(()) => undo.forget(),
+                Err(_) => undo.undo(),
+            }
+        }
+        placed
+    }
 }
 
 /// The name of the material library for an OBJ file; without blanks, which part names in `mtllib`.

@@ -2,7 +2,7 @@
 
 use super::notes::Notes;
 use super::{Format, malformed};
-use crate::mesh::{GroupFault, MeshError};
+use crate::mesh::{GroupFault, MeshError, check_attributes};
 use crate::{Error, Mesh};
 
 /// The vertices whose coordinates are not all finite; usually none.
@@ -95,7 +95,7 @@ pub(super) fn check_for_writing(mesh: &Mesh) -> Result<(), Error> {
     if let Some(fault) = groups.fault(triangles) {
         return Err(MeshError::Groups(fault).into());
     }
-    Ok(())
+    Ok(check_attributes(mesh)?)
 }
 
 #[cfg(test)]

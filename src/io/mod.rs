@@ -24,6 +24,7 @@
 //! there before memory is taken for it.
 
 mod beside;
+mod contents;
 mod detect;
 mod error;
 mod faces;
@@ -37,6 +38,7 @@ mod off;
 mod options;
 mod outline;
 mod parts;
+mod pictures;
 mod ply;
 mod rounding;
 mod scan;
@@ -48,6 +50,7 @@ use std::io::Write;
 
 use crate::{Error, FileAction, Mesh};
 
+pub use contents::Contents;
 pub use detect::Detected;
 pub use error::FormatError;
 pub use file::{load, save, save_report};
@@ -66,6 +69,8 @@ pub struct Loaded {
     pub format: Format,
     /// What was ignored, repaired or missing, one sentence each; empty for most files.
     pub warnings: Vec<String>,
+    /// What the file holds besides the mesh.
+    pub contents: Contents,
 }
 
 /// Reads a mesh from the bytes of a file of the given format.
@@ -79,9 +84,14 @@ pub fn read(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Loade
     }
     // What usual files take while they are read; what hostile ones may take is bounded reader by reader.
     let _reservation = options.control.reserve(2 * bytes.len() as u64)?;
+    let mut contents = Contents::default();
     let (mesh, mut warnings) = match format {
         Format::Obj => obj::read(bytes, options)?,
-        Format::Gltf | Format::Glb => gltf::read(bytes, format, options)?,
+        Format::Gltf | Format::Glb => {
+            let scene = gltf::read(bytes, format, options, false)?;
+            contents = scene.contents;
+            (scene.mesh, scene.warnings)
+        }
         Format::Stl => stl::read(bytes, options)?,
         Format::Ply => ply::read(bytes, options)?,
         Format::Off => off::read(bytes, options)?,
@@ -89,7 +99,7 @@ pub fn read(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Loade
     if mesh.is_empty() {
         warnings.push("the file has no triangles".to_string());
     }
-    Ok(Loaded { mesh, format, warnings })
+    Ok(Loaded { mesh, format, warnings, contents })
 }
 
 /// Writes a mesh to a stream, and returns what the format could not keep, one sentence each.
@@ -150,7 +160,7 @@ fn write_to(
     finish::check_for_writing(mesh)?;
     match format {
         Format::Obj => obj::write(mesh, output, options),
-        Format::Gltf | Format::Glb => gltf::write(mesh, format, output, options),
+        Format::Gltf | Format::Glb => gltf::write(mesh, format, output, options, None),
         Format::Stl => stl::write(mesh, output, options),
         Format::Ply => ply::write(mesh, output, options),
         Format::Off => off::write(mesh, output, options),

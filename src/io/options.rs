@@ -80,6 +80,9 @@ pub struct WriteOptions {
     pub(super) encoding: Encoding,
     pub(super) precision: Precision,
     pub(super) material_library: Option<String>,
+    pub(super) manifold: bool,
+    pub(super) separate: bool,
+    pub(super) destination: Option<PathBuf>,
     pub(super) control: Control,
 }
 
@@ -109,6 +112,31 @@ impl WriteOptions {
     #[must_use]
     pub fn material_library(mut self, name: impl Into<String>) -> Self {
         self.material_library = Some(name.into());
+        self
+    }
+
+    /// Whether glTF files say which vertices of seams are one (`EXT_mesh_manifold`), so that readers who know it get the closed
+    /// surface without comparing positions. All groups are then in one mesh. It takes a surface with two triangles at every
+    /// edge; else it is left out, with a warning.
+    #[must_use]
+    pub fn manifold(mut self, wanted: bool) -> Self {
+        self.manifold = wanted;
+        self
+    }
+
+    /// Whether [`save`](super::save) puts the buffer and the pictures of a `.gltf` file into files beside it. Else they are
+    /// inside, as they are in GLB and in streams.
+    #[must_use]
+    pub fn separate(mut self, wanted: bool) -> Self {
+        self.separate = wanted;
+        self
+    }
+
+    /// The folder where a saved file will stand in the end, if it is moved later: pictures that are there already are
+    /// referred to, not written again, and others do not take their names. Without it that is the folder the file is saved in.
+    #[must_use]
+    pub fn destination(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.destination = Some(folder.into());
         self
     }
 

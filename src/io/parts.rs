@@ -6,6 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::outline::{NOWHERE, Outline};
 use super::{Format, FormatError, Loaded, ReadOptions, file, gltf, read};
+use crate::mesh::Attribute;
 use crate::{Error, Mesh};
 
 /// This many names are told where one is not found.
@@ -66,8 +67,8 @@ pub fn read_parts(bytes: &[u8], format: Format, options: &ReadOptions) -> Result
         return Ok(Parts { whole, outline });
     }
     let _reservation = options.control.reserve(2 * bytes.len() as u64)?;
-    let (mesh, warnings, outline) = gltf::read_outlined(bytes, format, options)?;
-    Ok(Parts { whole: Loaded { mesh, format, warnings }, outline })
+    let gltf::SceneRead { mesh, warnings, outline, contents } = gltf::read(bytes, format, options, true)?;
+    Ok(Parts { whole: Loaded { mesh, format, warnings, contents }, outline })
 }
 
 /// Reads a file as [`load`](super::load) does, with the names of its parts.
@@ -188,7 +189,29 @@ fn cut_out(mesh: &Mesh, triangles: &[u32]) -> Mesh {
             part.groups.of_triangle.push(number);
         }
     }
+    part.attributes =
+        mesh.attributes.iter().filter_map(|attribute| cut_values(attribute, triangles)).collect();
     part
+}
+
+/// The values of an attribute that the given triangles have; nothing if they have none.
+fn cut_values(attribute: &Attribute, triangles: &[u32]) -> Option<Attribute> {
+    let mut part = Attribute::new(attribute.name.clone(), attribute.components);
+    let mut known: FxHashMap<u32, u32> = FxHashMap::default();
+    for &triangle in triangles {
+        for corner in 0..3 {
+            let index = attribute.of_corner[3 * triangle as usize + corner];
+            let number = match attribute.value(index) {
+                Some(value) => *known.entry(index).or_insert_with(|| {
+                    part.values.extend_from_slice(value);
+                    part.len() as u32 - 1
+                }),
+                None => Attribute::NONE,
+            };
+            part.of_corner.push(number);
+        }
+    }
+    (!part.is_empty()).then_some(part)
 }
 
 /// Whether a name is what a pattern with `*` and `?` means. O(letters of both, multiplied).

@@ -66,6 +66,22 @@ pub(crate) fn is_closed(mesh: &Mesh) -> bool {
     chain::examine(&mesh.triangles, mesh.positions.len()).is_ok_and(|chain| chain.closed)
 }
 
+/// What is wrong with the attributes of a mesh, if anything.
+#[cfg(feature = "formats")]
+pub(crate) fn check_attributes(mesh: &Mesh) -> Result<(), MeshError> {
+    attributes::check(&mesh.attributes, mesh.triangles.len())
+}
+
+/// Whether every directed edge has one triangle, and so has its opposite. O(n).
+#[cfg(feature = "formats")]
+pub(crate) fn is_two_manifold(mesh: &Mesh) -> bool {
+    let mut edges = rustc_hash::FxHashSet::default();
+    edges.reserve(3 * mesh.triangles.len());
+    let sides = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)];
+    mesh.triangles.iter().flat_map(sides).all(|edge| edges.insert(edge))
+        && edges.iter().all(|&(from, to)| edges.contains(&(to, from)))
+}
+
 /// A triangle mesh: positions, triangles, and the groups the triangles belong to. Plain data without invariants;
 /// [`Solid`] is the mesh that is known to be a closed surface.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -56,8 +56,6 @@ pub(super) struct Document<'a> {
     pub(super) animations: Vec<&'a RawValue>,
     #[serde(default)]
     pub(super) cameras: Count,
-    #[serde(default)]
-    pub(super) skins: Count,
     pub(super) extensions: Option<DocumentExtensions>,
 }
 

@@ -19,45 +19,37 @@ mod primitive;
 mod scene;
 mod write;
 
-pub(super) use write::write;
+pub(super) use write::{Aside, write};
 
 use super::finish::check_finite;
 use super::notes::Notes;
 use super::outline::Outline;
-use super::{Format, ReadOptions, malformed, unsupported};
+use super::{Contents, Format, ReadOptions, malformed, unsupported};
 use crate::{Error, Mesh};
 use buffers::Buffers;
-use document::Document;
+use document::{Document, Named};
 use primitive::Builder;
+use serde_json::value::RawValue;
 
 /// A scene may take this many bytes of memory however small its file is.
 const SMALLEST_LIMIT: u64 = 64 << 20;
 
-/// Reads the mesh and the warnings.
+/// A scene that was read.
+pub(super) struct SceneRead {
+    pub(super) mesh: Mesh,
+    pub(super) warnings: Vec<String>,
+    /// The names of nodes, if they were wanted.
+    pub(super) outline: Outline,
+    pub(super) contents: Contents,
+}
+
+/// Reads a scene; the outline is empty unless asked for, since it may be large for a small file.
 pub(super) fn read(
     bytes: &[u8],
     format: Format,
     options: &ReadOptions,
-) -> Result<(Mesh, Vec<String>), Error> {
-    read_scene(bytes, format, options, false).map(|(mesh, warnings, _)| (mesh, warnings))
-}
-
-/// Reads the mesh, the warnings, and the names of nodes.
-pub(super) fn read_outlined(
-    bytes: &[u8],
-    format: Format,
-    options: &ReadOptions,
-) -> Result<(Mesh, Vec<String>, Outline), Error> {
-    read_scene(bytes, format, options, true)
-}
-
-/// Reads a scene; the outline is empty unless asked for, since it may be large for a small file.
-fn read_scene(
-    bytes: &[u8],
-    format: Format,
-    options: &ReadOptions,
     outlined: bool,
-) -> Result<(Mesh, Vec<String>, Outline), Error> {
+) -> Result<SceneRead, Error> {
     let mut notes = Notes::default();
     let container = container::open(bytes, format, &mut notes)?;
     let document: Document<'_> = serde_json::from_slice(container.json).map_err(|error| {
@@ -73,9 +65,29 @@ fn read_scene(
     let mut builder = Builder::new(&reader, &buffers, bytes.len() as u64, options, &mut notes);
     builder.outline = outlined.then(Outline::default);
     scene::flatten(&reader, &mut builder)?;
+    let mut contents = contents(&document);
+    (contents.skinned, contents.morphed) = (builder.skinned, builder.morphed);
     let (mut mesh, outline) = builder.finish();
     check_finite(&mut mesh, format, &mut notes, |vertex| format!("vertex {vertex} of the scene"))?;
-    Ok((mesh, notes.into_warnings(|offset| format!("byte {offset}")), outline))
+    let warnings = notes.into_warnings(|offset| format!("byte {offset}"));
+    Ok(SceneRead { mesh, warnings, outline, contents })
+}
+
+/// What a document has besides meshes.
+fn contents(document: &Document<'_>) -> Contents {
+    /// Names of more animations are not kept.
+    const MOST: usize = 1000;
+    let name = |(index, text): (usize, &&RawValue)| {
+        let named: Option<Named> = serde_json::from_str(text.get()).ok();
+        named.and_then(|named| named.name).unwrap_or_else(|| index.to_string())
+    };
+    let lights = document.extensions.as_ref().and_then(|extensions| extensions.lights.as_ref());
+    Contents {
+        animations: document.animations.iter().enumerate().take(MOST).map(name).collect(),
+        cameras: document.cameras.0,
+        lights: lights.map_or(0, |lights| lights.lights.0),
+        ..Contents::default()
+    }
 }
 
 /// The document being read, and what to call it in errors.

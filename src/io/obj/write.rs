@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::io::Write;
 
+use super::super::pictures::PictureFile;
 use super::super::rounding::{self, Written};
 use super::super::text::{NumberWriter, line_name, write_all, write_blocks};
 use super::super::{Format, Precision, WriteOptions};
@@ -71,7 +72,7 @@ pub(in crate::io) fn write(
 }
 
 /// The material library of a mesh, if it has any materials.
-pub(in crate::io) fn library(mesh: &Mesh) -> Option<Vec<u8>> {
+pub(in crate::io) fn library(mesh: &Mesh, _pictures: &[PictureFile]) -> Option<Vec<u8>> {
     let names = MaterialNames::of(mesh);
     if names.list.is_empty() {
         return None;

@@ -1,0 +1,124 @@
+//! Writing glTF and GLB.
+//!
+//! One buffer: the positions in single precision, shared by all primitives so that the surface stays closed across
+//! groups, the attributes of the same vertices, the indices, group by group, and pictures. Each group name becomes a node with
+//! a mesh, each group a primitive. Without attributes the vertices are those of the mesh; with them a vertex at a seam becomes
+//! several at one place, which readers join, or `EXT_mesh_manifold` tells.
+
+mod columns;
+mod document;
+mod frame;
+mod layout;
+mod materials;
+mod mtl;
+mod vertices;
+
+use std::io::Write;
+
+use base64::engine::general_purpose::STANDARD;
+use base64::write::EncoderWriter;
+use serde_json::{Map, Value, json};
+
+use super::super::pictures::PictureFile;
+use super::super::rounding::{Measure, Written, examined};
+use super::super::text::write_all;
+use super::super::{Format, WriteOptions, write_error};
+use crate::{Error, Mesh};
+use layout::Layout;
+
+/// Where a `.gltf` file puts what is not its JSON.
+pub(in crate::io) struct Aside<'a> {
+    /// The name of the file of the buffer, and the file.
+    pub(in crate::io) buffer: (String, &'a mut dyn Write),
+    /// The files of pictures.
+    pub(in crate::io) pictures: &'a [PictureFile],
+}
+
+/// Writes a `.gltf` file with its buffer inside or aside, or a `.glb` file.
+pub(in crate::io) fn write(
+    mesh: &Mesh,
+    format: Format,
+    output: &mut dyn Write,
+    options: &WriteOptions,
+    aside: Option<Aside<'_>>,
+) -> Result<Written, Error> {
+    if mesh.triangles.is_empty() {
+        // Neither a buffer without bytes nor a mesh without triangles is allowed, and some readers want a node.
+        let document = json!({
+            "asset": document::asset(), "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{}]
+        });
+        match format {
+            Format::Glb => write_glb_header(output, &document.to_string(), None)?,
+            _ => write_all(output, document.to_string().as_bytes())?,
+        }
+        return Ok(Written::default());
+    }
+    let mut warnings = Vec::new();
+    let pictures = aside.as_ref().map(|aside| aside.pictures);
+    let (mut layout, mut document) = document::document(mesh, pictures, options, &mut warnings)?;
+    let bytes = layout.bytes();
+    match (format, aside) {
+        (Format::Glb, _) => {
+            document.insert("buffers".to_string(), json!([{"byteLength": bytes}]));
+            write_glb_header(output, &Value::Object(document).to_string(), Some(bytes))?;
+            layout.write(output, options)?;
+        }
+        (_, Some(Aside { buffer: (name, buffer), .. })) => {
+            let uri = document::percent_encode(&name);
+            document.insert("buffers".to_string(), json!([{"byteLength": bytes, "uri": uri}]));
+            write_all(output, Value::Object(document).to_string().as_bytes())?;
+            layout.write(buffer, options)?;
+        }
+        (_, None) => write_embedded(&mut layout, document, output, options)?,
+    }
+    let frame = &layout.frame;
+    let mut written = Written::default();
+    if !frame.exact {
+        written =
+            examined(mesh, format, Measure { offset: frame.offset.to_array(), scale: frame.scale }, options)?;
+    }
+    written.warnings.splice(0..0, warnings);
+    Ok(written)
+}
+
+/// Writes a document with its buffer as base64 in it.
+fn write_embedded(
+    layout: &mut Layout<'_>,
+    document: Map<String, Value>,
+    output: &mut dyn Write,
+    options: &WriteOptions,
+) -> Result<(), Error> {
+    let rest = Value::Object(document).to_string();
+    let bytes = layout.bytes();
+    let start =
+        format!("{{\"buffers\":[{{\"byteLength\":{bytes},\"uri\":\"data:application/octet-stream;base64,");
+    write_all(output, start.as_bytes())?;
+    let mut encoder = EncoderWriter::new(&mut *output, &STANDARD);
+    layout.write(&mut encoder, options)?;
+    encoder.finish().map_err(write_error)?;
+    drop(encoder);
+    write_all(output, b"\"}],")?;
+    write_all(output, &rest.as_bytes()[1..])
+}
+
+/// The header of a GLB file, its JSON chunk, and the header of a binary chunk.
+fn write_glb_header(output: &mut dyn Write, document: &str, binary: Option<u64>) -> Result<(), Error> {
+    let padded = document.len().next_multiple_of(4);
+    let total = 20 + padded as u64 + binary.map_or(0, |bytes| 8 + bytes);
+    let Ok(total) = u32::try_from(total) else {
+        return Err(Error::TooLarge {
+            what: format!("a GLB file of {total} bytes, where 4 GiB is the limit; write PLY"),
+        });
+    };
+    let mut header = b"glTF\x02\0\0\0".to_vec();
+    header.extend(total.to_le_bytes());
+    header.extend((padded as u32).to_le_bytes());
+    header.extend(b"JSON");
+    header.extend(document.as_bytes());
+    header.resize(20 + padded, b' ');
+    if let Some(bytes) = binary {
+        header.extend((bytes as u32).to_le_bytes());
+        header.extend(b"BIN\0");
+    }
+    write_all(output, &header)
+}

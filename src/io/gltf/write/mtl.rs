@@ -1,0 +1,63 @@
+//! Materials of OBJ in words of glTF: what both can say.
+
+use serde_json::{Value, json};
+
+use super::materials::{MaterialList, channel};
+use crate::mesh::{MaterialText, TextureUse, Wrap};
+
+/// Statements that glTF has no words for are named once; these say what its plain material says in any case.
+const UNDERSTOOD: [&str; 9] = ["Kd", "d", "Tr", "map_Kd", "Ke", "Pr", "Pm", "illum", "newmtl"];
+
+/// Adds to a material what the statements of a library say beside colour and opacity.
+pub(super) fn translate(text: &MaterialText, material: &mut Value, list: &mut MaterialList<'_>) {
+    let mut textures = text.textures.iter();
+    for line in text.text.lines() {
+        let mut words = line.split_whitespace();
+        let Some(keyword) = words.next() else { continue };
+        let numbers: Vec<f32> = words.map_while(|word| word.parse().ok()).collect();
+        let surface = &mut material["pbrMetallicRoughness"];
+        match (keyword, &numbers[..]) {
+            ("Pr", &[value, ..]) => surface["roughnessFactor"] = json!(channel(value)),
+            ("Pm", &[value, ..]) => surface["metallicFactor"] = json!(channel(value)),
+            ("Ke", &[red, green, blue, ..]) if [red, green, blue] != [0.0; 3] => {
+                material["emissiveFactor"] = json!([red, green, blue].map(channel));
+            }
+            _ => {}
+        }
+        let texture = names_picture(keyword).then(|| textures.next()).flatten();
+        let place = match keyword {
+            "norm" => "normalTexture",
+            "map_Ke" => "emissiveTexture",
+            _ if UNDERSTOOD.contains(&keyword) => continue,
+            _ => {
+                if !matches!(keyword, "Ka" | "Ks" | "Ns" | "Ni" | "Tf" | "map_Ka") {
+                    list.warn(format!(
+                        "statement {keyword} of materials not written: glTF has no word for it"
+                    ));
+                }
+                continue;
+            }
+        };
+        let image = texture.and_then(|texture| texture.images.first());
+        let info = image.and_then(|image| {
+            list.texture_info(&TextureUse {
+                image: image.clone(),
+                coordinates: 0,
+                wrap: [Wrap::Repeat; 2],
+                nearest: false,
+                transform: TextureUse::UNMOVED,
+            })
+        });
+        if let Some(info) = info {
+            material[place] = info;
+            if place == "emissiveTexture" && material.get("emissiveFactor").is_none() {
+                material["emissiveFactor"] = json!([1, 1, 1]);
+            }
+        }
+    }
+}
+
+/// Whether a statement of a library names a picture.
+pub(in crate::io) fn names_picture(keyword: &str) -> bool {
+    keyword.starts_with("map_") || matches!(keyword, "bump" | "disp" | "decal" | "refl" | "norm")
+}
