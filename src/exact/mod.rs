@@ -12,6 +12,7 @@
 //! can have lost; on overflow they compare infinities or NaN and fail; either way the exact stage decides.
 
 pub(crate) mod at_hand;
+pub(crate) mod barycentric;
 mod double_double;
 mod filter;
 mod integer;

@@ -270,10 +270,7 @@ fn assemble(
     if !is_own {
         groups.select(&source);
     }
-    let mut attributes = mesh.attributes.clone();
-    if !is_own {
-        attributes::keep(&mut attributes, &source);
-    }
+    let attributes = attributes::of_pieces(mesh, &positions, &triangles, &source);
     let mut mesh = Mesh { positions, triangles, groups, attributes };
     if orient && let Some(mending) = &mut mending {
         // Which way is out shows only now that the surface is closed.

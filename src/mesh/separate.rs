@@ -1,5 +1,6 @@
 //! Solids that touch themselves, taken apart where they do.
 
+use super::attributes;
 use super::manifold::{HalfEdges, Surface, make_manifold};
 use crate::{Mesh, Solid};
 
@@ -74,6 +75,8 @@ impl Solid {
         let mut whole = Whole { mesh: self.mesh().clone(), source: (0..count).collect() };
         let half_edges = HalfEdges::of(&whole);
         make_manifold(&mut whole, &half_edges);
+        whole.mesh.attributes =
+            attributes::of_pieces(self.mesh(), &whole.mesh.positions, &whole.mesh.triangles, &whole.source);
         let mut separated = Self::from_closed_unchecked(whole.mesh);
         separated.source =
             Some(whole.source.iter().map(|&triangle| self.source_triangle(triangle)).collect());

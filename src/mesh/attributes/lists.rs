@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::{Attribute, AttributeKind};
 
 /// What a missing component of an attribute is taken for: full opacity, a tangent space that is not mirrored, or nothing.
-fn missing(kind: AttributeKind) -> f64 {
+pub(super) fn missing(kind: AttributeKind) -> f64 {
     match kind {
         AttributeKind::Colour | AttributeKind::Tangent => 1.0,
         _ => 0.0,
@@ -104,13 +104,13 @@ impl Attribute {
         if addition.components == components {
             self.values.extend_from_slice(&addition.values);
         } else {
-            self.values.extend(widened(addition, components));
+            self.values.extend(all_widened(addition, components));
         }
     }
 
     fn widen(&mut self, components: usize) {
         if self.components < components {
-            self.values = widened(self, components).collect();
+            self.values = all_widened(self, components).collect();
             self.components = components;
         }
     }
@@ -124,12 +124,16 @@ impl Attribute {
     }
 }
 
-fn widened(attribute: &Attribute, components: usize) -> impl Iterator<Item = f64> {
-    let fill = missing(attribute.kind());
-    let own = attribute.components.max(1);
-    attribute.values.chunks_exact(own).flat_map(move |value| {
-        value.iter().copied().chain(std::iter::repeat_n(fill, components.saturating_sub(own)))
-    })
+fn all_widened(attribute: &Attribute, components: usize) -> impl Iterator<Item = f64> {
+    let kind = attribute.kind();
+    let values = attribute.values.chunks_exact(attribute.components.max(1));
+    values.flat_map(move |value| widened(value, kind, components))
+}
+
+/// A value with that many components.
+pub(super) fn widened(value: &[f64], kind: AttributeKind, components: usize) -> impl Iterator<Item = f64> {
+    let fill = std::iter::repeat_n(missing(kind), components.saturating_sub(value.len()));
+    value.iter().copied().chain(fill)
 }
 
 #[cfg(test)]

@@ -1,13 +1,19 @@
 //! Attributes: what a file says of the corners of its triangles, such as texture coordinates, normals and colours.
 
+mod carry;
+mod interpolate;
 mod lists;
 mod moved;
+mod pieces;
+mod table;
 
+pub(crate) use carry::{Descent, Run, carry};
 pub(super) use lists::{append, keep, reverse, reverse_some};
 pub(crate) use moved::moved;
 pub(super) use moved::turn_corners;
+pub(super) use pieces::of_pieces;
 
-use super::{AttributeFault, MeshError};
+use super::{AttributeFault, Mesh, MeshError};
 
 /// What is wrong with the attributes of a mesh of `triangles` triangles, if anything.
 pub(super) fn check(attributes: &[Attribute], triangles: usize) -> Result<(), MeshError> {

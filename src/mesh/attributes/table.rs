@@ -1,0 +1,219 @@
+//! The table of each attribute of a new mesh: values of its sources that are still in use, then those that were made.
+
+use super::carry::{NEW, NewCorner, Plan};
+use super::interpolate::Found;
+use super::lists::{turn_over, widened};
+use super::{Attribute, AttributeKind};
+use crate::control::Limit;
+use crate::parallel::Runner;
+
+/// All attributes that some source has, in the order in which the sources have them.
+pub(super) fn attributes(plan: &Plan<'_>, runner: Runner<'_>) -> Result<Vec<Attribute>, Limit> {
+    let mut named: Vec<(&str, usize)> = Vec::new();
+    for attribute in plan.of.sources.iter().flat_map(|mesh| &mesh.attributes) {
+        match named.iter_mut().find(|(name, _)| *name == attribute.name) {
+            Some((_, components)) => *components = attribute.components.max(*components),
+            None => named.push((&attribute.name, attribute.components)),
+        }
+    }
+    runner.each(named, |(name, components)| Table::new(plan, name, components).attribute())
+}
+
+/// The rows that a source has in the table, as they are or for faces that are turned round.
+#[derive(Clone, Copy, Debug)]
+struct Rows {
+    source: usize,
+    /// Which of the source's attributes.
+    attribute: usize,
+    reversed: bool,
+    /// The first row, and how many.
+    first: u32,
+    count: u32,
+}
+
+/// An attribute of the new mesh while it is being made.
+struct Table<'a> {
+    plan: &'a Plan<'a>,
+    name: &'a str,
+    kind: AttributeKind,
+    components: usize,
+    rows: Vec<Rows>,
+    /// The number of the first value that was made.
+    made_from: u32,
+    made: Vec<f64>,
+}
+
+impl<'a> Table<'a> {
+    fn new(plan: &'a Plan<'a>, name: &'a str, components: usize) -> Self {
+        let kind = AttributeKind::of(name).unwrap_or(AttributeKind::Plain);
+        let has_sides = matches!(kind, AttributeKind::Normal | AttributeKind::Tangent);
+        let mut rows = Vec::new();
+        let mut next = 0;
+        for reversed in [false, true] {
+            for (source, mesh) in plan.of.sources.iter().enumerate() {
+                let place = mesh.attributes.iter().position(|attribute| attribute.name == name);
+                let Some(attribute) = place.filter(|_| has_sides || !reversed) else { continue };
+                let count = mesh.attributes[attribute].len() as u32;
+                rows.push(Rows { source, attribute, reversed, first: next, count });
+                next += count;
+            }
+        }
+        Self { plan, name, kind, components, rows, made_from: next, made: Vec::new() }
+    }
+
+    fn attribute(mut self) -> Attribute {
+        // 1. What was made, and its numbers.
+        let new = self.values_of_new_corners();
+        // 2. The value of each corner.
+        let mut of_corner = self.of_corners(&new);
+        // 3. What is not in use goes.
+        let count = self.made_from as usize + self.made.len() / self.components.max(1);
+        let numbers = numbers_in_use(&mut of_corner, count);
+        let values = self.values(numbers.as_deref());
+        Attribute { name: self.name.into(), components: self.components, values, of_corner }
+    }
+
+    fn rows_of(&self, source: u32, reversed: bool) -> Option<&Rows> {
+        let has_sides = matches!(self.kind, AttributeKind::Normal | AttributeKind::Tangent);
+        let reversed = reversed && has_sides;
+        self.rows.iter().find(|rows| rows.source == source as usize && rows.reversed == reversed)
+    }
+
+    /// For each new corner its value. Equal ones at a vertex are one.
+    fn values_of_new_corners(&mut self) -> Vec<u32> {
+        let mut of_new = vec![Attribute::NONE; self.plan.new.len()];
+        let mut at_vertex: (u32, Vec<u32>) = (u32::MAX, Vec::new());
+        for &corner in &self.plan.by_vertex {
+            let new = &self.plan.new[corner as usize];
+            if at_vertex.0 != new.vertex {
+                at_vertex = (new.vertex, Vec::new());
+            }
+            of_new[corner as usize] = self.value_of(new, &mut at_vertex.1);
+        }
+        of_new
+    }
+
+    /// The value of a new corner; `known` are those made for its vertex so far.
+    fn value_of(&mut self, new: &NewCorner, known: &mut Vec<u32>) -> u32 {
+        let Some(&rows) = self.rows_of(new.source, new.reversed) else { return Attribute::NONE };
+        let start = self.made.len();
+        let interpolator = &self.plan.interpolators[new.source as usize];
+        match interpolator.value(rows.attribute, new.triangle, new.place, &mut self.made) {
+            Found::Nothing => Attribute::NONE,
+            Found::Same(index) => index.saturating_add(rows.first),
+            Found::Made => {
+                if rows.reversed {
+                    turn_over(self.kind, &mut self.made[start..]);
+                }
+                let own = self.made.len() - start;
+                let fill = super::lists::missing(self.kind);
+                self.made.extend(std::iter::repeat_n(fill, self.components - own));
+                let (before, value) = self.made.split_at(start);
+                let is_equal = |&&index: &&u32| {
+                    let first = (index - self.made_from) as usize * self.components;
+                    let other = &before[first..first + self.components];
+                    other.iter().zip(value).all(|(x, y)| x.to_bits() == y.to_bits())
+                };
+                if let Some(&equal) = known.iter().find(is_equal) {
+                    self.made.truncate(start);
+                    return equal;
+                }
+                let index = self.made_from + (start / self.components) as u32;
+                known.push(index);
+                index
+            }
+        }
+    }
+
+    /// The value of each corner of the new mesh.
+    fn of_corners(&self, new: &[u32]) -> Vec<u32> {
+        let of = self.plan.of;
+        let mut of_corner = Vec::with_capacity(3 * of.triangles.len());
+        let mut taken = self.plan.taken.iter();
+        for run in of.runs {
+            let rows = self.rows_of(run.source, run.reversed);
+            let given = rows.map(|rows| (&of.sources[rows.source].attributes[rows.attribute], rows.first));
+            let shifted = |index: u32, first: u32| {
+                if index == Attribute::NONE { index } else { index.saturating_add(first) }
+            };
+            let at = |triangle: u32, corner: u32| match given {
+                Some((attribute, first)) => {
+                    let place = 3 * triangle as usize + corner as usize;
+                    shifted(attribute.of_corner[place], first)
+                }
+                None => Attribute::NONE,
+            };
+            if !run.whole {
+                for corners in taken.by_ref().take(run.count as usize) {
+                    of_corner.extend(corners.map(|corner| match corner.corner {
+                        NEW => new[corner.of as usize],
+                        k => at(corner.of, k),
+                    }));
+                }
+                continue;
+            }
+            let corners = 3 * run.triangle as usize..3 * (run.triangle + run.count) as usize;
+            match given {
+                None => of_corner.resize(of_corner.len() + corners.len(), Attribute::NONE),
+                Some((attribute, first)) if !run.reversed => {
+                    of_corner.extend(attribute.of_corner[corners].iter().map(|&index| shifted(index, first)));
+                }
+                Some((attribute, first)) => {
+                    let turned = attribute.of_corner[corners].chunks_exact(3).flat_map(|corners| {
+                        [corners[0], corners[2], corners[1]].map(|index| shifted(index, first))
+                    });
+                    of_corner.extend(turned);
+                }
+            }
+        }
+        of_corner
+    }
+
+    /// The table, or what is in use of it.
+    fn values(&self, numbers: Option<&[u32]>) -> Vec<f64> {
+        let is_used = |row: u32| numbers.is_none_or(|numbers| numbers[row as usize] != Attribute::NONE);
+        let mut values = Vec::new();
+        for rows in &self.rows {
+            let attribute = &self.plan.of.sources[rows.source].attributes[rows.attribute];
+            let is_wide = attribute.components == self.components;
+            if is_wide && !rows.reversed && numbers.is_none() {
+                values.extend_from_slice(&attribute.values);
+                continue;
+            }
+            for (_, index) in (rows.first..).zip(0..rows.count).filter(|&(row, _)| is_used(row)) {
+                let start = values.len();
+                if let Some(value) = attribute.value(index) {
+                    values.extend(widened(value, self.kind, self.components));
+                }
+                if rows.reversed {
+                    turn_over(self.kind, &mut values[start..]);
+                }
+            }
+        }
+        let made = (self.made_from..).zip(self.made.chunks_exact(self.components.max(1)));
+        made.filter(|&(row, _)| is_used(row)).for_each(|(_, value)| values.extend_from_slice(value));
+        values
+    }
+}
+
+/// Gives the rows in use numbers without gaps, in their order; `None` if all `count` are in use.
+fn numbers_in_use(of_corner: &mut [u32], count: usize) -> Option<Vec<u32>> {
+    let mut numbers = vec![Attribute::NONE; count];
+    for &index in of_corner.iter() {
+        if let Some(number) = numbers.get_mut(index as usize) {
+            *number = 0;
+        }
+    }
+    let mut next = 0;
+    for number in numbers.iter_mut().filter(|number| **number == 0) {
+        *number = next;
+        next += 1;
+    }
+    if next as usize == count {
+        return None;
+    }
+    for index in of_corner.iter_mut().filter(|index| **index != Attribute::NONE) {
+        *index = numbers.get(*index as usize).copied().unwrap_or(Attribute::NONE);
+    }
+    Some(numbers)
+}
