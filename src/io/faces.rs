@@ -130,19 +130,40 @@ impl FaceList {
         of_triangle.into_iter().chain(of_polygon).min().or(left_out)
     }
 
+    /// How many faces there are.
+    pub(super) fn len(&self) -> usize {
+        self.triangles.len() + self.polygons.len()
+    }
+
     /// The triangles, in the order of the faces, with every index in range; and for each of `places` (in order) how
     /// many triangles come before it. Triangles with a repeated corner are dropped: their edges cancel.
     pub(super) fn into_triangles(
-        mut self,
+        self,
         positions: &[[f64; 3]],
         places: &[FacePlace],
         notes: &mut Notes,
         control: &Control,
     ) -> Result<(Vec<[u32; 3]>, Vec<usize>), Error> {
+        self.into_triangles_of(positions, places, notes, control, &mut None)
+    }
+
+    /// The same; `of`, if it is there, gets the number of the face that each triangle is of.
+    pub(super) fn into_triangles_of(
+        mut self,
+        positions: &[[f64; 3]],
+        places: &[FacePlace],
+        notes: &mut Notes,
+        control: &Control,
+        of: &mut Option<Vec<u32>>,
+    ) -> Result<(Vec<[u32; 3]>, Vec<usize>), Error> {
         if self.polygons.is_empty() {
+            if let Some(of) = of.as_mut() {
+                of.extend(0..self.triangles.len() as u32);
+            }
             let offsets = places.iter().map(|place| place.triangles as usize).collect();
             return Ok((self.triangles, offsets));
         }
+        let mut face = 0;
         // A polygon of n corners gives n - 2 triangles.
         let count = self.triangles.len() + self.corners.len() - 2 * self.polygons.len();
         let mut triangles = Vec::with_capacity(count);
@@ -158,6 +179,10 @@ impl FaceList {
             }
             let mut copy_until = |end: u32, triangles: &mut Vec<[u32; 3]>| {
                 triangles.extend_from_slice(&self.triangles[taken..end as usize]);
+                if let Some(of) = of.as_mut() {
+                    of.extend(face..face + (end - taken as u32));
+                }
+                face += end - taken as u32;
                 taken = end as usize;
             };
             while let Some(place) = places.next_if(|place| place.polygons as usize == i) {
@@ -180,6 +205,10 @@ impl FaceList {
                     }
                 }
                 triangles.truncate(kept);
+                if let Some(of) = of.as_mut() {
+                    of.resize(kept, face);
+                }
+                face += 1;
             }
         }
         notes.add("triangle with a repeated corner dropped", count - triangles.len());

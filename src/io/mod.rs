@@ -24,6 +24,7 @@
 //! there before memory is taken for it.
 
 mod beside;
+mod color;
 mod contents;
 mod detect;
 mod error;

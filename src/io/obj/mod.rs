@@ -4,6 +4,7 @@
 //! their vertices and faces put together in order. (The crate `tobj` splits a file into one vertex list per group,
 //! fans concave polygons and reads about 75 MB/s; it serves as the oracle in the tests.)
 
+mod corners;
 mod groups;
 mod library;
 mod locate;
@@ -20,7 +21,7 @@ use super::{Format, ReadOptions, malformed};
 use crate::parallel;
 use crate::{Error, Mesh};
 use groups::Groups;
-use parse::{Chunk, Fault};
+use parse::{Chunk, Fault, NO_INDEX, Smoothing};
 
 /// Chunks smaller than this are not worth a thread.
 const SMALLEST_CHUNK: usize = 1 << 20;
@@ -56,20 +57,32 @@ fn read_in_chunks(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
         return Err(index_error(Format::Obj, place, index, vertices));
     }
 
+    let counts = chunks.iter().map(|chunk| chunk.positions.len()).collect::<Vec<_>>();
+    let colors =
+        corners::join_colors(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.colors)).zip(counts));
+    let texture = join(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.texture)).collect());
+    let normals = join(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.normals)).collect());
+    let label_counts = [texture.len(), normals.len()];
+    let smoothing = smoothing(&chunks);
     let positions = join(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.positions)).collect());
     let resolved = parallel::map(chunks, |chunk| -> Result<_, Error> {
         let mut notes = Notes::default();
         let places: Vec<_> = chunk.changes.iter().map(|change| change.at).collect();
+        let mut faces = (!chunk.labels.corners.is_empty()).then(Vec::new);
         let (triangles, offsets) =
-            chunk.faces.into_triangles(&positions, &places, &mut notes, &options.control)?;
-        Ok((triangles, offsets, chunk.changes, chunk.libraries, notes))
+            chunk.faces.into_triangles_of(&positions, &places, &mut notes, &options.control, &mut faces)?;
+        let faces = faces.unwrap_or_default();
+        let corners = corners::of_triangles(&triangles, &faces, &chunk.labels, label_counts);
+        notes.add("texture coordinates or normal that a face names are not there", corners.beyond);
+        Ok((triangles, offsets, chunk.changes, chunk.libraries, notes, corners))
     });
 
     let mut groups = Groups::default();
     let mut parts = Vec::with_capacity(resolved.len());
+    let (mut of_texture, mut of_normals) = (Vec::new(), Vec::new());
     let mut before = 0;
     for part in resolved {
-        let (triangles, offsets, changes, libraries, part_notes) = part?;
+        let (triangles, offsets, changes, libraries, part_notes, corners) = part?;
         for (change, offset) in changes.iter().zip(offsets) {
             groups.change(change, before + offset);
         }
@@ -81,13 +94,37 @@ fn read_in_chunks(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
             return Err(too_large(Format::Obj, "triangles"));
         }
         notes.append(part_notes);
+        for (indices, of_chunk) in [(&mut of_texture, corners.texture), (&mut of_normals, corners.normals)] {
+            if !of_chunk.is_empty() {
+                indices.resize(3 * (before - triangles.len()), NO_INDEX);
+                indices.extend(of_chunk);
+            }
+        }
         parts.push(triangles);
     }
     let groups = groups.finish(before, bytes.len().max(1 << 16), &mut notes)?;
     let mut mesh = Mesh::new(positions, join(parts));
     mesh.groups = groups;
+    let (texture, normals) = ((texture, of_texture), (normals, of_normals));
+    mesh.attributes = corners::attributes(&mesh.triangles, texture, normals, &colors, &mut notes);
+    if smoothing == Smoothing::Several && mesh.attributes.iter().all(|attribute| attribute.name != "NORMAL") {
+        notes.say("smoothing groups are not kept");
+    }
     check_finite(&mut mesh, Format::Obj, &mut notes, |vertex| locate::vertex(bytes, vertex))?;
     Ok((mesh, notes.into_warnings(|offset| line_place(bytes, offset))))
+}
+
+/// The smoothing groups of all chunks.
+fn smoothing<'a>(chunks: &[Chunk<'a>]) -> Smoothing<'a> {
+    let mut all = Smoothing::None;
+    for chunk in chunks {
+        match chunk.smoothing {
+            Smoothing::One(name) => all.add(name),
+            Smoothing::Several => return Smoothing::Several,
+            Smoothing::None => {}
+        }
+    }
+    all
 }
 
 /// The file in chunks, parsed.

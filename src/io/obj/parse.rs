@@ -13,12 +13,54 @@ use crate::control::{Control, Limit};
 #[derive(Debug, Default)]
 pub(super) struct Chunk<'a> {
     pub(super) positions: Vec<[f64; 3]>,
+    /// Colours of vertices, as the file has them; shorter than `positions` if the last ones have none.
+    pub(super) colors: Vec<[f64; 3]>,
+    pub(super) texture: Vec<[f64; 2]>,
+    pub(super) normals: Vec<[f64; 3]>,
+    pub(super) labels: Labels,
+    /// Smoothing groups beside the first one, and off.
+    pub(super) smoothing: Smoothing<'a>,
     pub(super) faces: FaceList,
     pub(super) changes: Vec<Change<'a>>,
     pub(super) libraries: Vec<&'a [u8]>,
     pub(super) notes: Notes,
     /// Whether there were lines that are no statements.
     pub(super) strange: bool,
+}
+
+/// What stands for no index and for no colour.
+pub(super) const NO_INDEX: u32 = u32::MAX;
+pub(super) const NO_COLOR: [f64; 3] = [f64::NAN; 3];
+
+/// The texture coordinates and normals that faces name: for each corner its vertex, its texture coordinates and its normal.
+#[derive(Debug, Default)]
+pub(super) struct Labels {
+    pub(super) corners: Vec<[u32; 3]>,
+    /// The end of each face's corners; faces after the last one have none.
+    pub(super) ends: Vec<u32>,
+}
+
+/// The smoothing groups of a chunk: whether there are several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Smoothing<'a> {
+    #[default]
+    None,
+    One(&'a [u8]),
+    Several,
+}
+
+impl<'a> Smoothing<'a> {
+    /// One more; "off" and 0 are none.
+    pub(super) fn add(&mut self, name: &'a [u8]) {
+        if matches!(name, b"off" | b"0" | b"") {
+            return;
+        }
+        *self = match *self {
+            Self::None => Self::One(name),
+            Self::One(known) if known == name => Self::One(known),
+            _ => Self::Several,
+        };
+    }
 }
 
 /// A change of the group or material of the faces that follow.
@@ -57,6 +99,14 @@ impl From<Limit> for Fault {
     }
 }
 
+/// The corners of a face while it is parsed.
+#[derive(Debug, Default)]
+struct Corners {
+    vertices: Vec<u32>,
+    /// Texture coordinates and normal, shorter than `vertices` if the last ones have none.
+    labels: Vec<[u32; 2]>,
+}
+
 /// How many bytes are parsed between two looks at the limits.
 const CHECK_INTERVAL: usize = 1 << 16;
 
@@ -69,7 +119,7 @@ impl<'a> Chunk<'a> {
         if first && bytes.starts_with(b"\xef\xbb\xbf") {
             scanner.advance(3);
         }
-        let mut corners = Vec::new();
+        let mut corners = Corners::default();
         while scanner.offset() < range.end {
             control.check()?;
             let pause = scanner.offset().saturating_add(CHECK_INTERVAL).min(range.end);
@@ -86,7 +136,7 @@ impl<'a> Chunk<'a> {
         bytes: &'a [u8],
         scanner: &mut Scanner<'a>,
         first: bool,
-        corners: &mut Vec<u32>,
+        corners: &mut Corners,
     ) -> Result<(), Fault> {
         scanner.skip_blanks();
         match scanner.rest() {
@@ -98,7 +148,17 @@ impl<'a> Chunk<'a> {
                 scanner.advance(2);
                 self.face(bytes, scanner, first, corners)?;
             }
-            [b'v', b't' | b'n' | b'p', b' ' | b'\t', ..] => scanner.skip_statement(),
+            [b'v', b't', b' ' | b'\t', ..] => {
+                scanner.advance(3);
+                let value = self.directions::<2>(scanner, 1);
+                self.texture.push(value);
+            }
+            [b'v', b'n', b' ' | b'\t', ..] => {
+                scanner.advance(3);
+                let value = self.directions::<3>(scanner, 3);
+                self.normals.push(value);
+            }
+            [b'v', b'p', b' ' | b'\t', ..] => scanner.skip_statement(),
             [b'\n' | b'\r', ..] => scanner.advance(1),
             [b'#', ..] => scanner.skip_line(),
             [] => {}
@@ -136,6 +196,7 @@ impl<'a> Chunk<'a> {
         let start = scanner.offset();
         let (mut count, mut only) = (0, 1.0);
         let mut finite = true;
+        let mut values = [0.0; 4];
         loop {
             scanner.skip_blanks();
             if scanner.at_line_end() {
@@ -145,6 +206,9 @@ impl<'a> Chunk<'a> {
                 Ok(value) => {
                     finite &= value.is_finite();
                     only = value;
+                    if let Some(place) = values.get_mut(count) {
+                        *place = value;
+                    }
                 }
                 Err(_) => {
                     self.notes.at(format!("{} after the coordinates ignored", quote(scanner.word())), start);
@@ -155,6 +219,11 @@ impl<'a> Chunk<'a> {
         }
         if count >= 3 && !finite {
             self.notes.at("vertex colour that is not a number ignored", start);
+        } else if count == 3 || count == 4 {
+            // With four numbers the first is a weight.
+            let [red, green, blue] = if count == 3 { [0, 1, 2] } else { [1, 2, 3] }.map(|i| values[i]);
+            self.colors.resize(self.positions.len() - 1, NO_COLOR);
+            self.colors.push([red, green, blue]);
         } else if count == 1 && only != 1.0 {
             self.notes.at("vertex weight other than 1 ignored", start);
         }
@@ -167,10 +236,11 @@ impl<'a> Chunk<'a> {
         bytes: &'a [u8],
         scanner: &mut Scanner<'a>,
         first: bool,
-        corners: &mut Vec<u32>,
+        corners: &mut Corners,
     ) -> Result<(), Fault> {
         let start = scanner.offset();
-        corners.clear();
+        corners.vertices.clear();
+        corners.labels.clear();
         loop {
             scanner.skip_blanks();
             let index = match scanner.digits() {
@@ -182,26 +252,79 @@ impl<'a> Chunk<'a> {
                 None => return Err(scanner.expected(Format::Obj, "a vertex index").into()),
             };
             if scanner.peek() == Some(b'/') {
-                while matches!(scanner.peek(), Some(b'/' | b'-' | b'0'..=b'9')) {
+                scanner.advance(1);
+                let texture = self.label(scanner, first, self.texture.len())?;
+                let mut normal = NO_INDEX;
+                if scanner.peek() == Some(b'/') {
                     scanner.advance(1);
+                    normal = self.label(scanner, first, self.normals.len())?;
                 }
+                corners.labels.resize(corners.vertices.len(), [NO_INDEX; 2]);
+                corners.labels.push([texture, normal]);
             }
             if !matches!(scanner.peek(), None | Some(b' ' | b'\t' | b'\n' | b'\r' | b'\\' | b'#')) {
                 return Err(scanner.expected(Format::Obj, "a blank or the line's end after an index").into());
             }
-            corners.push(index);
+            corners.vertices.push(index);
         }
-        if !self.faces.push(corners) {
-            let what = match corners.len() {
+        let face = self.faces.len();
+        if !self.faces.push(&corners.vertices) {
+            let what = match corners.vertices.len() {
                 0..3 => "face with fewer than three corners ignored",
                 _ => "face with fewer than three different corners dropped",
             };
             self.notes.at(what, start);
         } else if !self.faces.has_room() {
             return Err(too_large(Format::Obj, "faces").into());
+        } else if !corners.labels.is_empty() {
+            corners.labels.resize(corners.vertices.len(), [NO_INDEX; 2]);
+            self.labels.ends.resize(face, self.labels.corners.len() as u32);
+            let labels = corners.vertices.iter().zip(&corners.labels);
+            self.labels.corners.extend(labels.map(|(&vertex, &[texture, normal])| [vertex, texture, normal]));
+            self.labels.ends.push(self.labels.corners.len() as u32);
         }
         scanner.skip_line();
         Ok(())
+    }
+
+    /// The index of texture coordinates or a normal at a corner, of which `known` come before; none where there is no number.
+    #[inline(always)]
+    fn label(&self, scanner: &mut Scanner<'a>, first: bool, known: usize) -> Result<u32, Fault> {
+        match scanner.digits() {
+            // What names none that there is is found when all are read.
+            Some(index) => {
+                Ok(index.checked_sub(1).map_or(NO_INDEX, |index| index.min(u64::from(NO_INDEX)) as u32))
+            }
+            None if scanner.peek() != Some(b'-') => Ok(NO_INDEX),
+            None if !first => Err(Fault::Relative),
+            None => {
+                scanner.advance(1);
+                let back = scanner.digits().unwrap_or(0);
+                let index = (known as u64).checked_sub(back).filter(|_| back > 0);
+                Ok(index.map_or(NO_INDEX, |index| index.min(u64::from(NO_INDEX)) as u32))
+            }
+        }
+    }
+
+    /// The numbers of texture coordinates or a normal, of which `needed` must be there; zeros for what is no number.
+    #[inline(always)]
+    fn directions<const N: usize>(&mut self, scanner: &mut Scanner<'a>, needed: usize) -> [f64; N] {
+        let start = scanner.offset();
+        let mut values = [0.0; N];
+        for (i, value) in values.iter_mut().enumerate() {
+            scanner.skip_blanks();
+            match scanner.float() {
+                Ok(number) if number.is_finite() => *value = number,
+                _ => {
+                    if i < needed || !scanner.at_line_end() {
+                        self.notes.at("texture coordinates or normal that are no numbers taken for 0", start);
+                    }
+                    break;
+                }
+            }
+        }
+        scanner.skip_statement();
+        values
     }
 
     /// An index counted backwards from the last vertex so far.
@@ -253,10 +376,13 @@ impl<'a> Chunk<'a> {
             b"p" => self.notes.at("point element ignored", start),
             b"l" => self.notes.at("line element ignored", start),
             b"curv" | b"curv2" | b"surf" => self.notes.at("free-form curve or surface ignored", start),
-            b"s" | b"vt" | b"vn" | b"vp" | b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod"
-            | b"usemap" | b"maplib" | b"shadow_obj" | b"trace_obj" | b"cstype" | b"deg" | b"bmat"
-            | b"step" | b"parm" | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"ctech"
-            | b"stech" => {}
+            b"s" => {
+                self.smoothing.add(scanner.line());
+                return Ok(());
+            }
+            b"vt" | b"vn" | b"vp" | b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap"
+            | b"maplib" | b"shadow_obj" | b"trace_obj" | b"cstype" | b"deg" | b"bmat" | b"step" | b"parm"
+            | b"trim" | b"hole" | b"scrv" | b"sp" | b"end" | b"con" | b"ctech" | b"stech" => {}
             _ => {
                 self.strange = true;
                 self.notes.at(format!("statement {} not understood and ignored", quote(word)), start);
