@@ -3,11 +3,13 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use super::super::ReadOptions;
 use super::super::notes::Notes;
 use super::super::scan::{decode, quote};
 use super::library;
 use super::parse::{Change, Kind};
-use crate::{Error, FaceGroup, FaceGroups, Material};
+use super::pictures::MaterialMaker;
+use crate::{Error, FaceGroup, FaceGroups};
 
 /// The material of faces without one, after faces that have one: OBJ has no statement for it. Blender's word.
 pub(super) const NO_MATERIAL: &str = "(null)";
@@ -77,6 +79,7 @@ impl<'a> Groups<'a> {
     pub(super) fn finish(
         self,
         triangles: usize,
+        options: &ReadOptions,
         mut room: usize,
         notes: &mut Notes,
     ) -> Result<FaceGroups, Error> {
@@ -92,6 +95,7 @@ impl<'a> Groups<'a> {
         // Groups without a triangle are left out; the others are numbered as they first occur.
         let mut numbers = vec![u32::MAX; self.keys.len()];
         let mut missing: Vec<&[u8]> = Vec::new();
+        let mut maker = MaterialMaker::new(&self.materials, options);
         for &(start, end, key) in &runs {
             let number = &mut numbers[key as usize];
             if *number == u32::MAX {
@@ -103,15 +107,14 @@ impl<'a> Groups<'a> {
                            the file"
                         .to_string(),
                 })?;
-                let material = (!key.material.is_empty()).then(|| {
-                    let name = decode(key.material);
-                    let known = self.materials.get(&name);
-                    if known.is_none() && !missing.contains(&key.material) && missing.len() < 4 {
+                let mut material = None;
+                if !key.material.is_empty() {
+                    let (made, known) = maker.material(decode(key.material), notes)?;
+                    if !known && !missing.contains(&key.material) && missing.len() < 4 {
                         missing.push(key.material);
                     }
-                    let base_color = library::base_color(known.and_then(Option::as_deref));
-                    Material::plain(name, base_color)
-                });
+                    material = Some(made);
+                }
                 groups.list.push(FaceGroup { name: name_of(key), material });
             }
             if start == 0 {

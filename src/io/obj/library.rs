@@ -20,7 +20,15 @@ const BATCH: usize = 16 << 10;
 const MOST_STATEMENTS: usize = 256;
 
 /// The materials of libraries by name; `None` for one of which nothing but the name is known.
-pub(super) type Materials = HashMap<String, Option<Box<tobj::Material>>>;
+pub(super) type Materials = HashMap<String, Option<Box<Known>>>;
+
+/// What a library says about a material.
+#[derive(Debug, PartialEq)]
+pub(super) struct Known {
+    pub(super) base_color: [f32; 4],
+    /// Its statements, one a line.
+    pub(super) text: String,
+}
 
 /// At most this many statements, and names in one, are followed.
 pub(super) const MOST: usize = 64;
@@ -68,15 +76,19 @@ pub(super) fn read(names: &[u8], folder: Option<&Path>, materials: &mut Material
 fn parse(bytes: &[u8], materials: &mut Materials, notes: &mut Notes) {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let mut text = String::new();
+    // The statements of each material in the text, as the library has them.
+    let mut said: Vec<String> = Vec::new();
     let (mut strange, mut further, mut statements) = (0, 0, 0);
     for line in bytes.split(|byte| matches!(byte, b'\n' | b'\r')) {
         let line = decode(line);
         let line = line.trim();
-        if line.split_whitespace().next() == Some("newmtl") {
+        let is_new = line.split_whitespace().next() == Some("newmtl");
+        if is_new {
             statements = 0;
             if text.len() >= BATCH {
-                load(&std::mem::take(&mut text), materials, notes);
+                load(&std::mem::take(&mut text), std::mem::take(&mut said), materials, notes);
             }
+            said.push(String::new());
         }
         if line.is_empty() || line.starts_with('#') {
             continue;
@@ -84,14 +96,20 @@ fn parse(bytes: &[u8], materials: &mut Materials, notes: &mut Notes) {
         statements += 1;
         if statements > MOST_STATEMENTS {
             further += 1;
-        } else if let Some(line) = readable(line) {
+            continue;
+        }
+        if let Some(said) = said.last_mut().filter(|_| !is_new) {
+            said.push_str(line);
+            said.push('\n');
+        }
+        if let Some(line) = readable(line) {
             text.push_str(&line);
             text.push('\n');
         } else if matches!(line.split_whitespace().next(), Some("Kd" | "d" | "Tr")) {
             strange += 1;
         }
     }
-    load(&text, materials, notes);
+    load(&text, said, materials, notes);
     notes.add("colour in a material library not understood", strange);
     notes.add("statement of a material after its first 256 ignored", further);
 }
@@ -123,39 +141,25 @@ fn readable(line: &str) -> Option<Cow<'_, str>> {
     }
 }
 
-/// Adds the materials of a text to those known.
-fn load(text: &str, materials: &mut Materials, notes: &mut Notes) {
+/// Adds the materials of a text to those known; `said` are the statements of each.
+fn load(text: &str, said: Vec<String>, materials: &mut Materials, notes: &mut Notes) {
     let Ok((list, _)) = tobj::load_mtl_buf(&mut text.as_bytes()) else {
         notes.add("part of a material library not understood", 1);
         return;
     };
+    let mut said = if list.len() == said.len() { said } else { Vec::new() }.into_iter();
     for mut material in list {
         let name = std::mem::take(&mut material.name);
-        materials.entry(name).or_insert_with(|| (!is_plain(&material)).then(|| Box::new(material)));
+        let text = said.next().unwrap_or_default();
+        materials.entry(name).or_insert_with(|| {
+            let base_color = base_color(Some(&material));
+            (base_color != [1.0; 4] || !text.is_empty()).then(|| Box::new(Known { base_color, text }))
+        });
     }
 }
 
-/// Whether nothing but the name is known of a material.
-fn is_plain(material: &tobj::Material) -> bool {
-    let tobj::Material { ambient, diffuse, specular, emissive, .. } = material;
-    let numbers = [material.shininess, material.dissolve, material.optical_density];
-    let textures = [
-        &material.ambient_texture,
-        &material.diffuse_texture,
-        &material.specular_texture,
-        &material.normal_texture,
-        &material.shininess_texture,
-        &material.dissolve_texture,
-    ];
-    [ambient, diffuse, specular, emissive].iter().all(|color| color.is_none())
-        && numbers.iter().all(Option::is_none)
-        && textures.iter().all(|texture| texture.is_none())
-        && material.illumination_model.is_none()
-        && material.unknown_param.is_empty()
-}
-
 /// The colour and opacity of a material, each brought into 0..=1; white and opaque where the library says nothing.
-pub(super) fn base_color(material: Option<&tobj::Material>) -> [f32; 4] {
+fn base_color(material: Option<&tobj::Material>) -> [f32; 4] {
     let channel = |value: f64| value.clamp(0.0, 1.0) as f32;
     let [red, green, blue] = material.and_then(|material| material.diffuse).unwrap_or([1.0; 3]).map(channel);
     [red, green, blue, channel(material.and_then(|material| material.dissolve).unwrap_or(1.0))]
@@ -176,7 +180,7 @@ mod tests {
         let text = b"# library\r\nnewmtl red paint\r\n\tKd 1 0.5 0\r\nd 0.25\r\n\r\nnewmtl glass\nTr 0.75\nKd 2 nan 0\n\
             Kd 0.5\nnewmtl red paint\nKd 0 0 0\nmap_Kd a.png\nnewmtl caf\xe9\nKd spectral file.rfl\nnewmtl max\nTr 1";
         let (materials, warnings) = parsed(text);
-        let color = |name: &str| base_color(materials[name].as_deref());
+        let color = |name: &str| materials[name].as_ref().map_or([1.0; 4], |known| known.base_color);
         assert_eq!(color("red paint"), [1.0, 0.5, 0.0, 0.25]);
         assert_eq!(color("glass"), [0.5, 0.5, 0.5, 0.25]);
         assert_eq!(color("max"), [1.0; 4]);
@@ -190,10 +194,7 @@ mod tests {
             b"\xef\xbb\xbfnewmtl a\nmap_Kd -s 2 2 1 my wood.png\nPr 0.25\nPm 1\nnorm n.png\nKe 0 0 1\n";
         let (materials, warnings) = parsed(text);
         let material = materials["a"].as_deref().unwrap();
-        assert_eq!(material.diffuse_texture.as_deref(), Some("-s 2 2 1 my wood.png"));
-        assert_eq!(material.unknown_param["Pr"], "0.25");
-        assert_eq!(material.unknown_param["norm"], "n.png");
-        assert_eq!(material.emissive, Some([0.0, 0.0, 1.0]));
+        assert_eq!(material.text, "map_Kd -s 2 2 1 my wood.png\nPr 0.25\nPm 1\nnorm n.png\nKe 0 0 1\n");
         assert!(warnings.is_empty(), "{warnings:?}");
     }
 

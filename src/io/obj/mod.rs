@@ -6,12 +6,16 @@
 
 mod corners;
 mod groups;
+mod labels;
 mod library;
 mod locate;
+mod mtl;
 mod parse;
+mod pictures;
 mod write;
 
-pub(super) use write::{library, write};
+pub(super) use mtl::library;
+pub(super) use write::write;
 
 use super::faces::{index_error, too_large};
 use super::finish::check_finite;
@@ -102,7 +106,7 @@ fn read_in_chunks(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
         }
         parts.push(triangles);
     }
-    let groups = groups.finish(before, bytes.len().max(1 << 16), &mut notes)?;
+    let groups = groups.finish(before, options, bytes.len().max(1 << 16), &mut notes)?;
     let mut mesh = Mesh::new(positions, join(parts));
     mesh.groups = groups;
     let (texture, normals) = ((texture, of_texture), (normals, of_normals));

@@ -1,14 +1,14 @@
-//! Writing OBJ, and the material library beside it.
+//! Writing OBJ.
 
-use std::collections::HashMap;
 use std::io::Write;
 
-use super::super::pictures::PictureFile;
 use super::super::rounding::{self, Written};
 use super::super::text::{NumberWriter, line_name, write_all, write_blocks};
 use super::super::{Format, Precision, WriteOptions};
 use super::groups::NO_MATERIAL;
-use crate::{Error, Material, Mesh};
+use super::labels::Labels;
+use super::mtl::MaterialNames;
+use crate::{Error, Mesh};
 
 /// Writes vertices, then faces with `g` and `usemtl` where they change.
 pub(in crate::io) fn write(
@@ -27,14 +27,20 @@ pub(in crate::io) fn write(
     }
     write_all(output, header.as_bytes())?;
 
+    let labels = Labels::of(mesh);
     write_blocks(output, mesh.positions.len(), &options.control, |range, text| {
         let mut numbers = NumberWriter::new(options.precision);
-        for &position in &mesh.positions[range] {
+        for vertex in range {
             text.extend_from_slice(b"v ");
-            numbers.point(text, position);
+            numbers.point(text, mesh.positions[vertex]);
+            if let Some(color) = labels.color(vertex) {
+                text.push(b' ');
+                numbers.point(text, color);
+            }
             text.push(b'\n');
         }
     })?;
+    labels.write_tables(output, options)?;
 
     let groups = &mesh.groups;
     let group_names: Vec<String> = groups.list.iter().map(|group| line_name(&group.name)).collect();
@@ -61,68 +67,14 @@ pub(in crate::io) fn write(
                 }
             }
             text.push(b'f');
-            for corner in mesh.triangles[triangle] {
+            for (k, corner) in mesh.triangles[triangle].into_iter().enumerate() {
                 text.push(b' ');
                 numbers.integer(text, u64::from(corner) + 1);
+                labels.write_corner(3 * triangle + k, &mut numbers, text);
             }
             text.push(b'\n');
         }
     })?;
+    written.warnings.splice(0..0, labels.lost());
     Ok(written)
-}
-
-/// The material library of a mesh, if it has any materials.
-pub(in crate::io) fn library(mesh: &Mesh, _pictures: &[PictureFile]) -> Option<Vec<u8>> {
-    let names = MaterialNames::of(mesh);
-    if names.list.is_empty() {
-        return None;
-    }
-    let mut text = Vec::new();
-    let mut numbers = NumberWriter::new(Precision::Single);
-    for (name, color) in &names.list {
-        text.extend_from_slice(format!("newmtl {name}\nKd ").as_bytes());
-        numbers.point(&mut text, [color[0], color[1], color[2]].map(f64::from));
-        text.extend_from_slice(b"\nd ");
-        numbers.float(&mut text, f64::from(color[3]));
-        text.push(b'\n');
-    }
-    Some(text)
-}
-
-/// Names for the materials of a mesh: different for different materials, though their own names may be equal.
-struct MaterialNames {
-    list: Vec<(String, [f32; 4])>,
-    of_group: Vec<Option<String>>,
-}
-
-impl MaterialNames {
-    fn of(mesh: &Mesh) -> Self {
-        let mut names = Self { list: Vec::new(), of_group: Vec::new() };
-        let mut known: HashMap<(&str, [u32; 4]), String> = HashMap::new();
-        let mut taken: HashMap<String, usize> = HashMap::new();
-        for group in &mesh.groups.list {
-            let Some(Material { name, base_color, .. }) = &group.material else {
-                names.of_group.push(None);
-                continue;
-            };
-            let color = base_color.map(|channel| if channel.is_finite() { channel } else { 1.0 });
-            let unique = known.entry((name, color.map(f32::to_bits))).or_insert_with(|| {
-                let mut base = line_name(name);
-                if base.is_empty() || base == NO_MATERIAL {
-                    base = "material".to_string();
-                }
-                let mut unique = base.clone();
-                while taken.contains_key(&unique) {
-                    let number = taken.entry(base.clone()).or_insert(1);
-                    *number += 1;
-                    unique = format!("{base}.{number}");
-                }
-                taken.insert(unique.clone(), 1);
-                names.list.push((unique.clone(), color));
-                unique
-            });
-            names.of_group.push(Some(unique.clone()));
-        }
-        names
-    }
 }

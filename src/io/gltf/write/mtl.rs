@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::super::super::mtl::MapStatement;
 use super::materials::{MaterialList, channel};
 use crate::mesh::{MaterialText, TextureUse, Wrap};
 
@@ -24,7 +25,7 @@ pub(super) fn translate(text: &MaterialText, material: &mut Value, list: &mut Ma
             }
             _ => {}
         }
-        let texture = names_picture(keyword).then(|| textures.next()).flatten();
+        let texture = MapStatement::parse(line).and_then(|_| textures.next());
         let place = match keyword {
             "norm" => "normalTexture",
             "map_Ke" => "emissiveTexture",
@@ -55,9 +56,4 @@ pub(super) fn translate(text: &MaterialText, material: &mut Value, list: &mut Ma
             }
         }
     }
-}
-
-/// Whether a statement of a library names a picture.
-pub(in crate::io) fn names_picture(keyword: &str) -> bool {
-    keyword.starts_with("map_") || matches!(keyword, "bump" | "disp" | "decal" | "refl" | "norm")
 }

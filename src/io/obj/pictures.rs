@@ -1,0 +1,112 @@
+//! Materials of libraries with their pictures, which are read, not decoded.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::super::ReadOptions;
+use super::super::beside::read_beside;
+use super::super::mtl::{MapOptions, MapStatement};
+use super::super::notes::Notes;
+use super::super::scan::quote;
+use super::library::{Known, Materials};
+use crate::Error;
+use crate::control::Reservation;
+use crate::mesh::{
+    Image, Material, MaterialLanguage, MaterialText, Texture, TextureMatrix, TextureUse, Wrap,
+};
+
+/// Larger pictures are not read, bytes.
+const LARGEST_PICTURE: u64 = 1 << 30;
+
+/// Pictures of one model that are read. Each costs a file opened.
+const MOST_PICTURES: usize = 4096;
+
+/// Materials as they are shown, each made once.
+pub(super) struct MaterialMaker<'a> {
+    known: &'a Materials,
+    options: &'a ReadOptions,
+    made: HashMap<String, Material>,
+    pictures: HashMap<String, Arc<Image>>,
+    reserved: Vec<Reservation>,
+}
+
+impl<'a> MaterialMaker<'a> {
+    pub(super) fn new(known: &'a Materials, options: &'a ReadOptions) -> Self {
+        Self { known, options, made: HashMap::new(), pictures: HashMap::new(), reserved: Vec::new() }
+    }
+
+    /// The material of a name, and whether a library has it.
+    pub(super) fn material(&mut self, name: String, notes: &mut Notes) -> Result<(Material, bool), Error> {
+        let known = self.known.get(&name);
+        if let Some(made) = self.made.get(&name) {
+            return Ok((made.clone(), known.is_some()));
+        }
+        let material = match known.and_then(Option::as_deref) {
+            None => Material::plain(name.clone(), [1.0; 4]),
+            Some(said) => self.described(name.clone(), said, notes)?,
+        };
+        self.made.insert(name, material.clone());
+        Ok((material, known.is_some()))
+    }
+
+    fn described(&mut self, name: String, said: &Known, notes: &mut Notes) -> Result<Material, Error> {
+        let mut material = Material::plain(name, said.base_color);
+        let mut textures = Vec::new();
+        for map in said.text.lines().filter_map(MapStatement::parse) {
+            let image = self.picture(map.file, notes)?;
+            if map.keyword == "map_Kd" && material.base_color_texture.is_none() {
+                material.base_color_texture = Some(texture_use(Arc::clone(&image), &map.how));
+            }
+            textures.push(Arc::new(Texture { text: map.file.to_string(), images: vec![image] }));
+        }
+        let text = said.text.clone();
+        if !text.is_empty() {
+            material.text = Some(Arc::new(MaterialText { language: MaterialLanguage::Mtl, text, textures }));
+        }
+        Ok(material)
+    }
+
+    /// The picture in a file, read once; without bytes, with a note, if it cannot be.
+    fn picture(&mut self, file: &str, notes: &mut Notes) -> Result<Arc<Image>, Error> {
+        if let Some(known) = self.pictures.get(file) {
+            return Ok(Arc::clone(known));
+        }
+        let name = file.replace('\\', "/");
+        let last = name.rsplit('/').next().unwrap_or_default().to_string();
+        let read = match &self.options.folder {
+            None => Err("the file's folder is not known".to_string()),
+            Some(_) if self.pictures.len() >= MOST_PICTURES => Err("there are too many".to_string()),
+            // A name with the folders of another computer means the picture that lies beside.
+            Some(folder) => read_picture(folder, &name)
+                .map(|bytes| (name.clone(), bytes))
+                .or_else(|reason| read_picture(folder, &last).map(|bytes| (last, bytes)).map_err(|_| reason)),
+        };
+        let image = match read {
+            Ok((file, bytes)) => {
+                self.reserved.push(self.options.control.reserve(bytes.len() as u64)?);
+                let mime_type = Image::mime_type_of(&bytes).unwrap_or_default().to_string();
+                Image { file, mime_type, bytes: bytes.into(), text: String::new() }
+            }
+            Err(reason) => {
+                notes.say(format!("picture {} not read: {reason}", quote(file.as_bytes())));
+                Image { file: name, ..Image::default() }
+            }
+        };
+        let image = Arc::new(image);
+        self.pictures.insert(file.to_string(), Arc::clone(&image));
+        Ok(image)
+    }
+}
+
+fn read_picture(folder: &Path, name: &str) -> Result<Vec<u8>, String> {
+    read_beside(folder, name, LARGEST_PICTURE)
+}
+
+/// How a picture lies in coordinates from the upper edge: what the options say counts from the lower one.
+fn texture_use(image: Arc<Image>, how: &MapOptions) -> TextureUse {
+    let ([width, height], [x, y]) = (how.scale, how.offset);
+    let transform: TextureMatrix = [[width, 0.0, x], [0.0, height, 1.0 - height - y]];
+    let wrap = if how.clamp { Wrap::Clamp } else { Wrap::Repeat };
+    TextureUse { image, coordinates: 0, wrap: [wrap; 2], nearest: false, transform }
+}
