@@ -33,6 +33,7 @@ mod file;
 mod finish;
 mod format;
 mod gltf;
+mod labels;
 mod mtl;
 mod notes;
 mod obj;

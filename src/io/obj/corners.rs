@@ -1,61 +1,10 @@
 //! Texture coordinates, normals and colours of faces as attributes.
 
 use super::super::color::linear;
+use super::super::labels::NO_INDEX;
 use super::super::notes::Notes;
-use super::parse::{Labels, NO_COLOR, NO_INDEX};
+use super::parse::NO_COLOR;
 use crate::mesh::Attribute;
-
-/// What the corners of one chunk's triangles name.
-pub(super) struct ChunkCorners {
-    pub(super) texture: Vec<u32>,
-    pub(super) normals: Vec<u32>,
-    /// Texture coordinates and normals that are named and not there.
-    pub(super) beyond: usize,
-}
-
-/// The labels of each corner of triangles, each of a face; `counts` are those of all texture coordinates and normals.
-pub(super) fn of_triangles(
-    triangles: &[[u32; 3]],
-    faces: &[u32],
-    labels: &Labels,
-    counts: [usize; 2],
-) -> ChunkCorners {
-    let room = if labels.corners.is_empty() { 0 } else { 3 * triangles.len() };
-    let mut found = ChunkCorners {
-        texture: Vec::with_capacity(if counts[0] > 0 { room } else { 0 }),
-        normals: Vec::with_capacity(if counts[1] > 0 { room } else { 0 }),
-        beyond: 0,
-    };
-    if room == 0 {
-        return found;
-    }
-    let mut checked = |index: u32, count: usize| {
-        let is_there = (index as usize) < count;
-        found.beyond += usize::from(!is_there && index != NO_INDEX);
-        if is_there { index } else { NO_INDEX }
-    };
-    for (triangle, &face) in triangles.iter().zip(faces) {
-        let face = face as usize;
-        let start = face.checked_sub(1).and_then(|before| labels.ends.get(before)).copied().unwrap_or(0);
-        let corners = match labels.ends.get(face) {
-            Some(&end) => labels.corners.get(start as usize..end as usize).unwrap_or_default(),
-            None => &[],
-        };
-        for (k, &vertex) in triangle.iter().enumerate() {
-            // Of a triangle the corners are in order; of a polygon the one with the vertex.
-            let usual = corners.get(k).filter(|label| label[0] == vertex && corners.len() == 3);
-            let label = usual.or_else(|| corners.iter().find(|label| label[0] == vertex));
-            let [_, texture, normal] = label.copied().unwrap_or([NO_INDEX; 3]);
-            if counts[0] > 0 {
-                found.texture.push(checked(texture, counts[0]));
-            }
-            if counts[1] > 0 {
-                found.normals.push(checked(normal, counts[1]));
-            }
-        }
-    }
-    found
-}
 
 /// The attributes of the mesh, from what the file lists and what its corners name.
 pub(super) fn attributes(

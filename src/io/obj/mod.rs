@@ -19,13 +19,14 @@ pub(super) use write::write;
 
 use super::faces::{index_error, too_large};
 use super::finish::check_finite;
+use super::labels::NO_INDEX;
 use super::notes::Notes;
 use super::scan::line_place;
 use super::{Format, ReadOptions, malformed};
 use crate::parallel;
 use crate::{Error, Mesh};
 use groups::Groups;
-use parse::{Chunk, Fault, NO_INDEX, Smoothing};
+use parse::{Chunk, Fault, Smoothing};
 
 /// Chunks smaller than this are not worth a thread.
 const SMALLEST_CHUNK: usize = 1 << 20;
@@ -76,7 +77,7 @@ fn read_in_chunks(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
         let (triangles, offsets) =
             chunk.faces.into_triangles_of(&positions, &places, &mut notes, &options.control, &mut faces)?;
         let faces = faces.unwrap_or_default();
-        let corners = corners::of_triangles(&triangles, &faces, &chunk.labels, label_counts);
+        let corners = super::labels::of_triangles(&triangles, &faces, &chunk.labels, label_counts);
         notes.add("texture coordinates or normal that a face names are not there", corners.beyond);
         Ok((triangles, offsets, chunk.changes, chunk.libraries, notes, corners))
     });

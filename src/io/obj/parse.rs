@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::super::faces::{FaceList, FacePlace, too_large};
+use super::super::labels::{Labels, NO_INDEX};
 use super::super::notes::Notes;
 use super::super::scan::{Scanner, line_place, quote};
 use super::super::{Format, malformed};
@@ -28,17 +29,8 @@ pub(super) struct Chunk<'a> {
     pub(super) strange: bool,
 }
 
-/// What stands for no index and for no colour.
-pub(super) const NO_INDEX: u32 = u32::MAX;
+/// What stands for no colour.
 pub(super) const NO_COLOR: [f64; 3] = [f64::NAN; 3];
-
-/// The texture coordinates and normals that faces name: for each corner its vertex, its texture coordinates and its normal.
-#[derive(Debug, Default)]
-pub(super) struct Labels {
-    pub(super) corners: Vec<[u32; 3]>,
-    /// The end of each face's corners; faces after the last one have none.
-    pub(super) ends: Vec<u32>,
-}
 
 /// The smoothing groups of a chunk: whether there are several.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use super::super::faces::FaceList;
 use super::super::{Format, malformed};
-use super::body::{Body, Source};
+use super::body::{Body, Channel, Source};
 use super::header::{Element, Header, Property, Role, Type};
 use crate::parallel;
 use crate::{Control, Error};
@@ -100,6 +100,7 @@ impl<'a, const BIG: bool> BinarySource<'a, BIG> {
             _ => return false,
         };
         body.positions = Some(positions);
+        body.of_vertices = channels::<BIG>(element, block, count, stride);
         self.at += block.len();
         true
     }
@@ -131,6 +132,44 @@ impl<'a, const BIG: bool> BinarySource<'a, BIG> {
         body.notes.add("face with fewer than three different corners dropped", dropped);
         self.at += records.len() * 13;
         true
+    }
+}
+
+/// The further properties of all elements of one size.
+fn channels<const BIG: bool>(element: &Element, block: &[u8], count: usize, stride: usize) -> Vec<Channel> {
+    let mut channels = Channel::of(element, 0);
+    let (mut offset, mut next) = (0, 0);
+    for (index, property) in element.properties.iter().enumerate() {
+        let Property::Scalar(kind) = *property else { continue };
+        if element.further.iter().any(|(further, _)| *further == index) {
+            channels[next].values = parallel::build(count, SMALLEST_PIECE, |first, run: &mut [f64]| {
+                for (value, record) in run.iter_mut().zip(block[first * stride..].chunks_exact(stride)) {
+                    *value = number::<BIG>(kind, &record[offset..offset + kind.size()]);
+                }
+            });
+            next += 1;
+        }
+        offset += kind.size();
+    }
+    channels
+}
+
+/// A number of a type.
+fn number<const BIG: bool>(kind: Type, bytes: &[u8]) -> f64 {
+    let mut little = [0; 8];
+    for (i, &byte) in bytes.iter().take(8).enumerate() {
+        little[if BIG { bytes.len() - 1 - i } else { i }] = byte;
+    }
+    let [a, b, c, d, ..] = little;
+    match kind {
+        Type::I8 => f64::from(a as i8),
+        Type::U8 => f64::from(a),
+        Type::I16 => f64::from(i16::from_le_bytes([a, b])),
+        Type::U16 => f64::from(u16::from_le_bytes([a, b])),
+        Type::I32 => f64::from(i32::from_le_bytes([a, b, c, d])),
+        Type::U32 => f64::from(u32::from_le_bytes([a, b, c, d])),
+        Type::F32 => f64::from(f32::from_le_bytes([a, b, c, d])),
+        Type::F64 => f64::from_le_bytes(little),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The elements of a PLY file, one value after the other.
 
 use super::super::faces::{FaceList, too_large};
+use super::super::labels::{Labels, NO_INDEX};
 use super::super::notes::Notes;
 use super::super::scan::{Scanner, line_place};
 use super::super::{Format, malformed};
@@ -9,6 +10,9 @@ use crate::{Control, Error};
 
 /// Elements between two looks at the limits.
 const CHECK_INTERVAL: u64 = 1 << 12;
+
+/// Longer lists of texture coordinates are skipped: those of one face.
+const LONGEST_TEXTURE: u64 = 1 << 16;
 
 /// Values in a row.
 pub(super) trait Source {
@@ -26,11 +30,38 @@ pub(super) trait Source {
     fn room(&self, element: &Element) -> u64;
 }
 
+/// A property of each vertex or face.
+#[derive(Debug)]
+pub(super) struct Channel {
+    pub(super) name: String,
+    pub(super) kind: Type,
+    pub(super) values: Vec<f64>,
+}
+
+impl Channel {
+    /// The scalar properties of an element, to be filled.
+    pub(super) fn of(element: &Element, capacity: usize) -> Vec<Self> {
+        let channel = |(property, name): &(usize, String)| match element.properties[*property] {
+            Property::Scalar(kind) => {
+                Some(Self { name: name.clone(), kind, values: Vec::with_capacity(capacity) })
+            }
+            Property::List { .. } => None,
+        };
+        element.further.iter().filter_map(channel).collect()
+    }
+}
+
 /// What the elements hold.
 #[derive(Debug, Default)]
 pub(super) struct Body {
     pub(super) positions: Option<Vec<[f64; 3]>>,
     pub(super) faces: FaceList,
+    /// Further properties of vertices and of the faces kept, each with its name and type, a number for each.
+    pub(super) of_vertices: Vec<Channel>,
+    pub(super) of_faces: Vec<Channel>,
+    /// Texture coordinates of the corners of faces.
+    pub(super) texture: Vec<[f64; 2]>,
+    pub(super) labels: Labels,
     pub(super) notes: Notes,
 }
 
@@ -95,6 +126,8 @@ impl Body {
         control: &Control,
     ) -> Result<(), Error> {
         let mut positions = Vec::with_capacity(element.count as usize);
+        let mut channels = Channel::of(element, element.count as usize);
+        let places = channel_places(element);
         for i in 0..element.count {
             if i % CHECK_INTERVAL == 0 {
                 control.check()?;
@@ -103,12 +136,16 @@ impl Body {
             for (p, property) in element.properties.iter().enumerate() {
                 match (axes.iter().position(|&axis| axis == p), property) {
                     (Some(axis), Property::Scalar(kind)) => position[axis] = source.number(*kind)?,
+                    (None, Property::Scalar(kind)) if places[p] != usize::MAX => {
+                        channels[places[p]].values.push(source.number(*kind)?);
+                    }
                     _ => skip(property, source)?,
                 }
             }
             positions.push(position);
         }
         self.positions = Some(positions);
+        self.of_vertices = channels;
         Ok(())
     }
 
@@ -123,6 +160,12 @@ impl Body {
     ) -> Result<(), Error> {
         let strips = matches!(element.role, Role::Strips(_));
         let mut corners = Vec::new();
+        let mut channels = Channel::of(element, 0);
+        let places = channel_places(element);
+        let texture_list = element.further.iter().map(|(p, _)| *p);
+        let texture_list =
+            texture_list.into_iter().find(|&p| matches!(element.properties[p], Property::List { .. }));
+        let (mut numbers, mut texture) = (vec![0.0; channels.len()], Vec::new());
         for i in 0..element.count {
             if i % CHECK_INTERVAL == 0 {
                 control.check()?;
@@ -130,10 +173,22 @@ impl Body {
             let start = source.offset();
             for (p, property) in element.properties.iter().enumerate() {
                 let Property::List { count, item } = property else {
-                    skip(property, source)?;
+                    match (property, places[p]) {
+                        (Property::Scalar(kind), place) if place != usize::MAX => {
+                            numbers[place] = source.number(*kind)?;
+                        }
+                        _ => skip(property, source)?,
+                    }
                     continue;
                 };
                 let length = list_length(*count, source)?;
+                if texture_list == Some(p) && length <= LONGEST_TEXTURE {
+                    texture.clear();
+                    for _ in 0..length {
+                        texture.push(source.number(*item)?);
+                    }
+                    continue;
+                }
                 if p != indices {
                     source.skip(*item, length)?;
                     continue;
@@ -146,9 +201,32 @@ impl Body {
                     corners.push(if end { u32::MAX } else { vertex_index(index, source)? });
                 }
             }
+            let face = self.faces.len();
             take(self, &corners, start)?;
+            if self.faces.len() == face + 1 && !strips {
+                for (channel, &number) in channels.iter_mut().zip(&numbers) {
+                    channel.values.push(number);
+                }
+                self.take_texture(face, &corners, &texture);
+            }
+        }
+        if !strips {
+            self.of_faces = channels;
         }
         Ok(())
+    }
+
+    /// Notes the texture coordinates of a face's corners, two numbers each.
+    fn take_texture(&mut self, face: usize, corners: &[u32], texture: &[f64]) {
+        if texture.len() != 2 * corners.len() || texture.is_empty() {
+            return;
+        }
+        self.labels.ends.resize(face, self.labels.corners.len() as u32);
+        for (&vertex, uv) in corners.iter().zip(texture.chunks_exact(2)) {
+            self.labels.corners.push([vertex, self.texture.len() as u32, NO_INDEX]);
+            self.texture.push([uv[0], uv[1]]);
+        }
+        self.labels.ends.push(self.labels.corners.len() as u32);
     }
 
     fn face(&mut self, corners: &[u32], start: usize) -> Result<(), Error> {
@@ -174,6 +252,17 @@ impl Body {
         }
         if self.faces.has_room() { Ok(()) } else { Err(too_large(Format::Ply, "faces")) }
     }
+}
+
+/// For each property the channel that it fills, or the largest number.
+fn channel_places(element: &Element) -> Vec<usize> {
+    let mut places = vec![usize::MAX; element.properties.len()];
+    let scalars =
+        element.further.iter().filter(|(p, _)| matches!(element.properties[*p], Property::Scalar(_)));
+    for (place, (property, _)) in scalars.enumerate() {
+        places[*property] = place;
+    }
+    places
 }
 
 fn skip(property: &Property, source: &mut impl Source) -> Result<(), Error> {

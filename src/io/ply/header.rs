@@ -81,6 +81,9 @@ pub(super) struct Element {
     pub(super) name: String,
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
+    /// The names of the properties that matter beside coordinates and corners, with their numbers; of vertices and faces
+    /// alone.
+    pub(super) further: Vec<(usize, String)>,
     pub(super) role: Role,
 }
 
@@ -108,6 +111,9 @@ pub(super) struct Header {
     /// The first byte after it.
     pub(super) end: usize,
 }
+
+/// More properties than these are skipped. Each takes eight bytes a vertex or face.
+pub(super) const MOST_FURTHER: usize = 64;
 
 impl Coding {
     fn of_name(name: &[u8]) -> Option<Self> {
@@ -150,8 +156,13 @@ impl Header {
                     let (Some(name), Some(count)) = (words.next(), words.next().and_then(number)) else {
                         return Err(lines.error("expected \"element\", a name and a count"));
                     };
-                    let element =
-                        Element { name: decode(name), count, properties: Vec::new(), role: Role::Other };
+                    let element = Element {
+                        name: decode(name),
+                        count,
+                        properties: Vec::new(),
+                        further: Vec::new(),
+                        role: Role::Other,
+                    };
                     elements.push(Named { element, names: Vec::new() });
                 }
                 Some(b"property") => {
@@ -210,6 +221,7 @@ impl Named<'_> {
                         })?;
                 }
                 element.role = Role::Vertices(axes);
+                element.further = further(&names, &element.properties, &axes);
             }
             "face" | "tristrips" => {
                 let is_indices = |property: &Property| matches!(property, Property::List { item, .. } if item.is_integer());
@@ -221,7 +233,10 @@ impl Named<'_> {
                     .filter(|&i| is_indices(&element.properties[i]))
                     .or(only);
                 element.role = match (indices, element.name.as_str()) {
-                    (Some(indices), "face") => Role::Faces(indices),
+                    (Some(indices), "face") => {
+                        element.further = further(&names, &element.properties, &[indices]);
+                        Role::Faces(indices)
+                    }
                     (Some(indices), _) => Role::Strips(indices),
                     (None, _) if element.count == 0 => Role::Other,
                     (None, name) => {
@@ -237,6 +252,17 @@ impl Named<'_> {
         }
         Ok(element)
     }
+}
+
+/// The properties beside those that are known, by name. A list is one only where it has texture coordinates.
+fn further(names: &[&[u8]], properties: &[Property], known: &[usize]) -> Vec<(usize, String)> {
+    let is_kept = |&(i, name): &(usize, &&[u8])| match properties[i] {
+        _ if known.contains(&i) => false,
+        Property::Scalar(_) => true,
+        Property::List { .. } => **name == b"texcoord"[..],
+    };
+    let kept = names.iter().enumerate().filter(is_kept).take(MOST_FURTHER);
+    kept.map(|(i, name)| (i, decode(name))).collect()
 }
 
 fn property<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Option<(&'a [u8], Property)> {

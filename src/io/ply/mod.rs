@@ -1,16 +1,17 @@
 //! PLY, ASCII and binary of either byte order: vertices, faces and triangle strips.
 //!
-//! Elements may come in any order, with any further properties and further elements, which are skipped. Coordinates
+//! Elements may come in any order, with any further properties, which become attributes, and further elements, which are skipped. Coordinates
 //! may be of any number type, list counts and indices of any integer type.
 
 mod binary;
 mod body;
 mod header;
+mod properties;
 mod write;
 
 pub(super) use write::write;
 
-use super::faces::{FaceList, index_error, too_large};
+use super::faces::{index_error, too_large};
 use super::finish::check_finite;
 use super::notes::Notes;
 use super::scan::line_place;
@@ -23,15 +24,16 @@ use header::{Coding, Header};
 pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<String>), Error> {
     let header = Header::parse(bytes)?;
     let control = &options.control;
-    let Body { positions, faces, mut notes } = match header.coding {
+    let mut body = match header.coding {
         Coding::Ascii => Body::read(&header, &mut AsciiSource::new(bytes, header.end), control)?,
         Coding::LittleEndian => binary::read::<false>(bytes, &header, control)?,
         Coding::BigEndian => binary::read::<true>(bytes, &header, control)?,
     };
-    let Some(positions) = positions else {
+    let Some(positions) = body.positions.take() else {
         return Err(malformed(Format::Ply, "header", "there is no element \"vertex\""));
     };
-    let mesh = assemble(positions, faces, &mut notes, options)?;
+    let mut notes = std::mem::take(&mut body.notes);
+    let mesh = assemble(positions, body, &mut notes, options)?;
     let place = |offset| match header.coding {
         Coding::Ascii => line_place(bytes, offset),
         _ => format!("byte {offset}"),
@@ -41,10 +43,11 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<Str
 
 fn assemble(
     positions: Vec<[f64; 3]>,
-    faces: FaceList,
+    body: Body,
     notes: &mut Notes,
     options: &ReadOptions,
 ) -> Result<Mesh, Error> {
+    let Body { faces, of_vertices, of_faces, texture, labels, .. } = body;
     if faces.largest().is_some_and(|index| index as usize >= positions.len())
         && let Some((face, index)) = faces.first_beyond(positions.len())
     {
@@ -52,11 +55,15 @@ fn assemble(
             face.map_or("a face of fewer than three corners".to_string(), |face| format!("face {face}"));
         return Err(index_error(Format::Ply, place, u64::from(index), positions.len()));
     }
-    let (triangles, _) = faces.into_triangles(&positions, &[], notes, &options.control)?;
+    let mut of = (!of_faces.is_empty() || !texture.is_empty()).then(Vec::new);
+    let (triangles, _) = faces.into_triangles_of(&positions, &[], notes, &options.control, &mut of)?;
     if triangles.len() > u32::MAX as usize {
         return Err(too_large(Format::Ply, "triangles"));
     }
     let mut mesh = Mesh::new(positions, triangles);
+    let faces = of.unwrap_or_default();
+    mesh.attributes =
+        properties::attributes(&mesh.triangles, &faces, of_vertices, of_faces, texture, &labels, notes);
     check_finite(&mut mesh, Format::Ply, notes, |vertex| format!("vertex {vertex}"))?;
     Ok(mesh)
 }
