@@ -62,3 +62,32 @@ pub(super) fn of_triangles(
     }
     found
 }
+
+/// A coordinate counted from the lower edge of a picture, given from the upper one: the shortest decimal that reading turns into
+/// the same number again, so that what was read is written as it was.
+pub(super) fn from_below(v: f64) -> f64 {
+    let exact = 1.0 - v;
+    for scale in [1e6, 1e9, 1e12, 1e15] {
+        let short = (exact * scale).round() / scale;
+        if 1.0 - short == v {
+            return short;
+        }
+    }
+    exact
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_read_is_written_as_it_was() {
+        for text in ["0.1", "0.375", "0.0001", "0.999999", "1", "0", "5.25", "-0.3", "0.123456789012"] {
+            let value: f64 = text.parse().unwrap();
+            assert_eq!(from_below(1.0 - value).to_string(), text);
+        }
+        for v in [1.0 / 3.0, 0.1_f32.into(), 1e-12] {
+            assert!((from_below(v) - (1.0 - v)).abs() < 1e-15);
+        }
+    }
+}

@@ -164,10 +164,25 @@ fn write_to(
     match format {
         Format::Obj => obj::write(mesh, output, options),
         Format::Gltf | Format::Glb => gltf::write(mesh, format, output, options, None),
-        Format::Stl => stl::write(mesh, output, options),
+        Format::Stl => without_attributes(mesh, format, stl::write(mesh, output, options)?),
         Format::Ply => ply::write(mesh, output, options),
-        Format::Off => off::write(mesh, output, options),
+        Format::Off => without_attributes(mesh, format, off::write(mesh, output, options)?),
     }
+}
+
+/// What is said of a format that has no attributes; STL's users look for neither materials nor pictures, and hear of them here.
+fn without_attributes(mesh: &Mesh, format: Format, mut written: Written) -> Result<Written, Error> {
+    let names: Vec<&str> = mesh.attributes.iter().map(|attribute| &*attribute.name).collect();
+    if !names.is_empty() {
+        written.warnings.insert(0, format!("{format} has no place for {}: not written", names.join(", ")));
+    }
+    let textured = mesh.groups.list.iter().filter_map(|group| group.material.as_ref());
+    if format == Format::Stl && textured.clone().any(|material| material.base_color_texture.is_some()) {
+        written
+            .warnings
+            .insert(0, "STL is written without materials: colours and pictures are not kept".into());
+    }
+    Ok(written)
 }
 
 /// The error for a damaged file.

@@ -156,4 +156,6 @@ impl<'a> Reader<'a> {
 }
 
 #[cfg(test)]
+mod attribute_tests;
+#[cfg(test)]
 mod tests;

@@ -4,6 +4,11 @@ use serde_json::{Value, json};
 
 use super::*;
 
+/// The mesh and the warnings.
+fn read(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<(Mesh, Vec<String>), Error> {
+    super::read(bytes, format, options, false).map(|scene| (scene.mesh, scene.warnings))
+}
+
 /// A document with one buffer that holds four corners of a square in single precision (48 bytes), six indices of one
 /// byte, and two bytes of padding.
 fn square() -> Value {
@@ -306,7 +311,7 @@ fn a_small_file_cannot_ask_for_much_memory() {
 fn binary_containers() {
     let mut glb = Vec::new();
     let mesh = Mesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], vec![[0, 1, 2]]);
-    write(&mesh, Format::Glb, &mut glb, &crate::io::WriteOptions::new()).unwrap();
+    write(&mesh, Format::Glb, &mut glb, &crate::io::WriteOptions::new(), None).unwrap();
     let read_glb = |bytes: &[u8]| read(bytes, Format::Glb, &ReadOptions::new());
     assert_eq!(read_glb(&glb).unwrap().0, mesh);
     for length in 4..glb.len() {

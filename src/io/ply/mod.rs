@@ -5,6 +5,7 @@
 
 mod binary;
 mod body;
+mod channels;
 mod header;
 mod properties;
 mod write;

@@ -2,9 +2,12 @@
 
 use std::io::Write;
 
+use super::super::labels::from_below;
 use super::super::rounding::{self, Written};
-use super::super::text::{write_all, write_blocks, write_lines};
+use super::super::text::{NumberWriter, write_all, write_blocks, write_lines};
 use super::super::{Encoding, Format, Precision, WriteOptions};
+use super::channels::{Channels, push_single};
+use crate::mesh::Attribute;
 use crate::{Error, Mesh};
 
 /// Writes vertices and triangles, binary little-endian in double precision unless the options say otherwise.
@@ -18,10 +21,13 @@ pub(in crate::io) fn write(
     if !double {
         written = rounding::of_single(mesh, Format::Ply, options)?;
     }
-    // Nobody looks for names in PLY; colours it could have.
+    // Nobody looks for names of groups in PLY.
     if mesh.groups.list.iter().any(|group| group.material.is_some()) {
-        written.warnings.insert(0, "PLY is written without materials: names and colours are not kept".into());
+        written
+            .warnings
+            .insert(0, "PLY is written without materials: names, colours and pictures are not kept".into());
     }
+    let channels = Channels::of(mesh, options.precision);
     let coding = match options.encoding {
         Encoding::Ascii => "ascii",
         Encoding::Binary => "binary_little_endian",
@@ -32,11 +38,19 @@ pub(in crate::io) fn write(
     let index = if mesh.positions.len() <= i32::MAX as usize { "int" } else { "uint" };
     let header = format!(
         "ply\nformat {coding} 1.0\nelement vertex {}\nproperty {number} x\nproperty {number} y\nproperty {number} z\n\
-         element face {}\nproperty list uchar {index} vertex_indices\nend_header\n",
+         {}element face {}\nproperty list uchar {index} vertex_indices\n{}{}end_header\n",
         mesh.positions.len(),
-        mesh.triangles.len()
+        Channels::header(&channels.of_vertices),
+        mesh.triangles.len(),
+        if channels.texture.is_some() { "property list uchar float texcoord\n" } else { "" },
+        Channels::header(&channels.of_faces),
     );
     write_all(output, header.as_bytes())?;
+    written.warnings.splice(0..0, channels.warnings.iter().cloned());
+    if !channels.is_empty() {
+        write_records(mesh, &channels, output, options)?;
+        return Ok(written);
+    }
     match (options.encoding, double) {
         (Encoding::Ascii, _) => write_lines(mesh, output, options)?,
         (Encoding::Binary, true) => write_binary(mesh, output, options, f64::to_le_bytes, u32::to_le_bytes)?,
@@ -51,6 +65,96 @@ pub(in crate::io) fn write(
         }
     }
     Ok(written)
+}
+
+/// Writes vertices and triangles with their properties.
+fn write_records(
+    mesh: &Mesh,
+    channels: &Channels<'_>,
+    output: &mut dyn Write,
+    options: &WriteOptions,
+) -> Result<(), Error> {
+    let encoding = options.encoding;
+    let is_text = encoding == Encoding::Ascii;
+    write_blocks(output, mesh.positions.len(), &options.control, |range, out| {
+        let mut numbers = NumberWriter::new(options.precision);
+        for vertex in range {
+            let position = mesh.positions[vertex];
+            match (is_text, options.precision) {
+                (true, _) => numbers.point(out, position),
+                (false, Precision::Single) => position.iter().for_each(|&x| push_single(x, encoding, out)),
+                (false, Precision::Double) => {
+                    let big = encoding == Encoding::BinaryBigEndian;
+                    let bytes = |x: f64| if big { x.to_be_bytes() } else { x.to_le_bytes() };
+                    position.iter().for_each(|&x| out.extend_from_slice(&bytes(x)));
+                }
+            }
+            channels.of_vertices.iter().for_each(|channel| channel.write(vertex, encoding, out));
+            if is_text {
+                out.push(b'\n');
+            }
+        }
+    })?;
+    write_blocks(output, mesh.triangles.len(), &options.control, |range, out| {
+        let mut numbers = NumberWriter::new(options.precision);
+        for triangle in range {
+            write_face(mesh.triangles[triangle], encoding, &mut numbers, out);
+            if let Some(texture) = channels.texture {
+                write_texture(texture, triangle, encoding, &mut numbers, out);
+            }
+            channels.of_faces.iter().for_each(|channel| channel.write(triangle, encoding, out));
+            if is_text {
+                out.push(b'\n');
+            }
+        }
+    })
+}
+
+fn write_face(corners: [u32; 3], encoding: Encoding, numbers: &mut NumberWriter, out: &mut Vec<u8>) {
+    out.push(if encoding == Encoding::Ascii { b'3' } else { 3 });
+    for corner in corners {
+        match encoding {
+            Encoding::Ascii => {
+                out.push(b' ');
+                numbers.integer(out, u64::from(corner));
+            }
+            Encoding::Binary => out.extend_from_slice(&corner.to_le_bytes()),
+            Encoding::BinaryBigEndian => out.extend_from_slice(&corner.to_be_bytes()),
+        }
+    }
+}
+
+/// The texture coordinates of a triangle's corners; an empty list if one has none.
+fn write_texture(
+    texture: &Attribute,
+    triangle: usize,
+    encoding: Encoding,
+    numbers: &mut NumberWriter,
+    out: &mut Vec<u8>,
+) {
+    let corners = [0, 1, 2].map(|k| texture.at(triangle, k));
+    let is_text = encoding == Encoding::Ascii;
+    let count = if corners.contains(&None) { 0 } else { 6 };
+    if is_text {
+        out.push(b' ');
+        numbers.integer(out, count);
+    } else {
+        out.push(count as u8);
+    }
+    if count == 0 {
+        return;
+    }
+    for value in corners.into_iter().flatten() {
+        let (&[u, v] | &[u, v, ..]) = value else { continue };
+        for number in [u, from_below(v)] {
+            if is_text {
+                out.push(b' ');
+                numbers.float(out, f64::from(number as f32));
+            } else {
+                push_single(number, encoding, out);
+            }
+        }
+    }
 }
 
 fn write_binary<const SIZE: usize>(

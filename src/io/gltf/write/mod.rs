@@ -23,6 +23,7 @@ use super::super::pictures::PictureFile;
 use super::super::rounding::{Measure, Written, examined};
 use super::super::text::write_all;
 use super::super::{Format, WriteOptions, write_error};
+use crate::mesh::is_two_manifold;
 use crate::{Error, Mesh};
 use layout::Layout;
 
@@ -53,6 +54,10 @@ pub(in crate::io) fn write(
         }
         return Ok(Written::default());
     }
+    // Seams of the mesh itself are joined first, where that is all that keeps the surface from being closed.
+    let joined =
+        (options.manifold && !is_two_manifold(mesh)).then(|| mesh.clone().welded(0.0)).transpose()?;
+    let mesh = joined.as_ref().filter(|joined| is_two_manifold(joined)).unwrap_or(mesh);
     let mut warnings = Vec::new();
     let pictures = aside.as_ref().map(|aside| aside.pictures);
     let (mut layout, mut document) = document::document(mesh, pictures, options, &mut warnings)?;
