@@ -7,6 +7,7 @@ use clap::{Args, ColorChoice, ValueEnum};
 use trisect::io::Format;
 use trisect::mesh::Welding;
 
+use super::scenes::SceneChoice;
 use super::values;
 
 /// Options that every verb takes.
@@ -152,7 +153,7 @@ pub(crate) struct Using {
 }
 
 /// What is written.
-#[derive(Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Outputs")]
 pub(crate) struct Writing {
     /// Output file; may be repeated; `-` is standard output (with --output-format); *.png draws a picture
@@ -173,6 +174,12 @@ pub(crate) struct Writing {
     /// Write into glTF files which vertices of seams are one (EXT_mesh_manifold)
     #[arg(long)]
     pub(crate) manifold: bool,
+    /// What becomes of the glTF scene that a node given as the first input stands in
+    #[arg(long, value_enum, default_value = "drop")]
+    pub(crate) scene: SceneChoice,
+    /// The node of the first input, as FILE#NAME means it
+    #[arg(long, value_name = "NAME")]
+    pub(crate) node: Option<String>,
     /// Move the outputs so that the middle of their bounds is near the origin
     #[arg(long)]
     pub(crate) recenter: bool,

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::Value;
-use trisect::io::Format;
+use trisect::io::{Format, WriteOptions};
 use trisect::{BooleanOptions, Embed, Grid, OperandState, Operation, Outcome, Rule, Solid};
 
 use super::argument_groups::Colours;
@@ -16,6 +16,7 @@ use super::output::{self, Product, Target};
 use super::recenter;
 use super::report::{self, Measures};
 use super::requests::{self, Request};
+use super::scenes;
 use super::selection;
 use super::session::Session;
 use super::task::Task;
@@ -65,6 +66,8 @@ fn run_task(
 ) -> Result<Exit, Fault> {
     let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
     refuse_pointless(arguments, &targets, session)?;
+    let mut requests = requests;
+    scenes::name_node(&mut requests, &arguments.results.writing)?;
     let requests = parts(task, requests, session)?;
     if requests.len() < task.least_inputs() {
         return Err(Fault::usage("at least two inputs are needed: FILE1 FILE2 ... -o OUTPUT"));
@@ -103,9 +106,23 @@ fn run_task(
     if let Some(outcome) = outcomes.first() {
         warn_of_inward(outcome, &operands, session);
     }
-    let format = operands.first().map(|operand| operand.format);
-    finish(arguments, &outcomes, &targets, &suffixes, format, seconds, session)?;
+    let first = operands.first();
+    let style = Style {
+        format: first.map(|operand| operand.format),
+        options: scenes::kept(
+            output::write_options(&arguments.results.writing, &session.limits),
+            &arguments.results.writing,
+            first.map(|operand| &operand.request),
+        )?,
+    };
+    finish(arguments, &outcomes, &targets, &suffixes, &style, seconds, session)?;
     Ok(Exit::Fine)
+}
+
+/// How results are written: the format of the first operand, which tells what is up, and the options.
+struct Style {
+    format: Option<Format>,
+    options: WriteOptions,
 }
 
 /// Writes all results and says what they are.
@@ -114,7 +131,7 @@ fn finish(
     outcomes: &[Outcome],
     targets: &[Vec<Target>],
     suffixes: &[&'static str],
-    format: Option<Format>,
+    style: &Style,
     seconds: f64,
     session: &mut Session<'_>,
 ) -> Result<(), Fault> {
@@ -122,7 +139,7 @@ fn finish(
     let mut outputs = Vec::new();
     for ((outcome, targets), suffix) in outcomes.iter().zip(targets).zip(suffixes) {
         let name = suffix.strip_prefix('-').unwrap_or("result");
-        outputs.extend(write(arguments, targets, outcome, format, session)?);
+        outputs.extend(write(arguments, targets, outcome, style, session)?);
         results.push(tell(name, outcome, targets, seconds, session));
     }
     if let Some(first) = results.first() {
@@ -272,7 +289,7 @@ fn write(
     arguments: &Combine,
     targets: &[Target],
     outcome: &Outcome,
-    format: Option<Format>,
+    style: &Style,
     session: &mut Session<'_>,
 ) -> Result<Vec<Value>, Fault> {
     let start = Instant::now();
@@ -283,9 +300,9 @@ fn write(
     let picture = || {
         let operands = outcome.origins().iter().map(|origin| origin.operand as usize);
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), mesh, operands);
-        trisect::render::mesh(mesh, &output::view(drawing, format), colours.as_deref())
+        trisect::render::mesh(mesh, &output::view(drawing, style.format), colours.as_deref())
     };
-    let options = output::write_options(&arguments.results.writing, &session.limits);
+    let options = style.options.clone();
     let product = Product { mesh, options, picture: &picture, documents: &[] };
     let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
     for warning in warnings {

@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::{Map, Value, json};
 use trisect::control::Reservation;
-use trisect::io::Format;
+use trisect::io::{Format, WriteOptions};
 use trisect::{Error, Mesh};
 
 use super::argument_groups::{Colours, Writing};
@@ -18,6 +18,7 @@ use super::reading::{self, Input};
 use super::recenter;
 use super::report::{self, Measures};
 use super::requests::{self, Request};
+use super::scenes;
 use super::selection;
 use super::session::Session;
 use super::usable;
@@ -30,7 +31,10 @@ pub(crate) fn run(
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
     let (request, output) = input_and_output(arguments, matches)?;
-    let writing = Writing { output, ..arguments.results.writing };
+    let writing = Writing { output, ..arguments.results.writing.clone() };
+    let mut request = [request];
+    scenes::name_node(&mut request, &writing)?;
+    let [request] = request;
     let targets = output::targets(&writing, &arguments.results.drawing, session.common)?;
     if targets.is_empty() {
         return Err(Fault::usage("nowhere to put the result: add an output file, -o FILE or --png FILE"));
@@ -46,7 +50,9 @@ pub(crate) fn run(
         session.note("dry_run", true);
         return Ok(Exit::Fine);
     }
-    write(arguments, &writing, &targets, &read, session)?;
+    let options = output::write_options(&writing, &session.limits);
+    let options = scenes::kept(options, &writing, Some(&request))?;
+    write(arguments, &writing, &targets, &read, options, session)?;
     session.console.say(&format!("{} -> {}", read.line, names.join(", ")));
     Ok(Exit::Fine)
 }
@@ -102,6 +108,7 @@ fn write(
     writing: &Writing,
     targets: &[Target],
     Read { mesh, format, .. }: &Read,
+    options: WriteOptions,
     session: &mut Session<'_>,
 ) -> Result<(), Fault> {
     let start = Instant::now();
@@ -114,7 +121,6 @@ fn write(
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), mesh, operands);
         trisect::render::mesh(mesh, &output::view(drawing, Some(*format)), colours.as_deref())
     };
-    let options = output::write_options(writing, &session.limits);
     let product = Product { mesh, options, picture: &picture, documents: &[] };
     let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
     session.note("outputs", outputs);

@@ -37,6 +37,7 @@ mod remedy;
 mod repairs;
 mod report;
 mod requests;
+mod scenes;
 mod selection;
 mod session;
 mod slice;

@@ -40,6 +40,15 @@ pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Err
     loaded(path.as_ref(), options, read, |loaded| &mut loaded.warnings)
 }
 
+/// The bytes of a file.
+pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
+    fs::read(path).map_err(|source| Error::File {
+        action: FileAction::Read,
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
 /// Reads a file by `read`; `warnings` are those of what was read.
 pub(super) fn loaded<T>(
     path: &Path,
@@ -91,7 +100,7 @@ pub fn save_report(mesh: &Mesh, path: impl AsRef<Path>, options: &WriteOptions) 
         other => other,
     };
     let written = match format {
-        Format::Gltf if options.separate => {
+        Format::Gltf if options.separate && options.scene.is_none() => {
             finish::check_for_writing(mesh)?;
             let (uri, mut buffer) = beside.buffer(path)?;
             let aside = gltf::Aside { buffer: (uri, &mut buffer.file), pictures: &beside.pictures };

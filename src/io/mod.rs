@@ -58,6 +58,7 @@ pub use detect::Detected;
 pub use error::FormatError;
 pub use file::{load, save, save_report};
 pub use format::Format;
+pub use gltf::KeptScene;
 pub use options::{Encoding, Precision, ReadOptions, WriteOptions};
 pub use parts::{Part, PartName, Parts, load_parts, read_parts};
 pub use rounding::{Rounding, Written};
@@ -163,7 +164,10 @@ fn write_to(
     finish::check_for_writing(mesh)?;
     match format {
         Format::Obj => obj::write(mesh, output, options),
-        Format::Gltf | Format::Glb => gltf::write(mesh, format, output, options, None),
+        Format::Gltf | Format::Glb => match &options.scene {
+            Some(scene) => gltf::write_kept(mesh, scene, format, output, options),
+            None => gltf::write(mesh, format, output, options, None),
+        },
         Format::Stl => without_attributes(mesh, format, stl::write(mesh, output, options)?),
         Format::Ply => ply::write(mesh, output, options),
         Format::Off => without_attributes(mesh, format, off::write(mesh, output, options)?),

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::KeptScene;
 use crate::Control;
 
 /// How to read a file.
@@ -83,6 +84,7 @@ pub struct WriteOptions {
     pub(super) manifold: bool,
     pub(super) separate: bool,
     pub(super) destination: Option<PathBuf>,
+    pub(super) scene: Option<KeptScene>,
     pub(super) control: Control,
 }
 
@@ -129,6 +131,14 @@ impl WriteOptions {
     #[must_use]
     pub fn separate(mut self, wanted: bool) -> Self {
         self.separate = wanted;
+        self
+    }
+
+    /// Writes glTF files as that scene, with the mesh at its node; the mesh is in the coordinates of the scene, as it was read.
+    /// Materials of the scene that the mesh has are the scene's own. All is in one file.
+    #[must_use]
+    pub fn in_scene(mut self, scene: KeptScene) -> Self {
+        self.scene = Some(scene);
         self
     }
 

@@ -60,10 +60,20 @@ impl<'a> Buffers<'a> {
         let document = self.reader.document;
         let pointer = format!("/bufferViews/{index}");
         let view = self.reader.get(&document.buffer_views, "bufferViews", index, &pointer)?;
-        let (start, length) = (view.byte_offset as usize, view.byte_length as usize);
-        let index = view.buffer as usize;
+        self.part(view.buffer as usize, Some((view.byte_offset as usize, view.byte_length as usize)))
+    }
+
+    /// All bytes of a buffer.
+    pub(super) fn whole(&self, index: usize) -> Result<Bytes<'a>, Error> {
+        self.part(index, None)
+    }
+
+    /// The given bytes of a buffer, which lie within its announced length, or all.
+    fn part(&self, index: usize, range: Option<(usize, usize)>) -> Result<Bytes<'a>, Error> {
+        let document = self.reader.document;
         let pointer = format!("/buffers/{index}");
         let buffer = self.reader.get(&document.buffers, "buffers", index, &pointer)?;
+        let (start, length) = range.unwrap_or((0, usize::try_from(buffer.byte_length).unwrap_or(usize::MAX)));
         let short = |available: usize| {
             self.reader.error(
                 &*pointer,

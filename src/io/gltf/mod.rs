@@ -11,7 +11,9 @@ mod container;
 mod corners;
 mod document;
 mod extensions;
+mod joints;
 mod json;
+mod keep;
 mod manifold;
 mod materials;
 mod morph;
@@ -19,6 +21,8 @@ mod primitive;
 mod scene;
 mod write;
 
+pub use keep::KeptScene;
+pub(super) use keep::write as write_kept;
 pub(super) use write::{Aside, write};
 
 use super::finish::check_finite;

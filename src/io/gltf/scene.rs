@@ -90,7 +90,11 @@ fn roots(reader: &Reader<'_>, builder: &mut Builder<'_>) -> Result<Vec<u32>, Err
 }
 
 /// The transform of a node, if it has one.
-fn transform(reader: &Reader<'_>, node: &NodeFields, pointer: &str) -> Result<Option<DAffine3>, Error> {
+pub(super) fn transform(
+    reader: &Reader<'_>,
+    node: &NodeFields,
+    pointer: &str,
+) -> Result<Option<DAffine3>, Error> {
     if let Some(matrix) = node.matrix.as_deref() {
         let column = |i: usize| DVec4::from_slice(&matrix[4 * i..]);
         let columns = [column(0), column(1), column(2), column(3)];

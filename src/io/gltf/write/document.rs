@@ -8,9 +8,10 @@ use serde_json::{Map, Value, json};
 
 use super::super::super::WriteOptions;
 use super::super::super::pictures::PictureFile;
+use super::frame::Frame;
 use super::layout::{Layout, Part, Section};
-use super::materials::MaterialList;
-use crate::mesh::is_two_manifold;
+use super::materials::{Lists, MaterialList};
+use crate::mesh::{Material, is_two_manifold};
 use crate::{Error, Mesh};
 
 const ARRAY_BUFFER: u32 = 34_962;
@@ -18,35 +19,156 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
 /// The mode of primitives.
 const TRIANGLES: u32 = 4;
 
+/// What a document has of a mesh.
+pub(in crate::io::gltf) struct Fragment<'a> {
+    pub(in crate::io::gltf) layout: Layout<'a>,
+    accessors: Vec<Value>,
+    meshes: Vec<Value>,
+    lists: Lists,
+    used: Vec<String>,
+}
+
+/// What a document has already.
+#[derive(Default)]
+pub(in crate::io::gltf) struct Known {
+    /// Its materials: the mesh may have the same ones.
+    pub(in crate::io::gltf) materials: Vec<Material>,
+    /// How many textures, samplers and pictures it has.
+    pub(in crate::io::gltf) textures: u32,
+    pub(in crate::io::gltf) samplers: u32,
+    pub(in crate::io::gltf) images: u32,
+}
+
+/// What is added to a document, its numbers counted on from those there.
+pub(in crate::io::gltf) struct Additions {
+    pub(in crate::io::gltf) mesh: Option<Value>,
+    pub(in crate::io::gltf) lists: Vec<(&'static str, Vec<Value>)>,
+    pub(in crate::io::gltf) used: Vec<String>,
+    pub(in crate::io::gltf) required: Vec<String>,
+}
+
+impl<'a> Fragment<'a> {
+    /// The mesh as one of a scene that is there already, in the coordinates of its node.
+    pub(in crate::io::gltf) fn in_node(
+        mesh: &'a Mesh,
+        known: Known,
+        skinned: bool,
+        options: &WriteOptions,
+        warnings: &mut Vec<String>,
+    ) -> Result<Self, Error> {
+        let layout = Layout::new(mesh, Frame::plain(mesh), skinned, warnings);
+        if !mesh.positions.as_flattened().iter().all(|&x| (x as f32).is_finite()) {
+            return Err(Error::InvalidArgument(
+                "coordinates are beyond single precision in the node's scene".into(),
+            ));
+        }
+        let manifold = options.manifold && can_be_manifold(mesh, warnings);
+        Ok(Self::new(layout, None, known, manifold, true, warnings))
+    }
+
+    /// The parts of a document; `one` says whether all groups are in one mesh.
+    fn new(
+        mut layout: Layout<'a>,
+        pictures: Option<&'a [PictureFile]>,
+        known: Known,
+        manifold: bool,
+        one: bool,
+        warnings: &mut Vec<String>,
+    ) -> Self {
+        if manifold {
+            layout.find_merges();
+        }
+        // 1. Materials first: their pictures are the last sections of the buffer.
+        let mut materials = MaterialList::new(pictures, known);
+        let groups = &layout.mesh.groups.list;
+        let of_group: Vec<Option<u32>> = groups
+            .iter()
+            .map(|group| group.material.as_ref().map(|material| materials.add(material)))
+            .collect();
+        layout.images = materials.embedded();
+        // 2. Accessors and meshes.
+        let mut objects = Objects::new(&layout);
+        for part in &layout.parts {
+            objects.add(&layout, part, &of_group, one);
+        }
+        if manifold {
+            objects.add_manifold(&layout);
+        }
+        let Objects { accessors, meshes, .. } = objects;
+        let mut lists = materials.finish(layout.view(Section::Image(0)), warnings);
+        let mut used = std::mem::take(&mut lists.extensions_used);
+        if manifold && !meshes.is_empty() {
+            used.push("EXT_mesh_manifold".to_string());
+            used.sort();
+        }
+        Self { layout, accessors, meshes, lists, used }
+    }
+
+    /// The additions to a document with so many buffer views and accessors and so many bytes.
+    pub(in crate::io::gltf) fn shifted(&self, views: u64, accessors: u64, start: u64) -> Additions {
+        if self.layout.mesh.triangles.is_empty() {
+            return Additions { mesh: None, lists: Vec::new(), used: Vec::new(), required: Vec::new() };
+        }
+        let add = |value: &mut Value, key: &str, by: u64| {
+            if let Some(number) = value.get(key).and_then(Value::as_u64) {
+                value[key] = (number + by).into();
+            }
+        };
+        let mut own_views = self::views(&self.layout);
+        own_views.iter_mut().for_each(|view| add(view, "byteOffset", start));
+        let mut own_accessors = self.accessors.clone();
+        for accessor in &mut own_accessors {
+            add(accessor, "bufferView", views);
+            for part in ["indices", "values"] {
+                if let Some(part) = accessor.pointer_mut(&format!("/sparse/{part}")) {
+                    add(part, "bufferView", views);
+                }
+            }
+        }
+        let mut images = self.lists.images.clone();
+        images.iter_mut().for_each(|image| add(image, "bufferView", views));
+        let mut mesh = self.meshes.first().cloned();
+        if let Some(mesh) = &mut mesh {
+            let shift = |primitive: &mut Value| {
+                add(primitive, "indices", accessors);
+                if let Some(Value::Object(attributes)) = primitive.get_mut("attributes") {
+                    for accessor in attributes.values_mut() {
+                        *accessor = (accessor.as_u64().unwrap_or(0) + accessors).into();
+                    }
+                }
+            };
+            mesh["primitives"].as_array_mut().into_iter().flatten().for_each(shift);
+            if let Some(extension) = mesh.pointer_mut("/extensions/EXT_mesh_manifold") {
+                add(extension, "mergeIndices", accessors);
+                add(extension, "mergeValues", accessors);
+                extension.get_mut("manifoldPrimitive").into_iter().for_each(shift);
+            }
+        }
+        let Lists { materials, textures, samplers, .. } = &self.lists;
+        let lists = vec![
+            ("bufferViews", own_views),
+            ("accessors", own_accessors),
+            ("materials", materials.clone()),
+            ("textures", textures.clone()),
+            ("samplers", samplers.clone()),
+            ("images", images),
+        ];
+        Additions { mesh, lists, used: self.used.clone(), required: self.lists.extensions_required.clone() }
+    }
+}
+
 /// The document without its buffer, and what is in that. Pictures are in the buffer unless they have files.
 pub(super) fn document<'a>(
     mesh: &'a Mesh,
     pictures: Option<&'a [PictureFile]>,
     options: &WriteOptions,
     warnings: &mut Vec<String>,
-) -> Result<(Layout<'a>, Map<String, Value>), Error> {
-    let mut layout = Layout::new(mesh, warnings);
+) -> (Layout<'a>, Map<String, Value>) {
+    let layout = Layout::new(mesh, Frame::of(mesh), false, warnings);
     let manifold = options.manifold && can_be_manifold(mesh, warnings);
-    if manifold {
-        layout.find_merges();
-    }
-    // 1. Materials first: their pictures are the last sections of the buffer.
-    let mut materials = MaterialList::new(pictures);
-    let of_group: Vec<Option<u32>> = (mesh.groups.list.iter())
-        .map(|group| group.material.as_ref().map(|material| materials.add(material)))
-        .collect();
-    layout.images = materials.embedded();
-    // 2. Accessors, meshes, nodes.
-    let mut objects = Objects::new(&layout);
-    for part in &layout.parts {
-        objects.add(&layout, part, &of_group, manifold);
-    }
-    if manifold {
-        objects.add_manifold(&layout);
-    }
-    let Objects { accessors, meshes, .. } = objects;
+    let fragment = Fragment::new(layout, pictures, Known::default(), manifold, manifold, warnings);
+    let Fragment { layout, accessors, meshes, lists, used } = fragment;
     let nodes = nodes(&layout, &meshes);
-    // 3. The document.
     let mut document = Map::new();
     let mut set = |key: &str, value: Value| {
         if value.as_array().is_none_or(|list| !list.is_empty()) {
@@ -59,21 +181,14 @@ pub(super) fn document<'a>(
     set("nodes", nodes.list.into());
     set("meshes", meshes.into());
     set("accessors", accessors.into());
-    let first_image = layout.view(Section::Image(0));
     set("bufferViews", views(&layout).into());
-    let lists = materials.finish(first_image, warnings);
-    let mut used = lists.extensions_used;
-    if manifold {
-        used.push("EXT_mesh_manifold".to_string());
-        used.sort();
-    }
     set("extensionsUsed", used.into());
     set("extensionsRequired", lists.extensions_required.into());
     set("materials", lists.materials.into());
     set("textures", lists.textures.into());
     set("samplers", lists.samplers.into());
     set("images", lists.images.into());
-    Ok((layout, document))
+    (layout, document)
 }
 
 /// Whether the extension can hold the mesh; a warning if not.

@@ -5,13 +5,13 @@ use glam::DVec3;
 use crate::Mesh;
 
 /// Where the coordinates of the file are measured from, and in which unit.
-pub(super) struct Frame {
+pub(in crate::io::gltf) struct Frame {
     pub(super) offset: DVec3,
     pub(super) scale: f64,
     /// One over the scale, exactly: both are powers of two.
     unit: f64,
     /// Whether single precision holds all coordinates exactly.
-    pub(super) exact: bool,
+    pub(in crate::io::gltf) exact: bool,
 }
 
 impl Frame {
@@ -42,6 +42,12 @@ impl Frame {
             frame.unit = frame.scale.recip();
         }
         frame
+    }
+
+    /// The model's own origin and unit, whatever is lost.
+    pub(in crate::io::gltf) fn plain(mesh: &Mesh) -> Self {
+        let exact = mesh.positions.as_flattened().iter().all(|&x| f64::from(x as f32) == x);
+        Self { offset: DVec3::ZERO, scale: 1.0, unit: 1.0, exact }
     }
 
     /// A point as the file holds it.

@@ -25,9 +25,9 @@ pub(super) struct Part {
 }
 
 /// The buffer of a file.
-pub(super) struct Layout<'a> {
+pub(in crate::io::gltf) struct Layout<'a> {
     pub(super) mesh: &'a Mesh,
-    pub(super) frame: Frame,
+    pub(in crate::io::gltf) frame: Frame,
     pub(super) columns: Vec<Column<'a>>,
     pub(super) vertices: Vertices,
     pub(super) parts: Vec<Part>,
@@ -49,19 +49,11 @@ pub(super) enum Section {
 }
 
 impl<'a> Layout<'a> {
-    pub(super) fn new(mesh: &'a Mesh, warnings: &mut Vec<String>) -> Self {
-        let columns = Column::of(mesh, false, warnings);
+    pub(super) fn new(mesh: &'a Mesh, frame: Frame, skinned: bool, warnings: &mut Vec<String>) -> Self {
+        let columns = Column::of(mesh, skinned, warnings);
         let vertices = Vertices::of(mesh, &columns);
         let parts = parts(mesh, &columns);
-        Self {
-            mesh,
-            frame: Frame::of(mesh),
-            columns,
-            vertices,
-            parts,
-            merges: Vec::new(),
-            images: Vec::new(),
-        }
+        Self { mesh, frame, columns, vertices, parts, merges: Vec::new(), images: Vec::new() }
     }
 
     /// Whether indices have 32 bits.
@@ -126,12 +118,16 @@ impl<'a> Layout<'a> {
     }
 
     /// The bytes of the buffer.
-    pub(super) fn bytes(&self) -> u64 {
+    pub(in crate::io::gltf) fn bytes(&self) -> u64 {
         self.sections().last().map_or(0, |(_, start, length)| (start + length).next_multiple_of(4))
     }
 
     /// Writes the buffer.
-    pub(super) fn write(&mut self, output: &mut dyn Write, options: &WriteOptions) -> Result<(), Error> {
+    pub(in crate::io::gltf) fn write(
+        &self,
+        output: &mut dyn Write,
+        options: &WriteOptions,
+    ) -> Result<(), Error> {
         for (section, _, length) in self.sections() {
             match section {
                 Section::Positions => self.write_positions(output, options)?,

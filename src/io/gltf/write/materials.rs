@@ -7,13 +7,14 @@ use serde_json::{Map, Value, json};
 
 use super::super::super::pictures::{PictureFile, file_of};
 use super::super::json::{for_each_extension, for_each_source, for_each_texture};
-use super::document::percent_encode;
+use super::document::{Known, percent_encode};
 use super::mtl;
 use crate::mesh::{Image, Material, MaterialLanguage, MaterialText, Texture, TextureUse, Wrap};
 
 /// The lists as they grow.
 pub(super) struct MaterialList<'a> {
     files: Option<&'a [PictureFile]>,
+    known: Known,
     materials: Unique,
     textures: Unique,
     samplers: Unique,
@@ -49,9 +50,10 @@ impl Unique {
 
 impl<'a> MaterialList<'a> {
     /// No material yet. Pictures are in the buffer unless they have files.
-    pub(super) fn new(files: Option<&'a [PictureFile]>) -> Self {
+    pub(super) fn new(files: Option<&'a [PictureFile]>, known: Known) -> Self {
         Self {
             files,
+            known,
             materials: Unique::default(),
             textures: Unique::default(),
             samplers: Unique::default(),
@@ -62,6 +64,9 @@ impl<'a> MaterialList<'a> {
 
     /// The number of a material.
     pub(super) fn add(&mut self, material: &Material) -> u32 {
+        if let Some(number) = self.known.materials.iter().position(|known| known == material) {
+            return number as u32;
+        }
         let value = match &material.text {
             Some(text) if text.language == MaterialLanguage::Gltf => self.verbatim(material, text),
             Some(text) => {
@@ -71,7 +76,7 @@ impl<'a> MaterialList<'a> {
             }
             None => self.plain(material),
         };
-        self.materials.add(value)
+        self.known.materials.len() as u32 + self.materials.add(value)
     }
 
     /// A material as its file said it, with the name and colour that it has now.
@@ -158,7 +163,7 @@ impl<'a> MaterialList<'a> {
     fn texture(&mut self, texture: &Texture) -> u32 {
         let mut json: Map<String, Value> = serde_json::from_str(&texture.text).unwrap_or_default();
         if let Some(sampler) = json.remove("sampler") {
-            json.insert("sampler".to_string(), self.samplers.add(sampler).into());
+            json.insert("sampler".to_string(), (self.known.samplers + self.samplers.add(sampler)).into());
         }
         let numbers: Vec<u64> = texture.images.iter().map(|image| self.image(image)).collect();
         // What names a picture that was not there is left out.
@@ -168,7 +173,7 @@ impl<'a> MaterialList<'a> {
         for_each_source(&mut json, &mut |place| {
             *place = numbers.get(*place as usize).copied().unwrap_or(*place);
         });
-        self.textures.add(Value::Object(json))
+        self.known.textures + self.textures.add(Value::Object(json))
     }
 
     /// The number of a picture.
@@ -178,6 +183,7 @@ impl<'a> MaterialList<'a> {
             self.images.push(Arc::clone(image));
             self.images.len() - 1
         }) as u64
+            + u64::from(self.known.images)
     }
 
     /// Notes what cannot be written.

@@ -25,7 +25,7 @@ use super::super::text::write_all;
 use super::super::{Format, WriteOptions, write_error};
 use crate::mesh::is_two_manifold;
 use crate::{Error, Mesh};
-use layout::Layout;
+pub(super) use document::{Fragment, Known};
 
 /// Where a `.gltf` file puts what is not its JSON.
 pub(in crate::io) struct Aside<'a> {
@@ -60,21 +60,16 @@ pub(in crate::io) fn write(
     let mesh = joined.as_ref().filter(|joined| is_two_manifold(joined)).unwrap_or(mesh);
     let mut warnings = Vec::new();
     let pictures = aside.as_ref().map(|aside| aside.pictures);
-    let (mut layout, mut document) = document::document(mesh, pictures, options, &mut warnings)?;
+    let (layout, mut document) = document::document(mesh, pictures, options, &mut warnings);
     let bytes = layout.bytes();
-    match (format, aside) {
-        (Format::Glb, _) => {
-            document.insert("buffers".to_string(), json!([{"byteLength": bytes}]));
-            write_glb_header(output, &Value::Object(document).to_string(), Some(bytes))?;
-            layout.write(output, options)?;
-        }
-        (_, Some(Aside { buffer: (name, buffer), .. })) => {
+    match aside {
+        Some(Aside { buffer: (name, buffer), .. }) if format == Format::Gltf => {
             let uri = document::percent_encode(&name);
             document.insert("buffers".to_string(), json!([{"byteLength": bytes, "uri": uri}]));
             write_all(output, Value::Object(document).to_string().as_bytes())?;
             layout.write(buffer, options)?;
         }
-        (_, None) => write_embedded(&mut layout, document, output, options)?,
+        _ => write_container(document, bytes, format, output, |output| layout.write(output, options))?,
     }
     let frame = &layout.frame;
     let mut written = Written::default();
@@ -86,20 +81,25 @@ pub(in crate::io) fn write(
     Ok(written)
 }
 
-/// Writes a document with its buffer as base64 in it.
-fn write_embedded(
-    layout: &mut Layout<'_>,
-    document: Map<String, Value>,
+/// Writes a document and its one buffer, of so many bytes, as a GLB, or as JSON with the buffer as base64 in it.
+pub(super) fn write_container(
+    mut document: Map<String, Value>,
+    bytes: u64,
+    format: Format,
     output: &mut dyn Write,
-    options: &WriteOptions,
+    buffer: impl FnOnce(&mut dyn Write) -> Result<(), Error>,
 ) -> Result<(), Error> {
+    if format == Format::Glb {
+        document.insert("buffers".to_string(), json!([{"byteLength": bytes}]));
+        write_glb_header(output, &Value::Object(document).to_string(), Some(bytes))?;
+        return buffer(output);
+    }
     let rest = Value::Object(document).to_string();
-    let bytes = layout.bytes();
     let start =
         format!("{{\"buffers\":[{{\"byteLength\":{bytes},\"uri\":\"data:application/octet-stream;base64,");
     write_all(output, start.as_bytes())?;
     let mut encoder = EncoderWriter::new(&mut *output, &STANDARD);
-    layout.write(&mut encoder, options)?;
+    buffer(&mut encoder)?;
     encoder.finish().map_err(write_error)?;
     drop(encoder);
     write_all(output, b"\"}],")?;

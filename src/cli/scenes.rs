@@ -1,0 +1,53 @@
+//! Scenes that stay around what a verb makes of one of their nodes.
+
+use clap::ValueEnum;
+use trisect::io::{KeptScene, WriteOptions};
+
+use super::argument_groups::Writing;
+use super::fault::Fault;
+use super::requests::Request;
+
+/// What becomes of the scene that a part of the first input stands in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SceneChoice {
+    /// The result stands alone
+    #[default]
+    Drop,
+    /// glTF outputs are the scene, with the result at the node
+    Keep,
+}
+
+/// Names the node of the first input, if `--node` does.
+pub(crate) fn name_node(requests: &mut [Request], writing: &Writing) -> Result<(), Fault> {
+    let Some(node) = &writing.node else { return Ok(()) };
+    match requests.first_mut() {
+        Some(first) if first.part.is_none() => first.part = Some(node.clone()),
+        Some(first) => {
+            return Err(Fault::usage(format!(
+                "--node {node} and the name in {} both mean a node of the first input; leave one out",
+                first.name()
+            )));
+        }
+        None => {}
+    }
+    Ok(())
+}
+
+/// The options with the scene of the first input, if that is to be kept.
+pub(crate) fn kept(
+    options: WriteOptions,
+    writing: &Writing,
+    first: Option<&Request>,
+) -> Result<WriteOptions, Fault> {
+    let Some(first) = first.filter(|_| writing.scene == SceneChoice::Keep) else { return Ok(options) };
+    let part = first.part.as_ref().filter(|_| !first.is_standard());
+    let Some(part) = part else {
+        return Err(Fault::usage(
+            "--scene keep takes a node of a glTF file as the first input: FILE.glb#NODE, or --node NODE",
+        ));
+    };
+    // A pattern that means one node has found its name.
+    let found = first.chosen.as_ref().and_then(|chosen| chosen.name.clone());
+    let name = if part.contains(['*', '?']) { found.unwrap_or_else(|| part.clone()) } else { part.clone() };
+    Ok(options.in_scene(KeptScene::load(&first.path, name)?))
+}
