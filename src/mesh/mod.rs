@@ -38,7 +38,7 @@ mod weighted_union_find;
 mod weld;
 
 pub use attributes::{Attribute, AttributeKind};
-pub(crate) use attributes::{Descent, Run, carry};
+pub(crate) use attributes::{CornerPlace, Descent, Run, carry, continues, reach};
 pub(crate) use bit_set::BitSet;
 pub use bounds::Bounds;
 pub(crate) use buckets::Buckets;
