@@ -47,7 +47,7 @@ fn main() -> Result<(), Error> {
         let colours = [[0.6, 0.65, 0.7, 1.0], [0.9, 0.5, 0.2, 1.0], [0.2, 0.6, 0.5, 1.0]];
         let group = |(name, base_color): (&str, [f32; 4])| FaceGroup {
             name: name.into(),
-            material: Some(Material { name: name.into(), base_color }),
+            material: Some(Material::plain(name, base_color)),
         };
         let mut coloured = mesh.clone();
         coloured.groups = FaceGroups {

@@ -99,7 +99,10 @@ pub use boolean::{
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};
-pub use mesh::{FaceGroup, FaceGroups, Material, Mesh, MeshError, Solid};
+pub use mesh::{
+    FaceGroup, FaceGroups, Image, Material, MaterialLanguage, MaterialText, Mesh, MeshError, Solid, Texture,
+    TextureUse, Wrap,
+};
 
 /// The code of the README, compiled with the tests.
 #[cfg(all(doctest, feature = "formats"))]

@@ -1,16 +1,6 @@
 //! Face groups: which object, group and material of its file a triangle came from.
 
-use super::GroupFault;
-
-/// Colour and name of a surface material.
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Material {
-    /// Name as in the file.
-    pub name: String,
-    /// Red, green, blue and opacity, linear, in 0..=1.
-    pub base_color: [f32; 4],
-}
+use super::{GroupFault, Material};
 
 /// A named set of triangles with one material.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -187,7 +187,7 @@ mod tests {
     fn material_colours_need_a_material() {
         let mut coloured = square(1.0, 0.0);
         assert_eq!(material_colours(&coloured), None);
-        let material = Material { name: "paint".into(), base_color: [1.0, 0.0, f32::NAN, 1.0] };
+        let material = Material::plain("paint", [1.0, 0.0, f32::NAN, 1.0]);
         coloured.groups.list =
             vec![FaceGroup { name: "a".into(), material: Some(material) }, FaceGroup::default()];
         coloured.groups.of_triangle = vec![0, 1];

@@ -59,7 +59,7 @@ pub(crate) fn grouped_box() -> Mesh {
             [1, 7, 5],
         ],
     );
-    let material = |name: &str, base_color| Some(Material { name: name.to_string(), base_color });
+    let material = |name: &str, base_color| Some(Material::plain(name, base_color));
     mesh.groups.list = vec![
         FaceGroup { name: "bottom & top".to_string(), material: material("red", [1.0, 0.0, 0.25, 1.0]) },
         FaceGroup { name: "Stra\u{df}e #2".to_string(), material: None },

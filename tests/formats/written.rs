@@ -203,7 +203,7 @@ fn names_alone_are_nothing_to_warn_of() {
     for format in Format::ALL {
         assert!(written(&mesh, format, &WriteOptions::new()).0.warnings.is_empty(), "{format}");
     }
-    mesh.groups.list[0].material = Some(trisect::Material { name: "red".into(), base_color: [1.0; 4] });
+    mesh.groups.list[0].material = Some(trisect::Material::plain("red", [1.0; 4]));
     for format in [Format::Ply, Format::Off] {
         assert_eq!(written(&mesh, format, &WriteOptions::new()).0.warnings.len(), 1, "{format}");
     }

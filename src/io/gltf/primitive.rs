@@ -322,18 +322,18 @@ impl<'a> Builder<'a> {
         }
         let text = self.reader.get(&self.reader.document.materials, "materials", index as usize, pointer)?;
         let material = match serde_json::from_str::<json::Material>(text.get()) {
-            Ok(material) => Material {
-                name: material.name.unwrap_or_default(),
-                base_color: material.pbr_metallic_roughness.base_color_factor.0,
-            },
+            Ok(material) => Material::plain(
+                material.name.unwrap_or_default(),
+                material.pbr_metallic_roughness.base_color_factor.0,
+            ),
             Err(error) => {
                 self.notes
                     .say(format!("of /materials/{index} only the name and the colour are read: {error}"));
                 let plain: PlainMaterial = serde_json::from_str(text.get()).unwrap_or_default();
-                Material {
-                    name: plain.name.unwrap_or_default(),
-                    base_color: plain.surface.and_then(|surface| surface.base_color).unwrap_or([1.0; 4]),
-                }
+                Material::plain(
+                    plain.name.unwrap_or_default(),
+                    plain.surface.and_then(|surface| surface.base_color).unwrap_or([1.0; 4]),
+                )
             }
         };
         self.charge(200 + material.name.len() as u64)?;

@@ -110,7 +110,7 @@ impl<'a> Groups<'a> {
                         missing.push(key.material);
                     }
                     let base_color = library::base_color(known.and_then(Option::as_deref));
-                    Material { base_color, name }
+                    Material::plain(name, base_color)
                 });
                 groups.list.push(FaceGroup { name: name_of(key), material });
             }

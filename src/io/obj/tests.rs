@@ -92,7 +92,7 @@ fn groups_objects_and_materials() {
     ));
     let group = |name: &str, material: Option<&str>| FaceGroup {
         name: name.to_string(),
-        material: material.map(|name| crate::Material { name: name.to_string(), base_color: [1.0; 4] }),
+        material: material.map(|name| crate::Material::plain(name, [1.0; 4])),
     };
     assert_eq!(
         mesh.groups.list,

@@ -100,7 +100,7 @@ impl MaterialNames {
         let mut known: HashMap<(&str, [u32; 4]), String> = HashMap::new();
         let mut taken: HashMap<String, usize> = HashMap::new();
         for group in &mesh.groups.list {
-            let Some(Material { name, base_color }) = &group.material else {
+            let Some(Material { name, base_color, .. }) = &group.material else {
                 names.of_group.push(None);
                 continue;
             };
