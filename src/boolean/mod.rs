@@ -45,6 +45,7 @@ pub use expression_text::ExpressionError;
 pub use general::embed::{Embedding, Grid};
 pub use many::options::BooleanOptions;
 pub use many::policy::Embed;
+pub use result::attributes::CornerOrigin;
 pub use result::certificate::{Certificate, OperandState};
 pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;

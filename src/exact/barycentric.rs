@@ -76,6 +76,12 @@ pub(crate) fn nearest_place(corners: &[[f64; 3]; 3], p: &[f64; 3], unit: f64) ->
     (sides[best].0, sides[best].1.sqrt() / scale)
 }
 
+/// The weights of the corners at a place in the triangle's plane, inside or not; `None` for a triangle without area.
+pub(crate) fn weights_in_plane_of(corners: &[[f64; 3]; 3], p: &[f64; 3]) -> Option<[f64; 3]> {
+    let (corners, p, _) = within_range(corners, p);
+    weights_in_plane(&corners, &p).map(|(weights, _)| weights)
+}
+
 /// Coordinates so near the largest number that differences overflow are divided by 2^8; returns what they were multiplied by.
 fn within_range(corners: &[[f64; 3]; 3], p: &[f64; 3]) -> ([[f64; 3]; 3], [f64; 3], f64) {
     const SCALE: f64 = 1.0 / 256.0;

@@ -40,7 +40,7 @@ mod weld;
 
 pub(crate) use attributes::moved as move_attributes;
 pub use attributes::{Attribute, AttributeKind};
-pub(crate) use attributes::{Descent, Run, carry};
+pub(crate) use attributes::{CornerPlace, Descent, Run, carry, continues, reach};
 pub(crate) use bit_set::BitSet;
 pub use bounds::Bounds;
 pub(crate) use buckets::Buckets;

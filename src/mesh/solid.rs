@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use super::measure::signed_volume;
 use super::topology::Topology;
-use super::{Bounds, FaceGroups, Mending, Mesh, SelfCrossings, chain};
+use super::{Attribute, Bounds, FaceGroups, Mending, Mesh, SelfCrossings, chain};
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
 /// often as it occurs. Every vertex belongs to a triangle, no triangle has a repeated corner, and the enclosed
@@ -168,6 +168,10 @@ impl Solid {
         self.mesh.groups = groups;
     }
 
+    pub(crate) fn set_attributes(&mut self, attributes: Vec<Attribute>) {
+        self.mesh.attributes = attributes;
+    }
+
     /// What was left out or joined when this was made of a mesh.
     #[must_use]
     pub fn cleaning(&self) -> Cleaning {
@@ -235,7 +239,7 @@ impl Solid {
     }
 }
 
-/// Two solids are equal if their meshes are: the same positions, triangles and groups, in the same order.
+/// Two solids are equal if their meshes are: the same positions, triangles, groups and attributes, in the same order.
 impl PartialEq for Solid {
     fn eq(&self, other: &Self) -> bool {
         self.mesh == other.mesh

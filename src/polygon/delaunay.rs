@@ -147,12 +147,14 @@ pub(super) enum Bridges {
 type Counts = FxHashMap<(u32, u32), i32>;
 
 /// Triangulates the plane between edges that each count a number of times, and returns the counter-clockwise triangles
-/// around which they wind, with the winding number. The triangulation holds every edge as it is, or there is a conflict.
+/// around which they wind, with the winding number. The triangulation holds every edge as it is, those that count 0 times too,
+/// or there is a conflict.
 pub(super) fn triangulate_between(
     points: &[[f64; 2]],
     edges: &[CountedEdge],
 ) -> Result<Vec<CountedTriangle>> {
-    triangulate_counted(points, edges, Bridges::Forgotten)
+    // Those that count 0 times are there to be kept.
+    triangulate_counted(points, edges, Bridges::Kept)
 }
 
 fn triangulate_counted(

@@ -68,7 +68,8 @@ impl Triangulator {
             return shape;
         }
         // Loops that cross or touch in ways that tracing cannot tell: by winding number instead.
-        let edges: Vec<Edge> = edges.iter().map(|&ends| Edge { ends, count: 1, line: 0 }).collect();
+        let edges: Vec<Edge> =
+            edges.iter().map(|&ends| Edge { ends, count: 1, line: 0, kept: false }).collect();
         let Some(found) = by_winding(&mut points.to_vec(), &edges, |_, _, _| None) else {
             return Shape::Folded;
         };
@@ -260,7 +261,7 @@ mod tests {
     fn opposite_regions_cancel_by_winding() {
         // A square, and half of it turned over with a vertex more on its border: the other half is left.
         let points = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 0.0], [1.0, 2.0]];
-        let edge = |ends: [u32; 2], count: i32| Edge { ends, count, line: 0 };
+        let edge = |ends: [u32; 2], count: i32| Edge { ends, count, line: 0, kept: false };
         let mut edges: Vec<Edge> =
             [[0, 4], [4, 1], [1, 2], [2, 5], [5, 3], [3, 0]].map(|e| edge(e, 1)).to_vec();
         edges.extend([[0, 4], [4, 5], [5, 3], [3, 0]].map(|e| edge(e, -1)));
@@ -279,6 +280,7 @@ mod tests {
                 ends: ring(i / 4 * 4, 4)[i as usize % 4],
                 count: if i < 4 { 1 } else { -1 },
                 line: i,
+                kept: false,
             })
             .collect();
         assert!(by_winding(&mut points, &edges, |_, _, _| None).is_none(), "no vertex, no sum");
@@ -319,7 +321,8 @@ mod tests {
         let points = [[0.0, 0.0], [2.0, 0.0], [1.0, 2.0], [1.0, 0.0], [1.5, -1.0]];
         // A triangle with corner 3 on the side of another that does not have it.
         let edges = [[0, 1], [1, 2], [2, 0], [3, 4], [4, 1], [1, 3]];
-        let counted: Vec<Edge> = edges.iter().map(|&ends| Edge { ends, count: 1, line: 0 }).collect();
+        let counted: Vec<Edge> =
+            edges.iter().map(|&ends| Edge { ends, count: 1, line: 0, kept: false }).collect();
         let found = by_winding(&mut points.to_vec(), &counted, |_, _, _| None).expect("a sound shape");
         let triangles: Vec<[u32; 3]> = found
             .triangles

@@ -14,6 +14,8 @@ pub(crate) struct Edge {
     pub(crate) count: i32,
     /// The line it is a part of: the caller's number, for finding crossings.
     pub(crate) line: u32,
+    /// Whether it is an edge of triangles even where it counts 0 times in sum.
+    pub(crate) kept: bool,
 }
 
 /// How often edges are split at most. Splitting moves an edge by no more than rounding, so few are left after the first time.
@@ -63,23 +65,28 @@ pub(crate) fn by_winding(
     None
 }
 
-/// The sum of edges: each once, from its lower vertex to its higher one, in order; none that counts 0 times.
+/// The sum of edges: each once, from its lower vertex to its higher one, in order; none that counts 0 times, but those that are
+/// kept.
 fn summed(edges: &[Edge]) -> Vec<Edge> {
     let mut edges: Vec<Edge> = edges
         .iter()
-        .map(|&Edge { ends: [u, v], count, line }| {
+        .map(|&Edge { ends: [u, v], count, line, kept }| {
             if u < v {
-                Edge { ends: [u, v], count, line }
+                Edge { ends: [u, v], count, line, kept }
             } else {
-                Edge { ends: [v, u], count: -count, line }
+                Edge { ends: [v, u], count: -count, line, kept }
             }
         })
         .collect();
     edges.sort_unstable_by_key(|edge| (edge.ends, edge.line));
     edges
         .chunk_by(|x, y| x.ends == y.ends)
-        .map(|group| Edge { count: group.iter().map(|edge| edge.count).sum(), ..group[0] })
-        .filter(|edge| edge.count != 0)
+        .map(|group| Edge {
+            count: group.iter().map(|edge| edge.count).sum(),
+            kept: group.iter().any(|edge| edge.kept),
+            ..group[0]
+        })
+        .filter(|edge| edge.count != 0 || edge.kept)
         .collect()
 }
 

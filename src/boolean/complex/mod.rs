@@ -12,8 +12,10 @@
 //! - `predicates`: the one question every decision asks;
 //! - `meeting`: how two triangles meet;
 //! - `rays`: how often a surface winds around a point;
-//! - `planes`: which faces lie in one plane.
+//! - `planes`: which faces lie in one plane;
+//! - `classes`: which of them may be merged, where attributes have to be kept.
 
+pub(super) mod classes;
 pub(super) mod directions;
 pub(super) mod ids;
 pub(super) mod meeting;
@@ -60,7 +62,7 @@ pub(crate) enum Motion {
 #[derive(Debug)]
 pub(crate) struct Complex<'a> {
     pub(crate) operands: [Operand<'a>; 2],
-    /// By operand, the result's group of each triangle; empty if there are no groups.
+    /// By operand, the result's group of each triangle, or its class (see `classes`); empty if there are none.
     groups: [&'a [u32]; 2],
     motion: Motion,
     /// The largest coordinate.

@@ -40,7 +40,8 @@ impl Complex<'_> {
             && self.are_mergeable(self.origin(f, false), self.origin(g, false))
     }
 
-    fn group(&self, origin: Origin) -> u32 {
+    /// The group of the face a triangle comes from, or its class.
+    pub(crate) fn group(&self, origin: Origin) -> u32 {
         self.groups[origin.operand as usize].get(origin.triangle as usize).copied().unwrap_or(0)
     }
 }

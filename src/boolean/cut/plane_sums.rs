@@ -81,6 +81,8 @@ pub(crate) struct SheetFaces<'a> {
     /// Whole edges, of which those of the sheet are parts.
     pub(crate) lines: Vec<[[f64; 3]; 2]>,
     pub(crate) sources: Vec<SheetSource>,
+    /// Whether faces are to stay apart from each other: they belong to different groups or classes.
+    pub(crate) keep_borders: bool,
     /// Where a point is.
     pub(crate) position: &'a dyn Fn(PointId) -> [f64; 3],
     /// The number that the first of `crossings` has.
@@ -119,7 +121,17 @@ fn faces_of_sheet<'a>(
             sources.push(SheetSource { origin: complex.origin(id, part.reversed), corners });
         }
     }
-    Some(SheetFaces { edges, lines, sources, position, next: body.arrangement.points.next(), crossings })
+    let group = |&face: &FaceId| complex.group(complex.origin(face, false));
+    let keep_borders = sheet.iter().any(|face| group(face) != group(&sheet[0]));
+    Some(SheetFaces {
+        edges,
+        lines,
+        sources,
+        keep_borders,
+        position,
+        next: body.arrangement.points.next(),
+        crossings,
+    })
 }
 
 /// The sum of the faces of one sheet.
@@ -183,6 +195,7 @@ impl Sum<'_> {
             ends: edge.ends.map(number),
             count: edge.count,
             line: edge.line,
+            kept: self.of.keep_borders,
         });
         let edges = edges.collect();
         self.flat = self.points.iter().map(|&point| self.project(&(self.of.position)(point))).collect();

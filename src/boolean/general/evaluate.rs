@@ -125,8 +125,10 @@ fn add_up(shape: &mut Shape<'_>, runner: Runner<'_>) -> Result<Sums, Error> {
                 sources.extend([false, true].map(source));
             }
             let next = shape.next();
-            SheetFaces { edges, lines, sources, position: &position, next, crossings: &mut crossings }
-                .triangles()
+            let group = |&face: &FaceId| general.surfaces.group(face);
+            let keep_borders = sheet.iter().any(|face| group(face) != group(&sheet[0]));
+            let (position, crossings) = (&position, &mut crossings);
+            SheetFaces { edges, lines, sources, keep_borders, position, next, crossings }.triangles()
         };
         match added {
             Some(left) => {

@@ -273,11 +273,6 @@ impl Surfaces {
         self.groups.get(face.index()).copied().unwrap_or(0)
     }
 
-    /// Whether there are groups.
-    pub(crate) fn has_groups(&self) -> bool {
-        !self.groups.is_empty()
-    }
-
     fn directions(&self) -> &Directions {
         self.directions.get_or_init(|| {
             let all = Operand { positions: &self.positions, triangles: &self.corners };

@@ -3,8 +3,10 @@
 use super::groups::{MergedGroups, merged_groups};
 use super::made::Made;
 use super::policy::{Embed, Policy, no_operands};
+use crate::boolean::complex::classes::Faces;
 use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::operation::{Contact, Operation};
+use crate::boolean::complex::origin::Origin;
 use crate::boolean::expression::Expression;
 use crate::boolean::general::arrangement::{Crossed, General};
 use crate::boolean::general::evaluate::{Finish, evaluate};
@@ -69,8 +71,9 @@ pub(super) fn run(
     let groups = merged_groups(operands);
     let of_triangles: Vec<Vec<u32>> =
         operands.iter().enumerate().map(|(i, solid)| groups.of_operand(i, solid)).collect();
+    let classes = classes(operands, &of_triangles, wanted.policy);
     let fuse = wanted.policy.contact == Contact::Fuse;
-    let crossed = Crossed::new(operands, &of_triangles, runner)?;
+    let crossed = Crossed::new(operands, classes.as_ref().unwrap_or(&of_triangles), runner)?;
     let general = General::new(crossed, fuse, runner)?;
     // 2. Each expression.
     let arranged = Arranged {
@@ -116,9 +119,8 @@ impl Arranged<'_> {
         // 3. What is known of it.
         let arrays = made.arrays;
         let mut of_triangle = Vec::new();
-        if self.general.surfaces.has_groups() {
-            let group =
-                |origin: crate::Origin| self.of_triangles[origin.operand as usize][origin.triangle as usize];
+        if self.of_triangles.iter().any(|groups| !groups.is_empty()) {
+            let group = |origin: Origin| self.of_triangles[origin.operand as usize][origin.triangle as usize];
             of_triangle = arrays.origins.iter().map(group).collect();
         }
         let solid = Solid::from_closed_unchecked(Mesh::new(arrays.positions, arrays.triangles));
@@ -144,8 +146,27 @@ impl Arranged<'_> {
             notes,
             is_clean: policy.contact == Contact::Fuse,
         };
-        made.finish(policy, runner)
+        made.finish(policy, self.operands, runner)
     }
+}
+
+/// Which faces may be merged, where attributes have to be kept; `None` where groups alone tell.
+fn classes(operands: &[&Solid], groups: &[Vec<u32>], policy: Policy) -> Option<Vec<Vec<u32>>> {
+    let has_attributes = operands.iter().any(|solid| !solid.mesh().attributes.is_empty());
+    if !(has_attributes && policy.remove_vertices) {
+        return None;
+    }
+    let mut first = 0;
+    let of_operand = |(operand, solid): (usize, &&Solid)| {
+        let Mesh { positions, triangles, .. } = solid.mesh();
+        let all: Vec<u32> = (0..triangles.len() as u32).collect();
+        let origin = |triangle| Origin { operand: operand as u32, triangle, reversed: false };
+        let faces = Faces { positions, triangles, groups: &groups[operand], origin, givens: operands };
+        let classes = faces.classes(&all, first);
+        first += triangles.len() as u32;
+        classes
+    };
+    Some(operands.iter().enumerate().map(of_operand).collect())
 }
 
 /// What is known of each operand.

@@ -12,7 +12,7 @@ use super::merge_order;
 use super::policy::{Embed, Policy, no_operands};
 use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::complex::origin::Origin;
-use crate::boolean::pair::{self, Combined, Settings};
+use crate::boolean::pair::{self, Attributed, Combined, Settings};
 use crate::boolean::result::certificate::{Notes, OperandState};
 use crate::boolean::result::inverted::count_inverted;
 use crate::boolean::result::origins::Origins;
@@ -71,7 +71,8 @@ pub(super) fn run(
     let groups = merged_groups(operands);
     let mut partials = manifold_partials(operands, &groups);
     // 2. Pair by pair.
-    let engine = Engine { policy, runner };
+    let has_attributes = operands.iter().any(|solid| !solid.mesh().attributes.is_empty());
+    let engine = Engine { policy, givens: has_attributes.then_some(operands), runner };
     let result = match operation {
         Operation::Union => engine.union(partials)?,
         Operation::Difference => {
@@ -110,7 +111,7 @@ pub(super) fn run(
         notes,
         is_clean,
     };
-    made.finish(policy, runner)
+    made.finish(policy, operands, runner)
 }
 
 /// Every operand as a 2-manifold, with the origins and groups of its triangles.
@@ -135,6 +136,8 @@ fn manifold_partials<'a>(operands: &[&'a Solid], groups: &MergedGroups) -> Vec<P
 
 struct Engine<'o> {
     policy: Policy,
+    /// All operands, if one has attributes.
+    givens: Option<&'o [&'o Solid]>,
     runner: Runner<'o>,
 }
 
@@ -159,7 +162,7 @@ impl Engine<'_> {
             self.runner.control.report("uniting", done as f64 / merges as f64)?;
             // Whole merges side by side while there are enough of them, else parallel inside each.
             let inside = if pairs.len() >= 8 { self.runner.serial() } else { self.runner };
-            let engine = Engine { policy: self.policy, runner: inside };
+            let engine = Engine { runner: inside, ..*self };
             let merged = self.runner.pieces(pairs.len(), 1, |range| {
                 let [x, y] = pairs[range.start].map(|place| places[place].as_ref());
                 let both = x.zip(y).expect("a place is taken until it is merged into another");
@@ -185,6 +188,7 @@ impl Engine<'_> {
             remove_vertices: self.policy.remove_vertices,
             find_low: self.policy.embed == Embed::WhereNeeded,
             groups: [&a.groups, &b.groups],
+            attributed: self.givens.map(|givens| Attributed { givens, origins: [&a.origins, &b.origins] }),
         };
         let triangles = a.solid.mesh().triangles.len() + b.solid.mesh().triangles.len();
         let runner = if triangles < PARALLEL_FROM { self.runner.serial() } else { self.runner };

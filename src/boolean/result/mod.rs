@@ -1,6 +1,7 @@
 //! The result: its arrays, where each triangle comes from, and what is known of it.
 
 pub(super) mod assemble;
+pub(super) mod attributes;
 pub(super) mod certificate;
 pub(super) mod inverted;
 pub(super) mod near_contacts;

@@ -150,6 +150,18 @@ impl Origins {
         (run.first.triangle == 0 && !run.first.reversed).then_some(run.first.operand)
     }
 
+    /// Consecutive triangles of one operand: the first, how many, and whether they are known to be those triangles, with
+    /// vertices at the same places.
+    pub(crate) fn stretches(&self) -> impl Iterator<Item = (Origin, u32, bool)> {
+        self.stretches.iter().flat_map(|stretch| {
+            let (kept, runs) = match stretch {
+                Stretch::Kept(kept) => (Some(kept.runs().map(|run| (run.first, run.count, true))), [].iter()),
+                Stretch::Runs(runs) => (None, runs.iter()),
+            };
+            kept.into_iter().flatten().chain(runs.map(|run| (run.first, run.count, false)))
+        })
+    }
+
     fn runs(&self) -> impl Iterator<Item = Run> {
         self.stretches.iter().flat_map(|stretch| {
             let (kept, runs) = match stretch {
@@ -162,16 +174,23 @@ impl Origins {
 }
 
 /// Runs with the place where each starts.
-struct Sequence(Vec<(u32, Run)>);
+pub(crate) struct Sequence(Vec<(u32, Run)>);
 
 impl Sequence {
-    fn new(origins: &Origins) -> Self {
+    pub(crate) fn new(origins: &Origins) -> Self {
         let mut next = 0;
         let start = |run: Run| {
             next += run.count;
             (next - run.count, run)
         };
         Self(origins.runs().map(start).collect())
+    }
+
+    /// One of the origins.
+    pub(crate) fn at(&self, place: u32) -> Origin {
+        let index = self.0.partition_point(|&(start, _)| start <= place) - 1;
+        let (start, Run { first, .. }) = self.0[index];
+        Origin { triangle: first.triangle + (place - start), ..first }
     }
 
     /// The runs of `count` origins from a place on.

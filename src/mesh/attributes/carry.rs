@@ -34,6 +34,29 @@ pub(crate) struct Descent<'a> {
     pub(crate) runs: &'a [Run],
     /// The distance from 1 to the next number that coordinates were rounded to.
     pub(crate) unit: f64,
+    /// Where faces were merged, and a triangle reaches beyond the one it comes from: which other one is there.
+    pub(crate) beyond: &'a Beyond<'a>,
+}
+
+/// Given a source, one of its triangles and a place beyond that: the triangle of the same plane that holds the place.
+pub(crate) type Beyond<'a> = dyn Fn(u32, u32, &[f64; 3]) -> Option<u32> + Sync + 'a;
+
+/// Where a corner of the new mesh is in a source.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum CornerPlace {
+    /// At a corner (0, 1 or 2) of a triangle.
+    Corner(u32, usize),
+    /// Elsewhere in a triangle.
+    Within(u32, Place),
+}
+
+/// How far a corner may be from the triangle it comes from and still belong to it alone, in units in the last place of its
+/// coordinates: what rounding and the clean-up move it by, several times over.
+const BEYOND_ULPS: f64 = 32.0;
+
+/// That distance at a place, for coordinates rounded to such a unit.
+pub(crate) fn reach(p: &[f64; 3], unit: f64) -> f64 {
+    BEYOND_ULPS * unit * p.iter().fold(0.0f64, |size, x| size.max(x.abs()))
 }
 
 /// Where a corner's value is taken from.
@@ -126,35 +149,61 @@ impl<'a> Plan<'a> {
     }
 }
 
+/// The source's corner that corner `k` is, if the triangle is whole.
+fn in_order(run: Run, k: usize) -> usize {
+    if run.reversed { (3 - k) % 3 } else { k }
+}
+
 impl Descent<'_> {
     /// Where the corners of a triangle are taken from.
     fn corners(&self, triangle: u32, run: Run, new: &mut Vec<NewCorner>) -> [Taken; 3] {
-        let source = self.sources[run.source as usize];
-        let corners = source.triangles[run.triangle as usize].map(|v| source.positions[v as usize]);
         let vertices = self.triangles[triangle as usize];
         let places = vertices.map(|v| self.positions[v as usize]);
-        // 1. The whole triangle, then (nearly always in order) single corners.
-        let in_order = |k: usize| if run.reversed { (3 - k) % 3 } else { k };
-        let taken = |corner: usize| Taken { of: run.triangle, corner: corner as u32 };
-        if (0..3).all(|k| self.is_at(&corners[in_order(k)], &places[k])) {
-            return [0, 1, 2].map(|k| taken(in_order(k)));
+        let corners = self.corners_of(run.source, run.triangle);
+        // 1. The whole triangle.
+        if (0..3).all(|k| self.is_at(&corners[in_order(run, k)], &places[k])) {
+            return [0, 1, 2].map(|k| Taken { of: run.triangle, corner: in_order(run, k) as u32 });
         }
-        // 2. What lies elsewhere in it.
-        [0, 1, 2].map(|k| {
-            let same = (0..3).map(|i| in_order((k + i) % 3)).find(|&i| self.is_at(&corners[i], &places[k]));
-            if let Some(corner) = same {
-                return taken(corner);
+        // 2. Corner by corner.
+        [0, 1, 2].map(|k| match self.corner_place(run, k, &places[k]) {
+            CornerPlace::Corner(of, corner) => Taken { of, corner: corner as u32 },
+            CornerPlace::Within(triangle, place) => {
+                let Run { source, reversed, .. } = run;
+                new.push(NewCorner { vertex: vertices[k], source, triangle, reversed, place });
+                Taken { of: new.len() as u32 - 1, corner: NEW }
             }
-            let (place, _) = nearest_place(&corners, &places[k], self.unit);
-            new.push(NewCorner {
-                vertex: vertices[k],
-                source: run.source,
-                triangle: run.triangle,
-                reversed: run.reversed,
-                place,
-            });
-            Taken { of: new.len() as u32 - 1, corner: NEW }
         })
+    }
+
+    /// Where corner `k` of a triangle that comes from the first one of a run is, its place being `p`.
+    pub(crate) fn corner_place(&self, run: Run, k: usize, p: &[f64; 3]) -> CornerPlace {
+        // 1. At a corner, nearly always the same one.
+        let at_corner = |corners: &[[f64; 3]; 3]| {
+            (0..3).map(|i| in_order(run, (k + i) % 3)).find(|&i| self.is_at(&corners[i], p))
+        };
+        let corners = self.corners_of(run.source, run.triangle);
+        if let Some(corner) = at_corner(&corners) {
+            return CornerPlace::Corner(run.triangle, corner);
+        }
+        // 2. In the triangle.
+        let (place, off) = nearest_place(&corners, p, self.unit);
+        if off <= reach(p, self.unit) {
+            return CornerPlace::Within(run.triangle, place);
+        }
+        // 3. In another one of its plane.
+        let Some(other) = (self.beyond)(run.source, run.triangle, p) else {
+            return CornerPlace::Within(run.triangle, place);
+        };
+        let corners = self.corners_of(run.source, other);
+        match at_corner(&corners) {
+            Some(corner) => CornerPlace::Corner(other, corner),
+            None => CornerPlace::Within(other, nearest_place(&corners, p, self.unit).0),
+        }
+    }
+
+    fn corners_of(&self, source: u32, triangle: u32) -> [[f64; 3]; 3] {
+        let source = self.sources[source as usize];
+        source.triangles[triangle as usize].map(|v| source.positions[v as usize])
     }
 
     /// Whether a vertex is where a corner of a source is, or was before it was rounded to single precision.

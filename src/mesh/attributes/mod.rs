@@ -1,5 +1,6 @@
 //! Attributes: what a file says of the corners of its triangles, such as texture coordinates, normals and colours.
 
+mod affine;
 mod carry;
 mod interpolate;
 mod lists;
@@ -7,7 +8,8 @@ mod moved;
 mod pieces;
 mod table;
 
-pub(crate) use carry::{Descent, Run, carry};
+pub(crate) use affine::continues;
+pub(crate) use carry::{CornerPlace, Descent, Run, carry, reach};
 pub(super) use lists::{append, keep, reverse, reverse_some};
 pub(crate) use moved::moved;
 pub(super) use moved::turn_corners;

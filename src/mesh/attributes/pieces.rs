@@ -26,7 +26,9 @@ pub(in crate::mesh) fn of_pieces(
             _ => runs.push(Run { source: 0, triangle, count: 1, reversed: false, whole }),
         }
     }
-    let descent = Descent { sources: &[mesh], positions, triangles, runs: &runs, unit: f64::EPSILON };
+    let unit = f64::EPSILON;
+    let descent =
+        Descent { sources: &[mesh], positions, triangles, runs: &runs, unit, beyond: &|_, _, _| None };
     // Without limits it does not fail.
     carry(&descent, Runner::new(&Control::new(), true)).unwrap_or_default()
 }
