@@ -33,6 +33,6 @@ mod tests {
             let value = f64::from(i) / 10_000.0;
             assert_eq!(encoded_decimal(linear(value)).to_bits(), value.to_bits(), "{value}");
         }
-        assert_eq!((linear(0.0), linear(1.0), encoded(1.0)), (0.0, 1.0, 1.0));
+        assert_eq!((linear(0.0), linear(1.0), encoded_decimal(1.0)), (0.0, 1.0, 1.0));
     }
 }

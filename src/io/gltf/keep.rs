@@ -101,7 +101,7 @@ pub(in crate::io) fn write(
     let counts = ["textures", "samplers", "images"].map(|key| scene.list(key).len() as u32);
     let known = Known { materials: known, textures: counts[0], samplers: counts[1], images: counts[2] };
     let mut warnings = Vec::new();
-    let mut fragment = Fragment::in_node(&local, known, has_skin, options, &mut warnings)?;
+    let fragment = Fragment::in_node(&local, known, has_skin, options, &mut warnings)?;
     scene.replace(&place, &fragment);
     warnings.append(&mut scene.warnings);
     let (json, bytes) = scene.finish();

@@ -71,7 +71,10 @@ impl<'a> Materials<'a> {
             return Ok(known.clone());
         }
         let text = self.reader.get(&self.reader.document.materials, "materials", index as usize, pointer)?;
-        let material = match object(text.get()) {
+        // What the crate's type refuses no reader would take.
+        let checked = serde_json::from_str::<gltf::json::Material>(text.get());
+        let json = checked.map_err(|error| error.to_string()).and_then(|_| object(text.get()));
+        let material = match json {
             Ok(json) => self.material(json, index, budget, notes)?,
             Err(reason) => {
                 notes.say(format!("of /materials/{index} only the name and the colour are read: {reason}"));

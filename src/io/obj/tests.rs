@@ -198,3 +198,78 @@ fn names_that_would_fill_memory_are_refused() {
     }
     assert!(matches!(read(text.as_bytes(), &ReadOptions::new()), Err(Error::TooLarge { .. })));
 }
+
+#[test]
+fn texture_coordinates_normals_and_colours_are_read_and_written() {
+    let text = "v 0 0 0 1 0 0\nv 1 0 0 0.5 0.25 0\nv 1 1 0 0 1 0\nv 0 1 0\nvt 0.1 0.2\nvt 0.3\nvt 0.5 0.6 0.7\nvn 0 0 1\n\
+        vn 0 0 -1\nf 1/1/1 2/2/1 3/3/2 4//2\nf 1 3 2\nf 4/1 3/99 2/-1\nf 1//1 2//1 3//9\n";
+    let (mesh, warnings) = read_text(text);
+    assert_eq!(warnings, ["texture coordinates or normal that a face names are not there (2 in all)"]);
+    let of = |name: &str| mesh.attributes.iter().find(|attribute| attribute.name == name).unwrap();
+    let uv = of("TEXCOORD_0");
+    assert_eq!(uv.at(0, 0), Some(&[0.1, 0.8][..]));
+    assert_eq!(uv.at(0, 1), Some(&[0.3, 1.0][..]));
+    // The second triangle of the quadrilateral.
+    assert_eq!((uv.at(1, 1), uv.at(1, 2)), (Some(&[0.5, 0.4][..]), None));
+    assert_eq!((uv.at(2, 0), uv.at(3, 0), uv.at(3, 1)), (None, Some(&[0.1, 0.8][..]), None));
+    assert_eq!((of("NORMAL").at(1, 2), of("NORMAL").at(2, 0)), (Some(&[0.0, 0.0, -1.0][..]), None));
+    assert_eq!((of("COLOR_0").at(0, 0), of("COLOR_0").at(1, 2)), (Some(&[1.0, 0.0, 0.0][..]), None));
+
+    let mut bytes = Vec::new();
+    let written = write(&mesh, &mut bytes, &crate::io::WriteOptions::new()).unwrap();
+    assert!(written.warnings.is_empty(), "{:?}", written.warnings);
+    let written = String::from_utf8(bytes).unwrap();
+    assert!(written.contains("v 1 0 0 0.5 0.25 0\n") && written.contains("vt 0.1 0.2\n"), "{written}");
+    assert!(written.contains("f 1/1/1 2/2/1 3/3/2\n") && written.contains("f 1 3 2\n"), "{written}");
+    let (again, warnings) = read_text(&written);
+    assert!(warnings.is_empty(), "{warnings:?}");
+    for (attribute, before) in again.attributes.iter().zip(&mesh.attributes) {
+        for corner in 0..15 {
+            assert_eq!(attribute.at(corner / 3, corner % 3), before.at(corner / 3, corner % 3));
+        }
+    }
+}
+
+#[test]
+fn labels_do_not_depend_on_chunks() {
+    let mut text = String::new();
+    for i in 0..30 {
+        let v = 4 * i + 1;
+        let color = if i % 5 == 2 { " 0.5 0.5 1" } else { "" };
+        text.push_str(&format!(
+            "v {i} 0 0\nv {i} 1 0{color}\nv {i} 0 1\nv {i} 1 1\nvt 0.{i} 0.5\nvn 0 {i} 1\n"
+        ));
+        text.push_str(&match i % 3 {
+            0 => format!("f {v}/{} {}/1 {}/1 {}/2\n", i + 1, v + 1, v + 3, v + 2),
+            1 => format!("f {v} {} {}\n", v + 1, v + 2),
+            _ => format!("f {v}//{} {}/2/1 {}\n", i + 1, v + 1, v + 2),
+        });
+    }
+    let relative = format!("{text}f -1/-1 -2/-2/-3 -3//-1\n");
+    for text in [&text, &relative] {
+        let expected = read_in_chunks(text.as_bytes(), 1, &ReadOptions::new()).unwrap();
+        assert_eq!(expected.0.attributes.len(), 3);
+        for count in 2..40 {
+            let found = read_in_chunks(text.as_bytes(), count, &ReadOptions::new()).unwrap();
+            assert_eq!(found, expected, "{count}");
+        }
+    }
+}
+
+#[test]
+fn odd_labels_are_no_danger() {
+    for face in [
+        "f 1/ 2/ 3/",
+        "f 1// 2// 3//",
+        "f 1/0 2/0 3/0",
+        "f 1/-9 2/-9 3/-9",
+        "f 1/4294967296 2/1 3/1",
+        "f 1/18446744073709551616 2 3",
+    ] {
+        let (mesh, _) = read_text(&format!("{CORNERS}vt 0 0\n{face}\n"));
+        assert_eq!(mesh.triangles.len(), 1, "{face}");
+    }
+    let (mesh, warnings) = read_text(&format!("{CORNERS}vt x y\nvn 1\nvt nan inf\nf 1/1/1 2/1/1 3/2/1\n"));
+    assert_eq!(mesh.attributes.len(), 2);
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+}

@@ -38,7 +38,11 @@ fn ascii_in_every_dress() {
          3 0 1 2 255 3 0 2 3 255\n0 0 1 0\n0 1 1 0\n0 1 1 1\n0.1 0 1 1\n"
             .to_string(),
     ] {
-        assert_eq!(read_all(text.as_bytes()).unwrap().0, expected, "{text}");
+        let mut mesh = read_all(text.as_bytes()).unwrap().0;
+        // Vertices and faces have a property of one name: that of vertices counts.
+        assert_eq!(mesh.attributes.len(), usize::from(text.contains("red")));
+        mesh.attributes.clear();
+        assert_eq!(mesh, expected, "{text}");
     }
 }
 
@@ -165,4 +169,59 @@ fn point_clouds_and_empty_meshes() {
     let empty = "ply\nformat binary_big_endian 1.0\nelement vertex 0\nproperty float x\nproperty float y\n\
                  property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n";
     assert!(read_all(empty.as_bytes()).unwrap().0.is_empty());
+}
+
+#[test]
+fn properties_become_attributes_and_come_back() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\nproperty uchar green\n\
+        property uchar blue\nproperty uchar alpha\nproperty float s\nproperty float t\nproperty float quality\n\
+        element face 2\nproperty list uchar int vertex_indices\nproperty float flatness\nend_header\n\
+        0 0 0 0 0 1 255 0 7 255 0 0.25 1.5\n1 0 0 0 0 1 1 2 3 255 1 0.1 nan\n1 1 0 0 0 1 9 9 9 0 1 1 3\n\
+        0 1 0 0 0 1 200 100 50 128 0 1 4\n3 0 1 2 0.5\n3 0 2 3 0.75\n";
+    let (mesh, warnings) = read_all(text.as_bytes()).unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let names: Vec<&str> = mesh.attributes.iter().map(|attribute| &*attribute.name).collect();
+    assert_eq!(names, ["NORMAL", "COLOR_0", "TEXCOORD_0", "_quality", "_flatness"]);
+    assert_eq!(mesh.attributes[2].at(0, 0), Some(&[0.0, 0.75][..]));
+    assert_eq!(mesh.attributes[1].at(1, 2).unwrap()[3], 128.0 / 255.0);
+    assert_eq!((mesh.attributes[3].at(0, 1), mesh.attributes[4].at(1, 0)), (None, Some(&[0.75][..])));
+    for encoding in [Encoding::Ascii, Encoding::Binary, Encoding::BinaryBigEndian] {
+        let mut bytes = Vec::new();
+        let options = crate::io::WriteOptions::new().encoding(encoding);
+        let written = write(&mesh, &mut bytes, &options).unwrap();
+        assert!(written.warnings.is_empty(), "{:?}", written.warnings);
+        let (again, warnings) = read_all(&bytes).unwrap();
+        assert!(warnings.is_empty(), "{warnings:?}");
+        assert_eq!(again.positions, mesh.positions);
+        for (attribute, before) in again.attributes.iter().zip(&mesh.attributes) {
+            assert_eq!(attribute.name, before.name);
+            for corner in 0..6 {
+                let value = |attribute: &Attribute| attribute.at(corner / 3, corner % 3).map(<[f64]>::to_vec);
+                assert_eq!(value(attribute), value(before), "{encoding:?} {}", before.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn texture_coordinates_of_faces_are_a_list() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 2\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n\
+        0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 8 0 0 1 0 1 1 0 1\n3 0 2 1 6 0.5 0.5 1 1 0.25 0.5\n";
+    let (mesh, _) = read_all(text.as_bytes()).unwrap();
+    let uv = &mesh.attributes[0];
+    assert_eq!((uv.at(0, 0), uv.at(2, 0)), (Some(&[0.0, 1.0][..]), Some(&[0.5, 0.5][..])));
+    let mut bytes = Vec::new();
+    write(&mesh, &mut bytes, &crate::io::WriteOptions::new()).unwrap();
+    let again = read_all(&bytes).unwrap().0;
+    for corner in 0..9 {
+        assert_eq!(again.attributes[0].at(corner / 3, corner % 3), uv.at(corner / 3, corner % 3));
+    }
+    // A list that does not fit, or is far longer than a face has corners, is none.
+    for list in ["6 0 0 1 0 1 1", "0", "255 ".to_string().as_str()] {
+        let list = if list == "255 " { format!("255{}", " 0.5".repeat(255)) } else { list.to_string() };
+        let odd = text.replace("8 0 0 1 0 1 1 0 1", &list);
+        assert_eq!(read_all(odd.as_bytes()).unwrap().0.attributes[0].at(0, 0), None);
+    }
 }
