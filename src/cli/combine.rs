@@ -7,7 +7,7 @@ use serde_json::Value;
 use trisect::io::{Format, WriteOptions};
 use trisect::{BooleanOptions, Embed, Grid, OperandState, Operation, Outcome, Rule, Solid};
 
-use super::argument_groups::Colours;
+use super::argument_groups::{Colours, Writing};
 use super::arguments::{Combination, Combine};
 use super::fault::{Exit, Fault};
 use super::mended;
@@ -69,6 +69,9 @@ fn run_task(
     let mut requests = requests;
     scenes::name_node(&mut requests, &arguments.results.writing)?;
     let requests = parts(task, requests, session)?;
+    let writing = &arguments.results.writing;
+    let write_options =
+        scenes::kept(output::write_options(writing, &session.limits), writing, requests.first())?;
     if requests.len() < task.least_inputs() {
         return Err(Fault::usage("at least two inputs are needed: FILE1 FILE2 ... -o OUTPUT"));
     }
@@ -91,7 +94,7 @@ fn run_task(
         &session.console,
     )?;
     session.took("read", start);
-    describe(&operands, session);
+    describe(&operands, &arguments.results.writing, session);
     if arguments.dry_run {
         announce(task, &operands, &targets.concat(), session);
         return Ok(Exit::Fine);
@@ -107,14 +110,7 @@ fn run_task(
         warn_of_inward(outcome, &operands, session);
     }
     let first = operands.first();
-    let style = Style {
-        format: first.map(|operand| operand.format),
-        options: scenes::kept(
-            output::write_options(&arguments.results.writing, &session.limits),
-            &arguments.results.writing,
-            first.map(|operand| &operand.request),
-        )?,
-    };
+    let style = Style { format: first.map(|operand| operand.format), options: write_options };
     finish(arguments, &outcomes, &targets, &suffixes, &style, seconds, session)?;
     Ok(Exit::Fine)
 }
@@ -263,7 +259,7 @@ fn refuse_pointless(arguments: &Combine, targets: &[Target], session: &Session<'
 }
 
 /// One line and one JSON object for every operand, and its warnings.
-fn describe(operands: &[Operand], session: &mut Session<'_>) {
+fn describe(operands: &[Operand], writing: &Writing, session: &mut Session<'_>) {
     let mut described = Vec::new();
     for (index, operand) in operands.iter().enumerate() {
         let measures = Measures::of_solid(&operand.solid);
@@ -277,7 +273,8 @@ fn describe(operands: &[Operand], session: &mut Session<'_>) {
         for transform in &operand.request.transforms {
             session.console.detail(&format!("  {transform}"));
         }
-        for warning in &operand.warnings {
+        let lost = scenes::lost(&operand.contents, writing, index);
+        for warning in lost.iter().chain(&operand.warnings) {
             session.warn(format!("operand {} ({}): {warning}", index + 1, operand.request.name()));
         }
         described.push(report::operand_json(operand, index, &measures));

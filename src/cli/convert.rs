@@ -43,15 +43,15 @@ pub(crate) fn run(
         output::probe(&targets, &session.limits)?;
     }
 
-    let read = read(&request, session)?;
+    let options = output::write_options(&writing, &session.limits);
+    let options = scenes::kept(options, &writing, Some(&request))?;
+    let read = read(&request, &writing, session)?;
     let names: Vec<String> = targets.iter().map(Target::name).collect();
     if arguments.dry_run {
         session.console.say(&format!("dry run: {}; would write {}", read.line, names.join(", ")));
         session.note("dry_run", true);
         return Ok(Exit::Fine);
     }
-    let options = output::write_options(&writing, &session.limits);
-    let options = scenes::kept(options, &writing, Some(&request))?;
     write(arguments, &writing, &targets, &read, options, session)?;
     session.console.say(&format!("{} -> {}", read.line, names.join(", ")));
     Ok(Exit::Fine)
@@ -67,7 +67,7 @@ struct Read {
     _reserved: Reservation,
 }
 
-fn read(request: &Request, session: &mut Session<'_>) -> Result<Read, Fault> {
+fn read(request: &Request, writing: &Writing, session: &mut Session<'_>) -> Result<Read, Fault> {
     let control = session.control();
     let of_input = |error: Error| error.of_operand(0, request.name());
     let start = Instant::now();
@@ -75,7 +75,7 @@ fn read(request: &Request, session: &mut Session<'_>) -> Result<Read, Fault> {
     let request = &selection::together(request.clone(), &session.limits, &control).map_err(of_input)?;
     let Input { mesh, format, mut warnings, contents, reserved } =
         reading::read(request, &session.limits, &control).map_err(of_input)?;
-    warnings.extend(contents.not_kept());
+    warnings.extend(scenes::lost(&contents, writing, 0));
     let (mesh, welded) = usable::welded(mesh, request.repairs.weld).map_err(of_input)?;
     let (mesh, turned) = if request.repairs.orient { usable::oriented(mesh) } else { (mesh, false) };
     let seconds = session.took("read", start);

@@ -5,7 +5,7 @@ use std::time::Instant;
 #[cfg(feature = "parallel")]
 use rayon::prelude::*;
 use trisect::control::Reservation;
-use trisect::io::Format;
+use trisect::io::{Contents, Format};
 use trisect::{Control, Solid};
 
 use super::fault::Fault;
@@ -22,6 +22,8 @@ pub(crate) struct Operand {
     pub(crate) solid: Solid,
     pub(crate) format: Format,
     pub(crate) warnings: Vec<String>,
+    /// What its file holds besides the mesh.
+    pub(crate) contents: Contents,
     pub(crate) crossings: Option<Crossings>,
     pub(crate) seconds: f64,
     _reserved: Reservation,
@@ -61,11 +63,10 @@ fn operand(
         reading::read(&request, limits, control)
             .map_err(|error| Box::new(Unusable { error, remedy: None }))?;
     let Usable { solid, crossings } = usable::usable(mesh, request.repairs, assume_clean, control)?;
-    warnings.extend(contents.not_kept());
     warnings.extend(mended::left_out(solid.mending()));
     warnings.extend(usable::nothing_left(&solid));
     // What touches itself in single vertices would do so in the result as well.
     let solid = if solid.is_manifold() { solid } else { solid.separated().0 };
     let seconds = start.elapsed().as_secs_f64();
-    Ok(Operand { request, solid, format, warnings, crossings, seconds, _reserved: reserved })
+    Ok(Operand { request, solid, format, warnings, contents, crossings, seconds, _reserved: reserved })
 }

@@ -1,7 +1,7 @@
 //! Scenes that stay around what a verb makes of one of their nodes.
 
 use clap::ValueEnum;
-use trisect::io::{KeptScene, WriteOptions};
+use trisect::io::{Contents, KeptScene, WriteOptions};
 
 use super::argument_groups::Writing;
 use super::fault::Fault;
@@ -15,6 +15,11 @@ pub(crate) enum SceneChoice {
     Drop,
     /// glTF outputs are the scene, with the result at the node
     Keep,
+}
+
+/// What an input loses that its file holds besides meshes; the first one nothing if its scene stays.
+pub(crate) fn lost(contents: &Contents, writing: &Writing, index: usize) -> Vec<String> {
+    if index == 0 && writing.scene == SceneChoice::Keep { Vec::new() } else { contents.not_kept() }
 }
 
 /// Names the node of the first input, if `--node` does.

@@ -35,7 +35,9 @@ pub(crate) fn each(
         for (number, part) in parts.into_iter().enumerate() {
             // What is to be said of the file is said once.
             let warnings = if number == 0 { file.whole.warnings.clone() } else { Vec::new() };
-            let contents = if number == 0 { file.whole.contents.clone() } else { io::Contents::default() };
+            let mut contents =
+                if number == 0 { file.whole.contents.clone() } else { io::Contents::default() };
+            contents.skinned = usize::from(is_skinned(&part.mesh));
             let chosen = Chosen {
                 name: Some(part.name),
                 mesh: part.mesh,
@@ -91,4 +93,9 @@ fn read(request: &Request, limits: &Limits, control: &Control) -> Result<Parts, 
         None => io::load_parts(&request.path, &options),
     }
     .map_err(reading::name_option)
+}
+
+/// Whether the corners of a mesh have joints.
+fn is_skinned(mesh: &Mesh) -> bool {
+    mesh.attributes.iter().any(|attribute| attribute.name.starts_with("JOINTS_"))
 }

@@ -130,25 +130,20 @@ impl FaceList {
         of_triangle.into_iter().chain(of_polygon).min().or(left_out)
     }
 
+    /// Whether there are faces of more than three corners.
+    pub(super) fn has_polygons(&self) -> bool {
+        !self.polygons.is_empty()
+    }
+
     /// How many faces there are.
     pub(super) fn len(&self) -> usize {
         self.triangles.len() + self.polygons.len()
     }
 
     /// The triangles, in the order of the faces, with every index in range; and for each of `places` (in order) how
-    /// many triangles come before it. Triangles with a repeated corner are dropped: their edges cancel.
+    /// many triangles come before it. Triangles with a repeated corner are dropped: their edges cancel. `of`, if it is there, gets
+    /// the number of the face that each triangle is of.
     pub(super) fn into_triangles(
-        self,
-        positions: &[[f64; 3]],
-        places: &[FacePlace],
-        notes: &mut Notes,
-        control: &Control,
-    ) -> Result<(Vec<[u32; 3]>, Vec<usize>), Error> {
-        self.into_triangles_of(positions, places, notes, control, &mut None)
-    }
-
-    /// The same; `of`, if it is there, gets the number of the face that each triangle is of.
-    pub(super) fn into_triangles_of(
         mut self,
         positions: &[[f64; 3]],
         places: &[FacePlace],
@@ -268,9 +263,11 @@ mod tests {
         assert_eq!(faces.first_beyond(8), None);
 
         let mut notes = Notes::default();
+        let mut of = Some(Vec::new());
         let (triangles, offsets) =
-            faces.into_triangles(&positions, &places, &mut notes, &Control::new()).unwrap();
+            faces.into_triangles(&positions, &places, &mut notes, &Control::new(), &mut of).unwrap();
         assert_eq!(offsets, [0, 1, 4, 5, 6]);
+        assert_eq!(of.unwrap(), [0, 1, 1, 1, 2, 3]);
         assert_eq!(triangles[0], [0, 1, 2]);
         assert_eq!(triangles[5], [5, 6, 7]);
         assert_eq!(triangles[4], [4, 5, 6]);

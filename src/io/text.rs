@@ -4,6 +4,7 @@ use std::io::Write;
 use std::ops::Range;
 
 use super::{Precision, WriteOptions, write_error};
+use crate::mesh::Faces;
 use crate::parallel;
 use crate::{Control, Error, Mesh};
 
@@ -91,8 +92,13 @@ pub(super) fn line_name(name: &str) -> String {
     clean
 }
 
-/// Writes the vertices of a mesh, one to a line, and its triangles, each with its number of corners.
-pub(super) fn write_lines(mesh: &Mesh, output: &mut dyn Write, options: &WriteOptions) -> Result<(), Error> {
+/// Writes the vertices of a mesh, one to a line, and its faces, each with its number of corners.
+pub(super) fn write_lines(
+    mesh: &Mesh,
+    faces: &Faces,
+    output: &mut dyn Write,
+    options: &WriteOptions,
+) -> Result<(), Error> {
     write_blocks(output, mesh.positions.len(), &options.control, |range, text| {
         let mut numbers = NumberWriter::new(options.precision);
         for &position in &mesh.positions[range] {
@@ -100,6 +106,21 @@ pub(super) fn write_lines(mesh: &Mesh, output: &mut dyn Write, options: &WriteOp
             text.push(b'\n');
         }
     })?;
+    if !faces.are_triangles() {
+        return write_blocks(output, faces.len(), &options.control, |range, text| {
+            let mut numbers = NumberWriter::new(options.precision);
+            for face in range {
+                let corners = faces.corners(face);
+                numbers.integer(text, corners.len() as u64);
+                for corner in corners {
+                    text.push(b' ');
+                    numbers
+                        .integer(text, u64::from(mesh.triangles[corner as usize / 3][corner as usize % 3]));
+                }
+                text.push(b'\n');
+            }
+        });
+    }
     write_blocks(output, mesh.triangles.len(), &options.control, |range, text| {
         let mut numbers = NumberWriter::new(options.precision);
         for triangle in &mesh.triangles[range] {

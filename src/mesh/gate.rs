@@ -267,11 +267,13 @@ fn assemble(
     let mut groups = mesh.groups.clone();
     let is_own =
         source.len() == mesh.triangles.len() && (0..).zip(&source).all(|(index, &source)| index == source);
+    let mut polygons = mesh.polygons.clone();
     if !is_own {
         groups.select(&source);
+        polygons.select(&source);
     }
     let attributes = attributes::of_pieces(mesh, &positions, &triangles, &source);
-    let mut mesh = Mesh { positions, triangles, groups, attributes };
+    let mut mesh = Mesh { positions, triangles, groups, attributes, polygons };
     if orient && let Some(mending) = &mut mending {
         // Which way is out shows only now that the surface is closed.
         mending.turned += orient::turn(&mut mesh).len();
@@ -334,11 +336,13 @@ fn single_shells(solid: Solid) -> Solid {
     let positions = clean::compact(&mesh.positions, &mut triangles);
     let mut groups = mesh.groups.clone();
     groups.select(&kept);
+    let mut polygons = mesh.polygons.clone();
+    polygons.select(&kept);
     let mut attributes = mesh.attributes.clone();
     attributes::keep(&mut attributes, &kept);
     Solid {
         bounds: Bounds::of(&positions),
-        mesh: Mesh { positions, triangles, groups, attributes },
+        mesh: Mesh { positions, triangles, groups, attributes, polygons },
         source: Some(kept.iter().map(|&triangle| solid.source_triangle(triangle)).collect()),
         cleaning: solid.cleaning,
         mending: Some(mending),

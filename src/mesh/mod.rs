@@ -24,6 +24,7 @@ mod nesting;
 mod orient;
 mod patches;
 mod places;
+mod polygons;
 mod recenter;
 pub(crate) mod scale;
 mod self_crossing;
@@ -56,6 +57,9 @@ pub use material::{
 pub(crate) use measure::enclosed_volume;
 pub use mend::Mending;
 pub use places::{Fault, Place};
+#[cfg(feature = "formats")]
+pub(crate) use polygons::Faces;
+pub use polygons::Polygons;
 pub use self_crossing::{SelfCrossing, SelfCrossings};
 pub use solid::{Cleaning, Solid};
 pub(crate) use sparse_union_find::SparseUnionFind;
@@ -99,13 +103,16 @@ pub struct Mesh {
     /// Values at the corners of the triangles: texture coordinates, normals, colours and others.
     #[cfg_attr(feature = "serde", serde(default))]
     pub attributes: Vec<Attribute>,
+    /// The polygons of the file that the triangles are parts of.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub polygons: Polygons,
 }
 
 impl Mesh {
     /// A mesh from positions and triangles, all in one unnamed group.
     #[must_use]
     pub fn new(positions: Vec<[f64; 3]>, triangles: Vec<[u32; 3]>) -> Self {
-        Self { positions, triangles, groups: FaceGroups::default(), attributes: Vec::new() }
+        Self { positions, triangles, ..Self::default() }
     }
 
     /// Whether there are no triangles.
@@ -132,6 +139,7 @@ impl Mesh {
             let triangles = self.triangles.len() + other.triangles.len();
             return Err(MeshError::TooLarge { vertices, triangles });
         }
+        self.polygons.append(self.triangles.len(), &other.polygons, other.triangles.len());
         self.groups.append(self.triangles.len(), &other.groups, other.triangles.len());
         attributes::append(
             &mut self.attributes,
@@ -176,6 +184,7 @@ impl Mesh {
             self.positions = clean::compact(&self.positions, &mut triangles);
             self.triangles = triangles;
             self.groups.select(&cleaned.source);
+            self.polygons.select(&cleaned.source);
             attributes::keep(&mut self.attributes, &cleaned.source);
         }
         Ok(self)

@@ -45,7 +45,8 @@ impl Polygons {
     /// Keeps of the assignment what the triangles `kept` have, in that order.
     pub(super) fn select(&mut self, kept: &[u32]) {
         if !self.is_empty() {
-            let polygon = |&triangle: &u32| self.of_triangle.get(triangle as usize).copied().unwrap_or(Self::NONE);
+            let polygon =
+                |&triangle: &u32| self.of_triangle.get(triangle as usize).copied().unwrap_or(Self::NONE);
             self.of_triangle = kept.iter().map(polygon).collect();
         }
     }
@@ -57,7 +58,8 @@ impl Polygons {
         }
         let offset = self.triangles.len() as u32;
         self.of_triangle.resize(own, Self::NONE);
-        let shifted = |&number: &u32| if number == Self::NONE { number } else { number.saturating_add(offset) };
+        let shifted =
+            |&number: &u32| if number == Self::NONE { number } else { number.saturating_add(offset) };
         self.of_triangle.extend(other.of_triangle.iter().map(shifted));
         self.of_triangle.resize(own + added, Self::NONE);
         self.triangles.extend_from_slice(&other.triangles);
@@ -143,11 +145,7 @@ impl Faces {
 /// The corners around triangles that make one polygon, beginning where all of them meet, if they do: most readers triangulate from
 /// there. Nothing if the triangles are no polygon, or differ in what a file says of their corners. O(n log n).
 #[cfg(feature = "formats")]
-fn outline(
-    mesh: &super::Mesh,
-    triangles: &[u32],
-    is_one: &impl Fn(u32, u32) -> bool,
-) -> Option<Vec<u32>> {
+fn outline(mesh: &super::Mesh, triangles: &[u32], is_one: &impl Fn(u32, u32) -> bool) -> Option<Vec<u32>> {
     let vertex = |corner: u32| mesh.triangles[corner as usize / 3][corner as usize % 3];
     // 1. The edges that no other triangle passes the other way, by the vertex where they begin.
     let mut edges: Vec<(u32, u32, u32)> = Vec::with_capacity(3 * triangles.len());

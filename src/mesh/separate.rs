@@ -30,6 +30,9 @@ impl Surface for Whole {
         if let Some(&group) = self.mesh.groups.of_triangle.get(of as usize) {
             self.mesh.groups.of_triangle.push(group);
         }
+        if !self.mesh.polygons.is_empty() {
+            self.mesh.polygons.of_triangle.push(super::Polygons::NONE);
+        }
     }
 
     fn position(&self, point: u32) -> [f64; 3] {

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use super::measure::signed_volume;
 use super::topology::Topology;
-use super::{Attribute, Bounds, FaceGroups, Mending, Mesh, SelfCrossings, chain};
+use super::{Attribute, Bounds, FaceGroups, Mending, Mesh, Polygons, SelfCrossings, chain};
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
 /// often as it occurs. Every vertex belongs to a triangle, no triangle has a repeated corner, and the enclosed
@@ -162,6 +162,10 @@ impl Solid {
     /// Notes that an operation made this so that it crosses itself no deeper than rounding.
     pub(crate) fn set_made_clean(&mut self) {
         self.made_clean = true;
+    }
+
+    pub(crate) fn set_polygons(&mut self, polygons: Polygons) {
+        self.mesh.polygons = polygons;
     }
 
     pub(crate) fn set_groups(&mut self, groups: FaceGroups) {

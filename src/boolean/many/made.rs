@@ -11,7 +11,7 @@ use crate::boolean::result::attributes::carried;
 use crate::boolean::result::certificate::Notes;
 use crate::boolean::result::origins::Origins;
 use crate::boolean::result::outcome::Outcome;
-use crate::mesh::FaceGroups;
+use crate::mesh::{FaceGroups, Polygons};
 use crate::parallel::Runner;
 
 /// A result, but for crossings that rounding made.
@@ -46,6 +46,7 @@ impl Made {
             self.solid.set_made_clean();
         }
         self.solid.set_groups(self.groups);
+        self.solid.set_polygons(whole_polygons(&self.origins, operands));
         // The attributes last, of the vertices as they are now.
         let unit =
             if policy.embed == Embed::OnGrid(Grid::Single) { f32::EPSILON.into() } else { f64::EPSILON };
@@ -85,6 +86,31 @@ impl Made {
         self.notes.embedding = Some(report);
         Ok(())
     }
+}
+
+/// The polygons of the operands, on the triangles of the result that are as the operands have them.
+fn whole_polygons(origins: &Origins, operands: &[&Solid]) -> Polygons {
+    if operands.iter().all(|solid| solid.mesh().polygons.is_empty()) {
+        return Polygons::default();
+    }
+    // Each operand's polygons are counted on from those before.
+    let mut all = Polygons::default();
+    let mut firsts = Vec::with_capacity(operands.len());
+    for solid in operands {
+        firsts.push(all.triangles.len() as u32);
+        all.triangles.extend_from_slice(&solid.mesh().polygons.triangles);
+    }
+    for (origin, count, whole) in origins.stretches() {
+        let operand = origin.operand as usize;
+        let of_triangle = operands.get(operand).map_or(&[][..], |solid| &solid.mesh().polygons.of_triangle);
+        let first = origin.triangle as usize;
+        for triangle in first..first + count as usize {
+            let polygon =
+                of_triangle.get(triangle).copied().filter(|&polygon| whole && polygon != Polygons::NONE);
+            all.of_triangle.push(polygon.map_or(Polygons::NONE, |polygon| polygon + firsts[operand]));
+        }
+    }
+    all
 }
 
 /// A number for each triangle, equal for those that come from one face, and by number the group of that face (nothing if there

@@ -126,6 +126,14 @@ impl<'a> Labels<'a> {
         Ok(())
     }
 
+    /// Whether two corners at one vertex are written alike.
+    pub(super) fn are_one(&self, a: u32, b: u32) -> bool {
+        let line = |table: &Option<Table<'_>>, corner: u32| {
+            table.as_ref().and_then(|table| table.line_of(corner as usize))
+        };
+        line(&self.texture, a) == line(&self.texture, b) && line(&self.normals, a) == line(&self.normals, b)
+    }
+
     /// Writes what follows the vertex of a corner.
     #[inline]
     pub(super) fn write_corner(&self, corner: usize, numbers: &mut NumberWriter, text: &mut Vec<u8>) {

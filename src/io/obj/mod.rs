@@ -23,6 +23,7 @@ use super::labels::NO_INDEX;
 use super::notes::Notes;
 use super::scan::line_place;
 use super::{Format, ReadOptions, malformed};
+use crate::mesh::Polygons;
 use crate::parallel;
 use crate::{Error, Mesh};
 use groups::Groups;
@@ -73,27 +74,31 @@ fn read_in_chunks(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
     let resolved = parallel::map(chunks, |chunk| -> Result<_, Error> {
         let mut notes = Notes::default();
         let places: Vec<_> = chunk.changes.iter().map(|change| change.at).collect();
-        let mut faces = (!chunk.labels.corners.is_empty()).then(Vec::new);
+        let has_polygons = chunk.faces.has_polygons();
+        let mut faces = (has_polygons || !chunk.labels.corners.is_empty()).then(Vec::new);
         let (triangles, offsets) =
-            chunk.faces.into_triangles_of(&positions, &places, &mut notes, &options.control, &mut faces)?;
+            chunk.faces.into_triangles(&positions, &places, &mut notes, &options.control, &mut faces)?;
         let faces = faces.unwrap_or_default();
         let corners = super::labels::of_triangles(&triangles, &faces, &chunk.labels, label_counts);
         notes.add("texture coordinates or normal that a face names are not there", corners.beyond);
-        Ok((triangles, offsets, chunk.changes, chunk.libraries, notes, corners))
+        let polygons = if has_polygons { Polygons::of_faces(&faces) } else { Polygons::default() };
+        Ok((triangles, offsets, chunk.changes, chunk.libraries, notes, corners, polygons))
     });
 
     let mut groups = Groups::default();
     let mut parts = Vec::with_capacity(resolved.len());
     let (mut of_texture, mut of_normals) = (Vec::new(), Vec::new());
+    let mut polygons = Polygons::default();
     let mut before = 0;
     for part in resolved {
-        let (triangles, offsets, changes, libraries, part_notes, corners) = part?;
+        let (triangles, offsets, changes, libraries, part_notes, corners, of_chunk) = part?;
         for (change, offset) in changes.iter().zip(offsets) {
             groups.change(change, before + offset);
         }
         for name in libraries {
             groups.add_library(name, options.folder.as_deref(), &mut notes);
         }
+        polygons.append(before, &of_chunk, triangles.len());
         before += triangles.len();
         if before > u32::MAX as usize {
             return Err(too_large(Format::Obj, "triangles"));
@@ -110,6 +115,7 @@ fn read_in_chunks(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
     let groups = groups.finish(before, options, bytes.len().max(1 << 16), &mut notes)?;
     let mut mesh = Mesh::new(positions, join(parts));
     mesh.groups = groups;
+    mesh.polygons = polygons;
     let (texture, normals) = ((texture, of_texture), (normals, of_normals));
     mesh.attributes = corners::attributes(&mesh.triangles, texture, normals, &colors, &mut notes);
     if smoothing == Smoothing::Several && mesh.attributes.iter().all(|attribute| attribute.name != "NORMAL") {

@@ -8,6 +8,7 @@ use super::super::{Format, Precision, WriteOptions};
 use super::groups::NO_MATERIAL;
 use super::labels::Labels;
 use super::mtl::MaterialNames;
+use crate::mesh::Faces;
 use crate::{Error, Mesh};
 
 /// Writes vertices, then faces with `g` and `usemtl` where they change.
@@ -57,20 +58,26 @@ pub(in crate::io) fn write(
             text.extend_from_slice(format!("usemtl {}\n", material.unwrap_or(NO_MATERIAL)).as_bytes());
         }
     };
-    write_blocks(output, mesh.triangles.len(), &options.control, |range, text| {
+    let group_of = |corner: u32| groups.of_triangle.get(corner as usize / 3).copied();
+    let faces = Faces::of(mesh, usize::MAX, |a, b| group_of(a) == group_of(b) && labels.are_one(a, b));
+    write_blocks(output, faces.len(), &options.control, |range, text| {
         let mut numbers = NumberWriter::new(options.precision);
-        for triangle in range {
-            if let Some(&group) = groups.of_triangle.get(triangle) {
-                let before = triangle.checked_sub(1).map(|before| groups.of_triangle[before] as usize);
-                if before != Some(group as usize) {
-                    change(text, before, group as usize);
+        let mut before =
+            range.start.checked_sub(1).and_then(|before| group_of(faces.corners(before).next()?));
+        for face in range {
+            let corners = faces.corners(face);
+            if let Some(group) = faces.corners(face).next().and_then(group_of) {
+                if before != Some(group) {
+                    change(text, before.map(|group| group as usize), group as usize);
                 }
+                before = Some(group);
             }
             text.push(b'f');
-            for (k, corner) in mesh.triangles[triangle].into_iter().enumerate() {
+            for corner in corners {
                 text.push(b' ');
-                numbers.integer(text, u64::from(corner) + 1);
-                labels.write_corner(3 * triangle + k, &mut numbers, text);
+                let vertex = mesh.triangles[corner as usize / 3][corner as usize % 3];
+                numbers.integer(text, u64::from(vertex) + 1);
+                labels.write_corner(corner as usize, &mut numbers, text);
             }
             text.push(b'\n');
         }

@@ -9,6 +9,7 @@ use super::rounding::{self, Written};
 use super::scan::{Scanner, line_place, quote};
 use super::text::{write_all, write_lines};
 use super::{Format, Precision, ReadOptions, WriteOptions, malformed, unsupported};
+use crate::mesh::{Faces, Polygons};
 use crate::{Control, Error, Mesh};
 
 /// Vertices or faces between two looks at the limits.
@@ -43,11 +44,13 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<Str
     let positions = reader.vertices(vertices, &options.control)?;
     let faces = reader.faces(faces, vertices, &options.control)?;
     let mut notes = reader.notes;
-    let (triangles, _) = faces.into_triangles(&positions, &[], &mut notes, &options.control)?;
+    let mut of = faces.has_polygons().then(Vec::new);
+    let (triangles, _) = faces.into_triangles(&positions, &[], &mut notes, &options.control, &mut of)?;
     if triangles.len() > u32::MAX as usize {
         return Err(too_large(Format::Off, "triangles"));
     }
     let mut mesh = Mesh::new(positions, triangles);
+    mesh.polygons = Polygons::of_faces(&of.unwrap_or_default());
     check_finite(&mut mesh, Format::Off, &mut notes, |vertex| format!("vertex {vertex}"))?;
     Ok((mesh, notes.into_warnings(|offset| line_place(bytes, offset))))
 }
@@ -197,9 +200,10 @@ pub(super) fn write(mesh: &Mesh, output: &mut dyn Write, options: &WriteOptions)
     if options.precision == Precision::Single {
         written = rounding::of_single(mesh, Format::Off, options)?;
     }
-    let header = format!("OFF\n{} {} 0\n", mesh.positions.len(), mesh.triangles.len());
+    let faces = Faces::of(mesh, usize::MAX, |_, _| true);
+    let header = format!("OFF\n{} {} 0\n", mesh.positions.len(), faces.len());
     write_all(output, header.as_bytes())?;
-    write_lines(mesh, output, options)?;
+    write_lines(mesh, &faces, output, options)?;
     // Nobody looks for names in OFF; colours it could have.
     if mesh.groups.list.iter().any(|group| group.material.is_some()) {
         written.warnings.insert(0, "OFF is written without materials: names and colours are not kept".into());

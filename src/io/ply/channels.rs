@@ -80,6 +80,17 @@ impl<'a> Channels<'a> {
         list.iter().map(line).collect()
     }
 
+    /// Whether two corners at one vertex have the same texture coordinates, where faces list them, and their triangles the same
+    /// properties.
+    pub(super) fn are_one(&self, a: u32, b: u32) -> bool {
+        let value = |corner: u32| {
+            self.texture.and_then(|texture| texture.at(corner as usize / 3, corner as usize % 3))
+        };
+        let number =
+            |channel: &Channel, corner: u32| channel.values.get(corner as usize / 3).map(|x| x.to_bits());
+        value(a) == value(b) && self.of_faces.iter().all(|channel| number(channel, a) == number(channel, b))
+    }
+
     /// Whether there is nothing.
     pub(super) fn is_empty(&self) -> bool {
         self.of_vertices.is_empty() && self.of_faces.is_empty() && self.texture.is_none()

@@ -17,6 +17,7 @@ use super::finish::check_finite;
 use super::notes::Notes;
 use super::scan::line_place;
 use super::{Format, ReadOptions, malformed};
+use crate::mesh::Polygons;
 use crate::{Error, Mesh};
 use body::{AsciiSource, Body};
 use header::{Coding, Header};
@@ -56,13 +57,17 @@ fn assemble(
             face.map_or("a face of fewer than three corners".to_string(), |face| format!("face {face}"));
         return Err(index_error(Format::Ply, place, u64::from(index), positions.len()));
     }
-    let mut of = (!of_faces.is_empty() || !texture.is_empty()).then(Vec::new);
-    let (triangles, _) = faces.into_triangles_of(&positions, &[], notes, &options.control, &mut of)?;
+    let has_polygons = faces.has_polygons();
+    let mut of = (has_polygons || !of_faces.is_empty() || !texture.is_empty()).then(Vec::new);
+    let (triangles, _) = faces.into_triangles(&positions, &[], notes, &options.control, &mut of)?;
     if triangles.len() > u32::MAX as usize {
         return Err(too_large(Format::Ply, "triangles"));
     }
     let mut mesh = Mesh::new(positions, triangles);
     let faces = of.unwrap_or_default();
+    if has_polygons {
+        mesh.polygons = Polygons::of_faces(&faces);
+    }
     mesh.attributes =
         properties::attributes(&mesh.triangles, &faces, of_vertices, of_faces, texture, &labels, notes);
     check_finite(&mut mesh, Format::Ply, notes, |vertex| format!("vertex {vertex}"))?;

@@ -1,4 +1,6 @@
+use super::super::Encoding;
 use super::*;
+use crate::mesh::Attribute;
 
 const ASCII: &str = "ply\nformat ascii 1.0\ncomment by hand\nelement vertex 4\nproperty float x\nproperty float y\n\
                      property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n\

@@ -7,8 +7,9 @@ use super::super::rounding::{self, Written};
 use super::super::text::{NumberWriter, write_all, write_blocks, write_lines};
 use super::super::{Encoding, Format, Precision, WriteOptions};
 use super::channels::{Channels, push_single};
-use crate::mesh::Attribute;
+use crate::mesh::{Attribute, Faces};
 use crate::{Error, Mesh};
+use smallvec::SmallVec;
 
 /// Writes vertices and triangles, binary little-endian in double precision unless the options say otherwise.
 pub(in crate::io) fn write(
@@ -28,6 +29,9 @@ pub(in crate::io) fn write(
             .insert(0, "PLY is written without materials: names, colours and pictures are not kept".into());
     }
     let channels = Channels::of(mesh, options.precision);
+    // Lists have counts of one byte; that of texture coordinates has two numbers a corner.
+    let most = if channels.texture.is_some() { 127 } else { 255 };
+    let faces = Faces::of(mesh, most, |a, b| channels.are_one(a, b));
     let coding = match options.encoding {
         Encoding::Ascii => "ascii",
         Encoding::Binary => "binary_little_endian",
@@ -41,18 +45,18 @@ pub(in crate::io) fn write(
          {}element face {}\nproperty list uchar {index} vertex_indices\n{}{}end_header\n",
         mesh.positions.len(),
         Channels::header(&channels.of_vertices),
-        mesh.triangles.len(),
+        faces.len(),
         if channels.texture.is_some() { "property list uchar float texcoord\n" } else { "" },
         Channels::header(&channels.of_faces),
     );
     write_all(output, header.as_bytes())?;
     written.warnings.splice(0..0, channels.warnings.iter().cloned());
-    if !channels.is_empty() {
-        write_records(mesh, &channels, output, options)?;
+    if !channels.is_empty() || !faces.are_triangles() && options.encoding != Encoding::Ascii {
+        write_records(mesh, &faces, &channels, output, options)?;
         return Ok(written);
     }
     match (options.encoding, double) {
-        (Encoding::Ascii, _) => write_lines(mesh, output, options)?,
+        (Encoding::Ascii, _) => write_lines(mesh, &faces, output, options)?,
         (Encoding::Binary, true) => write_binary(mesh, output, options, f64::to_le_bytes, u32::to_le_bytes)?,
         (Encoding::Binary, false) => {
             write_binary(mesh, output, options, |x| (x as f32).to_le_bytes(), u32::to_le_bytes)?;
@@ -70,6 +74,7 @@ pub(in crate::io) fn write(
 /// Writes vertices and triangles with their properties.
 fn write_records(
     mesh: &Mesh,
+    faces: &Faces,
     channels: &Channels<'_>,
     output: &mut dyn Write,
     options: &WriteOptions,
@@ -95,13 +100,15 @@ fn write_records(
             }
         }
     })?;
-    write_blocks(output, mesh.triangles.len(), &options.control, |range, out| {
+    write_blocks(output, faces.len(), &options.control, |range, out| {
         let mut numbers = NumberWriter::new(options.precision);
-        for triangle in range {
-            write_face(mesh.triangles[triangle], encoding, &mut numbers, out);
+        for face in range {
+            let corners: SmallVec<[u32; 8]> = faces.corners(face).collect();
+            write_face(mesh, &corners, encoding, &mut numbers, out);
             if let Some(texture) = channels.texture {
-                write_texture(texture, triangle, encoding, &mut numbers, out);
+                write_texture(texture, &corners, encoding, &mut numbers, out);
             }
+            let triangle = corners.first().map_or(0, |&corner| corner as usize / 3);
             channels.of_faces.iter().for_each(|channel| channel.write(triangle, encoding, out));
             if is_text {
                 out.push(b'\n');
@@ -110,9 +117,19 @@ fn write_records(
     })
 }
 
-fn write_face(corners: [u32; 3], encoding: Encoding, numbers: &mut NumberWriter, out: &mut Vec<u8>) {
-    out.push(if encoding == Encoding::Ascii { b'3' } else { 3 });
-    for corner in corners {
+fn write_face(
+    mesh: &Mesh,
+    corners: &[u32],
+    encoding: Encoding,
+    numbers: &mut NumberWriter,
+    out: &mut Vec<u8>,
+) {
+    if encoding == Encoding::Ascii {
+        numbers.integer(out, corners.len() as u64);
+    } else {
+        out.push(corners.len() as u8);
+    }
+    for corner in corners.iter().map(|&corner| mesh.triangles[corner as usize / 3][corner as usize % 3]) {
         match encoding {
             Encoding::Ascii => {
                 out.push(b' ');
@@ -124,27 +141,28 @@ fn write_face(corners: [u32; 3], encoding: Encoding, numbers: &mut NumberWriter,
     }
 }
 
-/// The texture coordinates of a triangle's corners; an empty list if one has none.
+/// The texture coordinates of a face's corners; an empty list if one has none.
 fn write_texture(
     texture: &Attribute,
-    triangle: usize,
+    corners: &[u32],
     encoding: Encoding,
     numbers: &mut NumberWriter,
     out: &mut Vec<u8>,
 ) {
-    let corners = [0, 1, 2].map(|k| texture.at(triangle, k));
+    let values = corners.iter().map(|&corner| texture.at(corner as usize / 3, corner as usize % 3));
+    let values: SmallVec<[Option<&[f64]>; 8]> = values.collect();
     let is_text = encoding == Encoding::Ascii;
-    let count = if corners.contains(&None) { 0 } else { 6 };
+    let count = if values.contains(&None) { 0 } else { 2 * values.len() };
     if is_text {
         out.push(b' ');
-        numbers.integer(out, count);
+        numbers.integer(out, count as u64);
     } else {
         out.push(count as u8);
     }
     if count == 0 {
         return;
     }
-    for value in corners.into_iter().flatten() {
+    for value in values.into_iter().flatten() {
         let (&[u, v] | &[u, v, ..]) = value else { continue };
         for number in [u, from_below(v)] {
             if is_text {

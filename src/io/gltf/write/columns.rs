@@ -8,6 +8,10 @@ use crate::mesh::{Attribute, AttributeKind};
 /// Values have at most so many components in glTF.
 const MOST_COMPONENTS: usize = 4;
 
+/// How far the length of a direction may be from one before it is set right: below what validators admit, above what rounding
+/// to bytes does.
+const UNIT_TOLERANCE: f64 = 5e-4;
+
 /// An attribute that is written.
 pub(super) struct Column<'a> {
     pub(super) attribute: &'a Attribute,
@@ -81,10 +85,24 @@ impl<'a> Column<'a> {
         self.attribute.value(index).unwrap_or(&self.filler[..self.components()])
     }
 
-    /// Writes a value into `stride` bytes.
+    /// Writes a value into `stride` bytes. Directions have the length one in glTF; OBJ has them of any.
     pub(super) fn write(&self, index: u32, bytes: &mut [u8]) {
         let size = self.number.size();
-        for (bytes, &value) in bytes.chunks_exact_mut(size).zip(self.value(index)) {
+        let mut unit = [0.0; 4];
+        let mut numbers = self.value(index);
+        if matches!(self.attribute.kind(), AttributeKind::Normal | AttributeKind::Tangent) {
+            let length = numbers.iter().take(3).map(|x| x * x).sum::<f64>().sqrt();
+            if !(1.0 - UNIT_TOLERANCE..=1.0 + UNIT_TOLERANCE).contains(&length) {
+                unit[..numbers.len()].copy_from_slice(numbers);
+                if length > 0.0 && length.is_finite() {
+                    unit.iter_mut().take(3).for_each(|x| *x /= length);
+                } else {
+                    unit[..3].copy_from_slice(&self.filler[..3]);
+                }
+                numbers = &unit[..numbers.len()];
+            }
+        }
+        for (bytes, &value) in bytes.chunks_exact_mut(size).zip(numbers) {
             match self.number {
                 Number::Single => bytes.copy_from_slice(&(value as f32).to_le_bytes()),
                 Number::Bytes => bytes[0] = (value * 255.0).round() as u8,
