@@ -94,8 +94,9 @@ pub mod spatial;
 pub mod subdivision;
 
 pub use boolean::{
-    BooleanOptions, Certificate, Contact, CornerOrigin, Embed, Embedding, Expression, ExpressionError, Grid,
-    NearContact, NearContacts, OperandState, Operation, Origin, Outcome, Rule, UnknownName, boolean,
+    BooleanOptions, Certificate, Contact, CornerOrigin, CutFaces, Embed, Embedding, Expression,
+    ExpressionError, Grid, NearContact, NearContacts, OperandState, Operation, Origin, Outcome, Rule,
+    UnknownName, boolean,
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};
