@@ -253,14 +253,14 @@ mod tests {
         ];
         let triangles = vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]];
         let mut roof = Mesh::new(positions.to_vec(), triangles);
-        let view = View { edges: true, ..from_above() };
-        let level = mesh(&square(1.0, 0.0), &View { edges: false, ..from_above() }, None);
+        let view = View { edges: true, width: 320, height: 240, ..from_above() };
+        let level = mesh(&square(1.0, 0.0), &View { edges: false, ..view.clone() }, None);
         let flat = mesh(&roof, &view, None);
         let normals: Vec<f64> = positions.iter().flat_map(|p| [p[0], 0.0, 1.0 - p[0].abs()]).collect();
         let of_corner = roof.triangles.as_flattened().to_vec();
         roof.attributes.push(Attribute { name: "NORMAL".into(), components: 3, values: normals, of_corner });
         let smooth = mesh(&roof, &view, None);
-        let middle = |picture: &Picture| i32::from(picture.get(40, 30).expect("inside")[1]);
+        let middle = |picture: &Picture| i32::from(picture.get(160, 120).expect("inside")[1]);
         assert!(middle(&flat) < middle(&level) - 20);
         assert!((middle(&smooth) - middle(&level)).abs() < 20);
     }

@@ -24,7 +24,7 @@ fn body() -> Solid {
 }
 
 fn tool() -> Solid {
-    let mut tool = primitives::icosphere(0.6, 3).unwrap().translated([1.0, 0.1, 0.5]);
+    let mut tool = primitives::icosphere(0.6, 3).unwrap().translated([1.0, 0.1, 0.2]);
     tool.set_attribute(tool.crease_normals(30.0));
     tool.groups.list = vec![group("tool")];
     tool.groups.of_triangle = vec![0; tool.triangles.len()];
