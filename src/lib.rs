@@ -23,7 +23,8 @@
 //!   signs of exact values, and every new vertex is at the nearest `f64`, coordinate by coordinate, to its exact place.
 //! - **Contact has a meaning**: operands that are flush, touch or coincide resolve as regularised set operations do,
 //!   without a tolerance.
-//! - **What the operation does not touch stays**: vertices keep their bits, triangles their order and their group.
+//! - **What the operation does not touch stays**: vertices keep their bits, triangles their order, their group and their
+//!   [attributes](mesh::Attribute); what it cuts has the attributes that its face has there.
 //! - **The same input gives the same bits**, on any number of threads and without the feature `parallel`.
 //! - An empty result is a success. Bad input is an [`Error`], never a panic, and there is no `unsafe` code.
 //!
@@ -32,7 +33,7 @@
 //! - That rounding introduces no crossings of the size of an ulp. They are tolerated when the result becomes an operand.
 //! - That the result is a 2-manifold where bodies touch in an edge or a vertex: in 22 of 100,000 random cases some stay
 //!   connected. [`Certificate::manifold`] tells.
-//! - A particular triangulation of faces that are cut; that normals, texture coordinates or colours are kept.
+//! - A particular triangulation of faces that are cut.
 //! - Anything for operands that cross themselves but a closed result, in which regions count as often as they are
 //!   enclosed. [`Solid::self_crossings`] finds out; [`Certificate::operands`] tells whether it was asked.
 //!
@@ -52,7 +53,7 @@
 //! | `model` | yes | the module `model`: trees of operations in JSON; brings `field` and `formats` | 17 |
 //! | `parallel` | yes | loops on rayon's current pool | 6 |
 //! | `parametric` | yes | the module `parametric`: curves, regions, patches, solids of them | 31 |
-//! | `render` | with `cli` | the module `render`: pictures of meshes as PNG | 9 |
+//! | `render` | with `cli` | the module `render`: pictures of meshes as PNG | 11 |
 //! | `serde` | with `cli` | `Serialize` and `Deserialize` for meshes, settings and reports | 3 |
 //! | `subdivision` | yes | the module `subdivision`: subdivision surfaces given by cages, and their booleans as cages | none |
 //!
@@ -94,8 +95,9 @@ pub mod spatial;
 pub mod subdivision;
 
 pub use boolean::{
-    BooleanOptions, Certificate, Contact, CornerOrigin, Embed, Embedding, Expression, ExpressionError, Grid,
-    NearContact, NearContacts, OperandState, Operation, Origin, Outcome, Rule, UnknownName, boolean,
+    BooleanOptions, Certificate, Contact, CornerOrigin, CutFaces, Embed, Embedding, Expression,
+    ExpressionError, Grid, NearContact, NearContacts, OperandState, Operation, Origin, Outcome, Rule,
+    UnknownName, boolean,
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};

@@ -47,6 +47,7 @@ pub use many::options::BooleanOptions;
 pub use many::policy::Embed;
 pub use result::attributes::CornerOrigin;
 pub use result::certificate::{Certificate, OperandState};
+pub use result::cut_faces::CutFaces;
 pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;
 pub use rule::Rule;

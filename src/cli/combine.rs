@@ -296,7 +296,7 @@ fn write(
     let drawing = &arguments.results.drawing;
     let picture = || {
         let operands = outcome.origins().iter().map(|origin| origin.operand as usize);
-        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), mesh, operands);
+        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), operands);
         trisect::render::mesh(mesh, &output::view(drawing, style.format), colours.as_deref())
     };
     let options = style.options.clone();

@@ -118,7 +118,7 @@ fn write(
     let drawing = &arguments.results.drawing;
     let picture = || {
         let operands = mesh.triangles.iter().map(|_| 0);
-        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), mesh, operands);
+        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
         trisect::render::mesh(mesh, &output::view(drawing, Some(*format)), colours.as_deref())
     };
     let product = Product { mesh, options, picture: &picture, documents: &[] };

@@ -152,7 +152,7 @@ fn write(
         let drawing = &arguments.results.drawing;
         let picture = || {
             let operands = mesh.triangles.iter().map(|_| 0);
-            let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), mesh, operands);
+            let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
             trisect::render::mesh(mesh, &output::view(drawing, None), colours.as_deref())
         };
         let options = output::write_options(&arguments.results.writing, &session.limits);

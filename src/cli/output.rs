@@ -325,16 +325,13 @@ pub(crate) fn view(drawing: &Drawing, format: Option<Format>) -> render::View {
     view
 }
 
-/// The colours of the picture of `mesh`; `operand` tells the operand of each triangle.
-pub(crate) fn colours(
-    what: Colours,
-    mesh: &Mesh,
-    operand: impl Iterator<Item = usize>,
-) -> Option<Vec<[u8; 3]>> {
+/// The colours of a picture, unless they are the mesh's own; `operand` tells the operand of each triangle.
+pub(crate) fn colours(what: Colours, operand: impl Iterator<Item = usize>) -> Option<Vec<[u8; 3]>> {
     match what {
         Colours::Operand => Some(operand.map(render::palette).collect()),
-        Colours::Material => render::material_colours(mesh),
-        Colours::None => None,
+        Colours::Material => None,
+        // No triangle has a colour of its own.
+        Colours::None => Some(Vec::new()),
     }
 }
 

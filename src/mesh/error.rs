@@ -47,6 +47,14 @@ pub enum MeshError {
         /// Number of triangles.
         triangles: usize,
     },
+    /// A flat list of coordinates or of vertices that does not come out even.
+    #[error("{numbers} {what} are no whole number of threes")]
+    NotInThrees {
+        /// What is listed.
+        what: &'static str,
+        /// How many numbers there are.
+        numbers: usize,
+    },
     /// The groups do not fit the triangles.
     #[error("face groups: {0}")]
     Groups(GroupFault),

@@ -176,6 +176,12 @@ impl Solid {
         self.mesh.attributes = attributes;
     }
 
+    /// Lets `change` alter groups and attributes, and nothing else, of the mesh.
+    pub(crate) fn change_faces(&mut self, change: impl FnOnce(&mut Mesh)) {
+        change(&mut self.mesh);
+        debug_assert!(self.mesh.groups.fault(self.mesh.triangles.len()).is_none());
+    }
+
     /// What was left out or joined when this was made of a mesh.
     #[must_use]
     pub fn cleaning(&self) -> Cleaning {

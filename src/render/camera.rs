@@ -120,6 +120,16 @@ impl Camera {
         DVec3::new(p.dot(self.axes[0]), p.dot(self.axes[1]), p.dot(self.axes[2]))
     }
 
+    /// A direction of the scene along the camera's axes.
+    pub(super) fn direction(&self, direction: DVec3) -> DVec3 {
+        DVec3::new(direction.dot(self.axes[0]), direction.dot(self.axes[1]), direction.dot(self.axes[2]))
+    }
+
+    /// Whether it shows in perspective.
+    pub(super) fn is_perspective(&self) -> bool {
+        self.perspective
+    }
+
     /// A point in local coordinates as seen; `None` at or behind the eye.
     pub(super) fn see(&self, local: DVec3) -> Option<Seen> {
         let p = local - self.eye;

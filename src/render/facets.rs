@@ -4,11 +4,12 @@ use glam::{DVec2, DVec3};
 
 use super::View;
 use super::camera::{Camera, Seen};
+use super::surface::{Looks, Pictures, Surface};
 use crate::Mesh;
 
 /// A visible triangle of the picture.
 #[derive(Clone, Debug)]
-pub(super) struct Facet {
+pub(super) struct Facet<'a> {
     pub(super) corners: [[f64; 2]; 3],
     /// Closeness at the first corner, and its change per sample to the right and downwards.
     closeness: f64,
@@ -17,13 +18,25 @@ pub(super) struct Facet {
     range: [f64; 2],
     /// Unit normal in camera axes, turned towards the eye.
     pub(super) normal: DVec3,
-    /// Linear colour after lighting.
-    pub(super) light: [f32; 3],
+    /// Linear colour after lighting, where it is one.
+    light: [f32; 3],
+    /// What it looks like, where the mesh says so.
+    surface: Option<Box<Surface<'a>>>,
     /// Area in samples.
     pub(super) area: f64,
 }
 
-impl Facet {
+impl Facet<'_> {
+    /// Linear colour after lighting at a position in the picture.
+    pub(super) fn light_at(&self, at: DVec2, pictures: &Pictures) -> [f32; 3] {
+        self.surface.as_ref().map_or(self.light, |surface| surface.light_at(at, self.normal, pictures))
+    }
+
+    /// The normal by which it is lit there, in camera axes.
+    pub(super) fn shaded_normal_at(&self, at: DVec2) -> DVec3 {
+        self.surface.as_ref().map_or(self.normal, |surface| surface.normal_at(at, self.normal))
+    }
+
     /// Closeness at a position in the picture.
     pub(super) fn closeness_at(&self, at: DVec2) -> f64 {
         let value = self.closeness + self.slope.dot(at - DVec2::from(self.corners[0]));
@@ -33,7 +46,13 @@ impl Facet {
 
 /// The drawable triangles of a mesh in their order. Those that are degenerate in the picture, name missing
 /// vertices or have a vertex that cannot be seen are left out.
-pub(super) fn facets(mesh: &Mesh, view: &View, colours: Option<&[[u8; 3]]>, camera: &Camera) -> Vec<Facet> {
+pub(super) fn facets<'a>(
+    mesh: &Mesh,
+    view: &View,
+    colours: Option<&[[u8; 3]]>,
+    looks: Option<(&Looks<'a>, &Pictures)>,
+    camera: &Camera,
+) -> Vec<Facet<'a>> {
     let local: Vec<DVec3> = mesh.positions.iter().map(|&p| camera.local(p.into())).collect();
     let seen: Vec<Option<Seen>> = local.iter().map(|&p| camera.see(p)).collect();
     let facet = |(index, triangle): (usize, &[u32; 3])| {
@@ -43,12 +62,24 @@ pub(super) fn facets(mesh: &Mesh, view: &View, colours: Option<&[[u8; 3]]>, came
         };
         let corners = [corner(0)?, corner(1)?, corner(2)?];
         let colour = colours.and_then(|colours| colours.get(index)).copied().unwrap_or(view.colour);
-        facet(corners, colour, camera)
+        let mut facet = facet(corners, colour, camera)?;
+        if let Some((looks, pictures)) = looks {
+            let (at, closeness) =
+                (corners.map(|corner| corner.1.at), corners.map(|corner| corner.1.closeness));
+            let surface = looks.surface(index, at, closeness, is_front(at), (camera, pictures));
+            facet.surface = Some(Box::new(surface));
+        }
+        Some(facet)
     };
     mesh.triangles.iter().enumerate().filter_map(facet).collect()
 }
 
-fn facet(corners: [(DVec3, Seen); 3], colour: [u8; 3], camera: &Camera) -> Option<Facet> {
+/// Whether a triangle is seen from outside. Rows count downwards, so counter-clockwise ones have a negative determinant.
+fn is_front([a, b, c]: [DVec2; 3]) -> bool {
+    (b - a).perp_dot(c - a) < 0.0
+}
+
+fn facet<'a>(corners: [(DVec3, Seen); 3], colour: [u8; 3], camera: &Camera) -> Option<Facet<'a>> {
     let [(a, seen_a), (b, seen_b), (c, seen_c)] = corners;
     let (u, v) = (seen_b.at - seen_a.at, seen_c.at - seen_a.at);
     let doubled = u.perp_dot(v);
@@ -57,8 +88,7 @@ fn facet(corners: [(DVec3, Seen); 3], colour: [u8; 3], camera: &Camera) -> Optio
     if doubled == 0.0 || !slope.is_finite() {
         return None;
     }
-    // Rows count downwards, so counter-clockwise triangles have a negative determinant.
-    let front = doubled < 0.0;
+    let front = is_front([seen_a.at, seen_b.at, seen_c.at]);
     let outward = (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Z);
     let normal = if outward.dot(camera.towards_eye(a)) < 0.0 { -outward } else { outward };
     let range = [seen_a, seen_b, seen_c].map(|seen| seen.closeness);
@@ -68,20 +98,21 @@ fn facet(corners: [(DVec3, Seen); 3], colour: [u8; 3], camera: &Camera) -> Optio
         slope,
         range: [range[0].min(range[1]).min(range[2]), range[0].max(range[1]).max(range[2])],
         normal,
-        light: lit(colour, normal, front),
+        light: lit(colour.map(linear), normal, front),
+        surface: None,
         area: doubled.abs() / 2.0,
     })
 }
 
 /// Two lamps fixed to the camera, a strong one from the upper left and a weak one from the right, and light from
 /// all around that is brighter from above.
-fn lit(colour: [u8; 3], normal: DVec3, front: bool) -> [f32; 3] {
+pub(super) fn lit(colour: [f64; 3], normal: DVec3, front: bool) -> [f32; 3] {
     let key = DVec3::new(-0.60, 0.60, 0.53);
     let fill = DVec3::new(0.80, -0.05, 0.60);
     let around = 0.30 + 0.10 * normal.y;
     let light = around + 0.78 * normal.dot(key).max(0.0) + 0.17 * normal.dot(fill).max(0.0);
     let tint = if front { [1.0; 3] } else { [0.85, 0.32, 0.28] };
-    std::array::from_fn(|channel| (linear(colour[channel]) * tint[channel] * light) as f32)
+    std::array::from_fn(|channel| (colour[channel] * tint[channel] * light) as f32)
 }
 
 /// An sRGB byte as linear light, with the curve taken as a square: close enough to the eye, and the same bits on

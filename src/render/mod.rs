@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Triangles are drawn through a depth buffer with four samples per pixel and shaded flat, so that the facets of
-//! a mesh stay visible; creases and outlines are darkened. Triangles seen from behind (open or inside-out
+//! a mesh stay visible, or smooth where the mesh has normals; creases and outlines are darkened. Triangles seen from behind (open or inside-out
 //! surfaces) are reddish. A mesh needs no invariants here: triangles with missing or non-finite vertices are left
 //! out. Time grows with the number of triangles plus the number of pixels.
 
@@ -20,24 +20,33 @@ mod occlusion;
 mod picture;
 mod raster;
 mod shade;
+mod surface;
+mod texture;
 
 pub use camera::View;
 pub use picture::Picture;
 
 use crate::Mesh;
+use surface::{Looks, Pictures};
 
 /// Draws `mesh` as `view` looks at it.
 ///
-/// `colours` gives an sRGB colour for every triangle (by operand, by group, ...); triangles beyond its length, and
-/// all of them without it, have the view's own colour. A mesh without visible triangles gives the background.
+/// `colours` gives an sRGB colour for every triangle (by operand, by group, ...), shaded flat; triangles beyond its length have
+/// the view's own colour. Without it the mesh looks as it says itself: in the colours of its materials and of its corners
+/// (`COLOR_0`), with the pictures of its materials (PNG and JPEG; what cannot be decoded is left out), and smooth where it has
+/// normals; what it says nothing of has the view's colour. Nothing is transparent. A mesh without visible triangles gives the
+/// background.
 #[must_use]
 pub fn mesh(mesh: &Mesh, view: &View, colours: Option<&[[u8; 3]]>) -> Picture {
     let Some(camera) = camera::Camera::fit(mesh, view, f64::from(shade::SAMPLES)) else {
         return shade::background(view);
     };
-    let facets = facets::facets(mesh, view, colours, &camera);
+    let mut pictures = Pictures::default();
+    let looks = if colours.is_none() { Looks::of(mesh, view, &mut pictures) } else { None };
+    let looks = looks.as_ref().map(|looks| (looks, &pictures));
+    let facets = facets::facets(mesh, view, colours, looks, &camera);
     let samples = raster::draw(&facets, view.width * shade::SAMPLES, view.height * shade::SAMPLES);
-    shade::develop(&samples, &facets, view, &camera)
+    shade::develop(&samples, &facets, &pictures, view, &camera)
 }
 
 /// A colour for every triangle from the materials of its groups; `None` if no group has a material.
@@ -84,6 +93,9 @@ fn encoded(linear: f32) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::Arc;
+
+    use crate::mesh::{Attribute, Image, TextureUse, Wrap};
     use crate::{FaceGroup, Material};
 
     /// An axis-aligned square at height `z` that faces upwards.
@@ -181,6 +193,76 @@ mod tests {
         let middle = outlined.get(40, 30).expect("inside");
         let border = outlined.get(40, 3).expect("inside");
         assert!(border[1] < middle[1], "{border:?} {middle:?}");
+    }
+
+    fn attribute(name: &str, components: usize, values: &[f64]) -> Attribute {
+        let of_corner = vec![0, 1, 2, 0, 2, 3];
+        Attribute { name: name.into(), components, values: values.to_vec(), of_corner }
+    }
+
+    #[test]
+    fn a_mesh_looks_as_it_says() {
+        for perspective in [true, false] {
+            let view = View { perspective, ..from_above() };
+            // Colours of corners: red on the left, blue on the right.
+            let mut coloured = square(1.0, 0.0);
+            let colours = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0];
+            coloured.attributes.push(attribute("COLOR_0", 3, &colours));
+            let picture = mesh(&coloured, &view, None);
+            let [left, right] = [20, 60].map(|x| picture.get(x, 30).expect("inside"));
+            assert!(left[0] > left[2] && right[2] > right[0], "{left:?} {right:?}");
+            // A picture: green above, red below; the view's colours where they are asked for.
+            let mut stripes = Picture::new(1, 2, RED);
+            stripes.set(0, 0, GREEN);
+            let mut bytes = Vec::new();
+            stripes.write_png(&mut bytes).expect("a picture");
+            let mut material = Material::plain("stripes", [1.0; 4]);
+            material.base_color_texture = Some(TextureUse {
+                image: Arc::new(Image { bytes: bytes.into(), ..Image::default() }),
+                coordinates: 0,
+                wrap: [Wrap::Clamp; 2],
+                nearest: true,
+                transform: TextureUse::UNMOVED,
+            });
+            let mut textured = square(1.0, 0.0);
+            textured.attributes.push(attribute("TEXCOORD_0", 2, &[0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0]));
+            textured.groups.list = vec![FaceGroup { name: String::new(), material: Some(material) }];
+            textured.groups.of_triangle = vec![0, 0];
+            let picture = mesh(&textured, &view, None);
+            let hue = |x: u32, y: u32| {
+                let pixel = picture.get(x, y).expect("inside");
+                (0..3).max_by_key(|&channel| pixel[channel])
+            };
+            for x in [20, 40, 60] {
+                assert_eq!((hue(x, 15), hue(x, 45)), (Some(1), Some(0)), "{x}");
+            }
+            assert_eq!(hue_in_the_middle(&mesh(&textured, &view, Some(&[BLUE; 2]))), 2);
+        }
+    }
+
+    #[test]
+    fn normals_make_a_surface_smooth() {
+        // A roof with the normals of a barrel: no crease, and as bright in the middle as level ground.
+        let positions = [
+            [-1.0, -1.0, 0.0],
+            [0.0, -1.0, 1.0],
+            [1.0, -1.0, 0.0],
+            [-1.0, 1.0, 0.0],
+            [0.0, 1.0, 1.0],
+            [1.0, 1.0, 0.0],
+        ];
+        let triangles = vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]];
+        let mut roof = Mesh::new(positions.to_vec(), triangles);
+        let view = View { edges: true, width: 320, height: 240, ..from_above() };
+        let level = mesh(&square(1.0, 0.0), &View { edges: false, ..view.clone() }, None);
+        let flat = mesh(&roof, &view, None);
+        let normals: Vec<f64> = positions.iter().flat_map(|p| [p[0], 0.0, 1.0 - p[0].abs()]).collect();
+        let of_corner = roof.triangles.as_flattened().to_vec();
+        roof.attributes.push(Attribute { name: "NORMAL".into(), components: 3, values: normals, of_corner });
+        let smooth = mesh(&roof, &view, None);
+        let middle = |picture: &Picture| i32::from(picture.get(160, 120).expect("inside")[1]);
+        assert!(middle(&flat) < middle(&level) - 20);
+        assert!((middle(&smooth) - middle(&level)).abs() < 20);
     }
 
     #[test]

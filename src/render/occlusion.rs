@@ -57,7 +57,7 @@ const DIRECTIONS: [[f64; 2]; 16] = {
 /// The part of the probes around a sample that is hidden behind something near, in 0..=1.
 pub(super) fn occlusion(
     samples: &Samples,
-    facet: &Facet,
+    facet: &Facet<'_>,
     at: usize,
     probes: &[[i64; 2]],
     camera: &Camera,

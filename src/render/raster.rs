@@ -16,7 +16,7 @@ pub(super) struct Samples {
 }
 
 /// Draws the facets. Where two are equally near, the earlier one stays.
-pub(super) fn draw(facets: &[Facet], width: u32, height: u32) -> Samples {
+pub(super) fn draw(facets: &[Facet<'_>], width: u32, height: u32) -> Samples {
     let count = width as usize * height as usize;
     let mut samples = Samples {
         width: width as usize,
@@ -29,7 +29,7 @@ pub(super) fn draw(facets: &[Facet], width: u32, height: u32) -> Samples {
     samples
 }
 
-fn draw_facet(samples: &mut Samples, index: u32, facet: &Facet, width: f64, height: f64) {
+fn draw_facet(samples: &mut Samples, index: u32, facet: &Facet<'_>, width: f64, height: f64) {
     let rows = facet.corners.map(|corner| corner[1]);
     let top = (rows[0].min(rows[1]).min(rows[2]) - 0.5).ceil().max(0.0);
     let bottom = (rows[0].max(rows[1]).max(rows[2]) - 0.5).floor().min(height - 1.0);

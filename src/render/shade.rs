@@ -7,6 +7,7 @@ use super::facets::{Facet, linear};
 use super::occlusion::{occlusion, probes};
 use super::picture::Picture;
 use super::raster::{NONE, Samples};
+use super::surface::Pictures;
 
 /// Samples per pixel along each side.
 pub(super) const SAMPLES: u32 = 2;
@@ -24,7 +25,13 @@ const HOLLOW_SHADE: f32 = 0.8;
 const SMALL_FACET: f64 = 24.0;
 
 /// The picture of the samples.
-pub(super) fn develop(samples: &Samples, facets: &[Facet], view: &View, camera: &Camera) -> Picture {
+pub(super) fn develop(
+    samples: &Samples,
+    facets: &[Facet<'_>],
+    pictures: &Pictures,
+    view: &View,
+    camera: &Camera,
+) -> Picture {
     let ink = if view.edges { ink(samples, facets, camera) } else { vec![0.0; samples.facet.len()] };
     let mut picture = background(view);
     let probes = probes(f64::from(view.width.min(view.height) * SAMPLES));
@@ -39,8 +46,10 @@ pub(super) fn develop(samples: &Samples, facets: &[Facet], view: &View, camera: 
                 if let Some(facet) = facets.get(samples.facet[at] as usize) {
                     covered += 1;
                     let shade = *shade.get_or_insert_with(|| occlusion(samples, facet, at, &probes, camera));
+                    let centre = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5);
+                    let light = facet.light_at(centre, pictures);
                     for channel in 0..3 {
-                        sum[channel] += facet.light[channel] * (1.0 - ink[at]) * (1.0 - HOLLOW_SHADE * shade);
+                        sum[channel] += light[channel] * (1.0 - ink[at]) * (1.0 - HOLLOW_SHADE * shade);
                     }
                 }
             }
@@ -77,7 +86,7 @@ pub(super) fn background(view: &View) -> Picture {
 }
 
 /// How dark the line through each sample is, 0 where there is none.
-fn ink(samples: &Samples, facets: &[Facet], camera: &Camera) -> Vec<f32> {
+fn ink(samples: &Samples, facets: &[Facet<'_>], camera: &Camera) -> Vec<f32> {
     let mut ink = vec![0.0_f32; samples.facet.len()];
     let width = samples.width;
     for at in 0..samples.facet.len() {
@@ -97,7 +106,13 @@ fn ink(samples: &Samples, facets: &[Facet], camera: &Camera) -> Vec<f32> {
 }
 
 /// The ink on two neighbouring samples with different facets.
-fn border(samples: &Samples, facets: &[Facet], camera: &Camera, pair: [usize; 2], step: DVec2) -> [f32; 2] {
+fn border(
+    samples: &Samples,
+    facets: &[Facet<'_>],
+    camera: &Camera,
+    pair: [usize; 2],
+    step: DVec2,
+) -> [f32; 2] {
     let [one, two] = pair.map(|at| samples.facet[at]);
     if one == NONE || two == NONE {
         return [one, two].map(|facet| if facet == NONE { 0.0 } else { OUTLINE_INK });
@@ -110,7 +125,11 @@ fn border(samples: &Samples, facets: &[Facet], camera: &Camera, pair: [usize; 2]
     if camera.depth_of(jump, closeness_a.max(closeness_b)) > OUTLINE_DEPTH {
         return if rise < 0.0 { [OUTLINE_INK, 0.0] } else { [0.0, OUTLINE_INK] };
     }
-    if a.normal.dot(b.normal) < CREASE_COSINE {
+    let [at_a, at_b] =
+        pair.map(|at| DVec2::new((at % samples.width) as f64 + 0.5, (at / samples.width) as f64 + 0.5));
+    // Where the surface is shown smooth, there is no crease.
+    let turn = a.normal.dot(b.normal);
+    if turn < CREASE_COSINE && a.shaded_normal_at(at_a).dot(b.shaded_normal_at(at_b)) < CREASE_COSINE {
         let size = (a.area.min(b.area) / SMALL_FACET).min(1.0) as f32;
         return [CREASE_INK * size; 2];
     }

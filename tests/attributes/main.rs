@@ -10,6 +10,7 @@ mod common;
 
 mod chains;
 mod corners;
+mod cut_faces;
 mod kinds;
 mod maps;
 mod merged;

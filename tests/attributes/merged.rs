@@ -51,7 +51,7 @@ fn bare_plate(cells: usize) -> Solid {
     crate::common::solid(plate(cells).0)
 }
 
-/// How many triangles lie in more than one cell of the upper side.
+/// How many triangles of the plate lie in more than one cell of its upper side.
 fn astray(outcome: &Outcome) -> usize {
     let mesh = outcome.solid().mesh();
     let is_astray = |triangle: &&[u32; 3]| {
@@ -62,7 +62,8 @@ fn astray(outcome: &Outcome) -> usize {
         };
         places.iter().all(|p| p[2] == 1.0) && (0..2).any(|k| range(k).0.floor() + 1.0 < range(k).1)
     };
-    mesh.triangles.iter().filter(is_astray).count()
+    let of_plate = mesh.triangles.iter().zip(outcome.origins()).filter(|(_, origin)| origin.operand == 0);
+    of_plate.map(|(triangle, _)| triangle).filter(is_astray).count()
 }
 
 /// The trial that showed it: a plate with a picture in each cell less a block. Without attributes faces are merged, and origins are
@@ -89,7 +90,9 @@ fn triangles_stay_in_their_cells() {
     let run =
         |body: &Solid, tool: &Solid| BooleanOptions::new().run(Operation::Difference, [body, tool]).unwrap();
     let bare = run(&bare_plate(4), &crate::common::solid(drill.clone()));
-    let outcome = run(&textured_plate(4), &solid(drill, 10_000));
+    // (A wall of the tool has one map too: two would meet in a corner of the hole's edge.)
+    let drill = crate::common::solid(mapped(drill, |t| 10_000.0 + (t / 2) as f64));
+    let outcome = run(&textured_plate(4), &drill);
     assert_eq!(below(&outcome), below(&bare));
     assert!(judge(outcome.solid().mesh(), "drilled plate") < 1e-12);
 }

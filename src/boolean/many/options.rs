@@ -5,6 +5,7 @@ use super::policy::{Embed, Policy};
 use super::run;
 use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::expression::Expression;
+use crate::boolean::result::cut_faces::CutFaces;
 use crate::boolean::result::outcome::Outcome;
 use crate::boolean::rule::Rule;
 use crate::control::Control;
@@ -21,6 +22,7 @@ pub struct BooleanOptions {
     policy: Policy,
     /// What is inside operands; of those past its end what is inside by the default rule.
     rules: Vec<Rule>,
+    cut_faces: CutFaces,
 }
 
 impl Default for BooleanOptions {
@@ -36,6 +38,7 @@ impl Default for BooleanOptions {
                 embed: Embed::default(),
             },
             rules: Vec::new(),
+            cut_faces: CutFaces::default(),
         }
     }
 }
@@ -109,6 +112,13 @@ impl BooleanOptions {
         self
     }
 
+    /// What the faces show that tools have cut. Default: [`CutFaces::tool`].
+    #[must_use]
+    pub fn cut_faces(mut self, faces: CutFaces) -> Self {
+        self.cut_faces = faces;
+        self
+    }
+
     /// Runs `operation` over any number of operands (for a difference: the first minus all the others).
     ///
     /// ```
@@ -129,8 +139,8 @@ impl BooleanOptions {
     ///
     /// # Errors
     /// Limits ([`Error::Limit`]); [`Error::TooLarge`] if the vertices of two operands and of their intersection, or their
-    /// triangles, cannot be numbered with 32 bits; and [`Error::InvalidArgument`] for an empty list of operands, or where a
-    /// pool of `threads` threads cannot be made.
+    /// triangles, cannot be numbered with 32 bits; and [`Error::InvalidArgument`] for an empty list of operands, where a
+    /// pool of `threads` threads cannot be made, or if a number of [`cut_faces`](Self::cut_faces) is not positive.
     pub fn run<'a>(
         &self,
         operation: Operation,
@@ -145,7 +155,18 @@ impl BooleanOptions {
         if operands.is_empty() {
             return Err(Error::InvalidArgument("a boolean needs at least one operand".into()));
         }
-        self.on_threads(|runner| run(self.policy, &self.rules, operation, operands, runner))
+        self.check_numbers()?;
+        let outcome = self.on_threads(|runner| run(self.policy, &self.rules, operation, operands, runner))?;
+        Ok(outcome.with_cut_faces(&self.cut_faces))
+    }
+
+    fn check_numbers(&self) -> Result<(), Error> {
+        match self.cut_faces.fault() {
+            None => Ok(()),
+            Some(number) => Err(Error::InvalidArgument(format!(
+                "texture coordinates of cut faces need a positive number of them to a unit of length, not {number}"
+            ))),
+        }
     }
 
     /// Evaluates an expression of operands, all of them at once: nothing is rounded in between.
@@ -194,7 +215,9 @@ impl BooleanOptions {
         let operands: Vec<&Solid> = operands.into_iter().collect();
         self.control.check()?;
         let wanted = Wanted { expressions, rules: &self.rules, policy: self.policy };
-        self.on_threads(|runner| expressions::run(&wanted, &operands, runner))
+        self.check_numbers()?;
+        let outcomes = self.on_threads(|runner| expressions::run(&wanted, &operands, runner))?;
+        Ok(outcomes.into_iter().map(|outcome| outcome.with_cut_faces(&self.cut_faces)).collect())
     }
 
     /// What an operand stands for by its [`rule`](Self::rule), as a surface that crosses itself no deeper than rounding.

@@ -8,6 +8,7 @@ use crate::Solid;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::result::attributes::{CornerOrigin, corner_origin};
 use crate::boolean::result::certificate::{Certificate, Notes};
+use crate::boolean::result::cut_faces::CutFaces;
 use crate::boolean::result::origins::Origins;
 
 /// The result of a boolean: a closed solid, where its triangles came from, and a certificate.
@@ -26,6 +27,15 @@ pub struct Outcome {
 impl Outcome {
     pub(crate) fn new(solid: Solid, origins: Origins, unit: f64, notes: Notes) -> Self {
         Self { solid, origins, unit, list: OnceLock::new(), notes, certificate: OnceLock::new() }
+    }
+
+    /// The same with other faces where tools have cut.
+    pub(crate) fn with_cut_faces(mut self, faces: &CutFaces) -> Self {
+        if !faces.are_the_tools() {
+            let origins: Vec<Origin> = self.origins.iter().collect();
+            self.solid.change_faces(|mesh| faces.apply(mesh, &origins));
+        }
+        self
     }
 
     /// The result; an empty one is a success.

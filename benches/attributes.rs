@@ -1,0 +1,60 @@
+//! What attributes cost a boolean: the same one with and without texture coordinates and normals.
+//!
+//! `cargo bench --bench attributes --no-default-features --features parallel`; a number after `--` sets how fine the meshes are.
+
+use std::time::Instant;
+
+use trisect::mesh::Attribute;
+use trisect::{BooleanOptions, Mesh, Operation, Solid, primitives};
+
+/// Runs of each kind, taken in turns; the fastest counts.
+const RUNS: usize = 9;
+
+fn main() {
+    let frequency: u32 = std::env::args().skip(1).find_map(|argument| argument.parse().ok()).unwrap_or(128);
+    for (name, far) in
+        [("balls that cross", [0.7, 0.11, 0.05]), ("balls that hardly meet", [1.97, 0.11, 0.05])]
+    {
+        let ball = |at| primitives::geodesic_sphere(1.0, frequency).expect("a ball").translated(at);
+        let bare = [ball([0.0; 3]), ball(far)];
+        let with = bare.clone().map(dressed);
+        let [bare, with] = [bare, with].map(|pair| pair.map(|mesh| Solid::try_from(mesh).expect("a solid")));
+        let triangles: usize = bare.iter().map(|solid| solid.mesh().triangles.len()).sum();
+        println!("{name}: {triangles} triangles");
+        for operation in Operation::ALL {
+            let mut fastest = [f64::MAX; 2];
+            let mut bytes = 0;
+            for _ in 0..RUNS {
+                for (kind, operands) in [&bare, &with].into_iter().enumerate() {
+                    let start = Instant::now();
+                    let outcome =
+                        BooleanOptions::new().assume_clean(true).run(operation, operands).expect("a result");
+                    fastest[kind] = fastest[kind].min(start.elapsed().as_secs_f64());
+                    bytes = outcome.solid().mesh().attributes.iter().map(size).sum();
+                }
+            }
+            println!(
+                "  {:<22} {:7.2} ms bare, {:7.2} ms with UV and normals: {:.2} x; attributes {:.1} MB",
+                format!("{operation:?}"),
+                1e3 * fastest[0],
+                1e3 * fastest[1],
+                fastest[1] / fastest[0],
+                bytes as f64 / 1e6
+            );
+        }
+    }
+}
+
+fn size(attribute: &Attribute) -> usize {
+    size_of_val(attribute.values.as_slice()) + size_of_val(attribute.of_corner.as_slice())
+}
+
+/// A mesh with a normal and texture coordinates at every vertex.
+fn dressed(mut mesh: Mesh) -> Mesh {
+    let normals = mesh.crease_normals(30.0);
+    let mut uv = Attribute::new("TEXCOORD_0", 2);
+    uv.values = mesh.positions.iter().flat_map(|p| [0.5 + 0.4 * p[0], 0.5 + 0.4 * p[2]]).collect();
+    uv.of_corner = mesh.triangles.as_flattened().to_vec();
+    mesh.attributes = vec![normals, uv];
+    mesh
+}
