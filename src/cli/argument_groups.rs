@@ -8,6 +8,7 @@ use trisect::io::Format;
 use trisect::mesh::Welding;
 
 use super::scenes::SceneChoice;
+use super::surface::{self, Normals};
 use super::values;
 
 /// Options that every verb takes.
@@ -174,6 +175,9 @@ pub(crate) struct Writing {
     /// Write into glTF files which vertices of seams are one (EXT_mesh_manifold)
     #[arg(long)]
     pub(crate) manifold: bool,
+    /// Normals of the outputs: keep, flat, none, or an angle in degrees up to which edges are smooth
+    #[arg(long, value_name = "keep|flat|none|DEGREES", value_parser = surface::normals, default_value = "keep")]
+    pub(crate) normals: Normals,
     /// What becomes of the glTF scene that a node given as the first input stands in
     #[arg(long, value_enum, default_value = "drop")]
     pub(crate) scene: SceneChoice,

@@ -11,6 +11,7 @@ use super::cage_arguments::{FreeFormVerb, Subdivide};
 #[cfg(feature = "parametric")]
 use super::field_arguments::CurveVerb;
 use super::field_arguments::{Eval, SampleGrid, Slice};
+use super::surface::{self, CutUv};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -154,6 +155,12 @@ pub(crate) struct Combine {
     /// what is read back does not cross itself
     #[arg(long, help_heading = "Results")]
     pub(crate) embed: bool,
+    /// What the faces show that a tool has cut: keep (what the tool has there), body, or the name of a material
+    #[arg(long, value_name = "keep|body|NAME", help_heading = "Results")]
+    pub(crate) cut_material: Option<String>,
+    /// Lay texture coordinates on cut faces: planar or box, with how many to a unit of length (box:0.5)
+    #[arg(long, value_name = "KIND[:DENSITY]", value_parser = surface::cut_uv, help_heading = "Results")]
+    pub(crate) cut_uv: Option<CutUv>,
     /// Read and check the inputs, say what would be done, write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,

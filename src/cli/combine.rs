@@ -19,6 +19,7 @@ use super::requests::{self, Request};
 use super::scenes;
 use super::selection;
 use super::session::Session;
+use super::surface;
 use super::task::Task;
 use super::words;
 
@@ -158,6 +159,7 @@ fn options(
     let options = BooleanOptions::new()
         .rules(operands.iter().map(|operand| operand.request.rule))
         .embed(embedding(arguments, targets))
+        .cut_faces(surface::cut_faces(arguments, operands.iter().map(|operand| &operand.solid)))
         .assume_clean(arguments.inputs.using.assume_clean);
     match session.common.threads {
         Some(threads) => options.threads(usize::from(threads)),

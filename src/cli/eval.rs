@@ -22,6 +22,7 @@ use super::words;
 
 /// Evaluates a model.
 pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    super::scenes::refuse(&arguments.results.writing)?;
     let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
     let common = session.common;
     let wanted = !targets.is_empty() || common.json || common.report.is_some();

@@ -46,6 +46,7 @@ mod stage;
 mod stream;
 #[cfg(feature = "subdivision")]
 mod subdivide;
+mod surface;
 mod task;
 mod usable;
 mod values;

@@ -7,11 +7,12 @@ use trisect::Mesh;
 
 use super::argument_groups::Writing;
 use super::session::Session;
+use super::surface;
 
-/// The mesh to be written, moved if the command line asks for it; what it was moved by is said and noted.
+/// The mesh to be written, with the normals and at the place that the command line asks for; what it was moved by is said and noted.
 pub(crate) fn placed<'m>(mesh: &'m Mesh, writing: &Writing, session: &mut Session<'_>) -> Cow<'m, Mesh> {
     if !writing.recenter {
-        return Cow::Borrowed(mesh);
+        return surface::shaded(Cow::Borrowed(mesh), writing.normals);
     }
     let (moved, by) = mesh.clone().recentered();
     session.note("moved_by", json!(by));
@@ -22,5 +23,5 @@ pub(crate) fn placed<'m>(mesh: &'m Mesh, writing: &Writing, session: &mut Sessio
         0.0 - y,
         0.0 - z
     ));
-    Cow::Owned(moved)
+    surface::shaded(Cow::Owned(moved), writing.normals)
 }

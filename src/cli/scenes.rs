@@ -38,6 +38,16 @@ pub(crate) fn name_node(requests: &mut [Request], writing: &Writing) -> Result<(
     Ok(())
 }
 
+/// Refuses what verbs without a scene among their inputs cannot do.
+pub(crate) fn refuse(writing: &Writing) -> Result<(), Fault> {
+    if writing.scene == SceneChoice::Keep || writing.node.is_some() {
+        return Err(Fault::usage(
+            "--scene and --node are for booleans and convert, whose first input can be a node of a scene",
+        ));
+    }
+    Ok(())
+}
+
 /// The options with the scene of the first input, if that is to be kept.
 pub(crate) fn kept(
     options: WriteOptions,

@@ -37,6 +37,7 @@ pub(crate) fn run(
     let (cage_paths, mesh_paths) =
         if keeps_cage { cages::sorted(outputs)? } else { (Vec::new(), outputs.clone()) };
     let writing = Writing { output: mesh_paths, ..arguments.results.writing.clone() };
+    super::scenes::refuse(&writing)?;
     let targets = output::targets(&writing, drawing, session.common)?;
     documents::check(cage_paths.iter().map(|path| -> &Path { path }), session.common, &session.limits)?;
     if targets.is_empty() && cage_paths.is_empty() && !session.common.json && session.common.report.is_none()

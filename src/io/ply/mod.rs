@@ -22,6 +22,9 @@ use crate::{Error, Mesh};
 use body::{AsciiSource, Body};
 use header::{Coding, Header};
 
+/// The corners of attributes may take this many times the bytes of the file. Usual files take five times.
+const ROOM: usize = 16;
+
 /// Reads the mesh and the warnings.
 pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<String>), Error> {
     let header = Header::parse(bytes)?;
@@ -35,7 +38,7 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<Str
         return Err(malformed(Format::Ply, "header", "there is no element \"vertex\""));
     };
     let mut notes = std::mem::take(&mut body.notes);
-    let mesh = assemble(positions, body, &mut notes, options)?;
+    let mesh = assemble(positions, body, ROOM * bytes.len().max(1 << 12), &mut notes, options)?;
     let place = |offset| match header.coding {
         Coding::Ascii => line_place(bytes, offset),
         _ => format!("byte {offset}"),
@@ -45,11 +48,12 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<Str
 
 fn assemble(
     positions: Vec<[f64; 3]>,
-    body: Body,
+    mut body: Body,
+    room: usize,
     notes: &mut Notes,
     options: &ReadOptions,
 ) -> Result<Mesh, Error> {
-    let Body { faces, of_vertices, of_faces, texture, labels, .. } = body;
+    let faces = std::mem::take(&mut body.faces);
     if faces.largest().is_some_and(|index| index as usize >= positions.len())
         && let Some((face, index)) = faces.first_beyond(positions.len())
     {
@@ -58,7 +62,7 @@ fn assemble(
         return Err(index_error(Format::Ply, place, u64::from(index), positions.len()));
     }
     let has_polygons = faces.has_polygons();
-    let mut of = (has_polygons || !of_faces.is_empty() || !texture.is_empty()).then(Vec::new);
+    let mut of = (has_polygons || !body.of_faces.is_empty() || !body.texture.is_empty()).then(Vec::new);
     let (triangles, _) = faces.into_triangles(&positions, &[], notes, &options.control, &mut of)?;
     if triangles.len() > u32::MAX as usize {
         return Err(too_large(Format::Ply, "triangles"));
@@ -68,8 +72,7 @@ fn assemble(
     if has_polygons {
         mesh.polygons = Polygons::of_faces(&faces);
     }
-    mesh.attributes =
-        properties::attributes(&mesh.triangles, &faces, of_vertices, of_faces, texture, &labels, notes);
+    mesh.attributes = properties::attributes(&mesh.triangles, &faces, body, room, notes);
     check_finite(&mut mesh, Format::Ply, notes, |vertex| format!("vertex {vertex}"))?;
     Ok(mesh)
 }

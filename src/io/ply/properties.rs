@@ -1,9 +1,9 @@
 //! Properties of vertices and faces as attributes.
 
 use super::super::color::linear;
-use super::super::labels::{Labels, of_triangles};
+use super::super::labels::of_triangles;
 use super::super::notes::Notes;
-use super::body::Channel;
+use super::body::{Body, Channel};
 use super::header::Type;
 use crate::mesh::Attribute;
 
@@ -11,25 +11,26 @@ use crate::mesh::Attribute;
 pub(super) const TEXTURE: [[&str; 2]; 4] =
     [["s", "t"], ["u", "v"], ["texture_u", "texture_v"], ["texture_s", "texture_t"]];
 
-/// The attributes of triangles, each of a face.
+/// The attributes of triangles, each of a face. What corners name may take `room` bytes.
 pub(super) fn attributes(
     triangles: &[[u32; 3]],
     faces: &[u32],
-    of_vertices: Vec<Channel>,
-    of_faces: Vec<Channel>,
-    texture: Vec<[f64; 2]>,
-    labels: &Labels,
+    body: Body,
+    room: usize,
     notes: &mut Notes,
 ) -> Vec<Attribute> {
+    let Body { of_vertices, of_faces, texture, labels, .. } = body;
     let mut list = Vec::new();
+    // Every attribute takes 12 bytes a triangle, of which a file has eight or more.
+    let most = room / (12 * triangles.len()).max(1);
     let vertices: Vec<u32> =
         if of_vertices.is_empty() { Vec::new() } else { triangles.as_flattened().to_vec() };
-    taken(of_vertices, &vertices, &mut list, notes);
+    taken(of_vertices, &vertices, most, &mut list, notes);
     let corners: Vec<u32> =
         if of_faces.is_empty() { Vec::new() } else { faces.iter().flat_map(|&face| [face; 3]).collect() };
-    taken(of_faces, &corners, &mut list, notes);
+    taken(of_faces, &corners, most, &mut list, notes);
     if !texture.is_empty() && list.iter().all(|attribute| attribute.name != "TEXCOORD_0") {
-        let corners = of_triangles(triangles, faces, labels, [texture.len(), 0]);
+        let corners = of_triangles(triangles, faces, &labels, [texture.len(), 0]);
         let values = texture.iter().flat_map(|&[u, v]| [finite(u), 1.0 - finite(v)]).collect();
         list.push(Attribute { name: "TEXCOORD_0".into(), components: 2, values, of_corner: corners.texture });
     }
@@ -37,7 +38,13 @@ pub(super) fn attributes(
 }
 
 /// Makes attributes of channels: normals, colours and texture coordinates by their names, all others by one each.
-fn taken(mut channels: Vec<Channel>, corners: &[u32], list: &mut Vec<Attribute>, notes: &mut Notes) {
+fn taken(
+    mut channels: Vec<Channel>,
+    corners: &[u32],
+    most: usize,
+    list: &mut Vec<Attribute>,
+    notes: &mut Notes,
+) {
     let mut several = |names: &[&str]| -> Option<Vec<Channel>> {
         let places: Option<Vec<usize>> =
             names.iter().map(|name| channels.iter().position(|channel| channel.name == *name)).collect();
@@ -58,6 +65,10 @@ fn taken(mut channels: Vec<Channel>, corners: &[u32], list: &mut Vec<Attribute>,
     let texture = TEXTURE.iter().find_map(|names| several(names));
     groups.extend(texture.map(|found| ("TEXCOORD_0", found)));
     let mut add = |name: String, channels: &[Channel], value: &dyn Fn(usize, &Channel, f64) -> f64| {
+        if list.len() >= most {
+            notes.add("property left out, there are too many for the size of the file", 1);
+            return;
+        }
         if list.iter().any(|attribute| attribute.name == name) {
             notes.add("property of faces with the name of one of vertices left out", 1);
             return;
