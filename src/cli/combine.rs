@@ -146,6 +146,10 @@ fn options(
         .rules(operands.iter().map(|operand| operand.request.rule))
         .embed(embedding(arguments, targets))
         .assume_clean(arguments.inputs.using.assume_clean);
+    let options = match arguments.snap {
+        Some(distance) => options.snap(distance),
+        None => options,
+    };
     match session.common.threads {
         Some(threads) => options.threads(usize::from(threads)),
         None => options,
@@ -178,6 +182,12 @@ fn tell(name: &str, outcome: &Outcome, targets: &[Target], seconds: f64, session
     result.insert("certificate".into(), report::certificate(certificate));
     if let Some(warning) = report::nearly_flush(certificate) {
         session.warn(warning);
+    }
+    if let Some(snapping) = certificate.snapping {
+        session.console.say(&format!("{name}: {}", report::snapping(&snapping)));
+        if snapping.unfinished {
+            session.warn(format!("{name}: something nearer than the distance to snap by was left as it was"));
+        }
     }
     if let Some(left) = certificate.embedding.map(|done| done.left).filter(|&left| left > 0) {
         let triangles = words::counted(left, "triangle");

@@ -47,6 +47,7 @@ pub use groups::{FaceGroup, FaceGroups, Material};
 pub(crate) use manifold::{HalfEdges, Surface, make_manifold};
 pub(crate) use measure::enclosed_volume;
 pub use mend::Mending;
+pub(crate) use mend::fan_around_splits;
 pub use places::{Fault, Place};
 pub use self_crossing::{SelfCrossing, SelfCrossings};
 pub use solid::{Cleaning, Solid};

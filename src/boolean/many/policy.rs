@@ -35,6 +35,8 @@ pub(crate) struct Policy {
     pub(crate) rule: Rule,
     /// What becomes of crossings that rounding makes.
     pub(crate) embed: Embed,
+    /// The distance within which operands are welded to each other before.
+    pub(crate) snap: Option<f64>,
 }
 
 /// The error of a call without operands.

@@ -6,6 +6,7 @@ use crate::Solid;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::embed::Embedding;
 use crate::boolean::result::near_contacts::NearContacts;
+use crate::boolean::snapping::Snapping;
 use crate::exact::collinear;
 
 /// What a result is, and what making it met.
@@ -50,6 +51,8 @@ pub struct Certificate {
     pub walls_left: u64,
     /// What was done about crossings that rounding makes; `None` where nothing gave reason to look for any.
     pub embedding: Option<Embedding>,
+    /// What was moved and split by snapping; `None` where that was not asked for.
+    pub snapping: Option<Snapping>,
     /// For each operand what is known of its crossings with itself.
     pub operands: Vec<OperandState>,
 }
@@ -107,6 +110,7 @@ pub(crate) struct Notes {
     pub(crate) three_face_points: u64,
     pub(crate) walls_left: u64,
     pub(crate) embedding: Option<Embedding>,
+    pub(crate) snapping: Option<Snapping>,
     pub(crate) operands: Vec<OperandState>,
 }
 
@@ -142,6 +146,7 @@ impl Certificate {
             three_face_points: notes.three_face_points,
             walls_left: notes.walls_left,
             embedding: notes.embedding,
+            snapping: notes.snapping,
             operands: notes.operands.clone(),
         }
     }

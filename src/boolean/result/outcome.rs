@@ -8,6 +8,7 @@ use crate::Solid;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::result::certificate::{Certificate, Notes};
 use crate::boolean::result::origins::Origins;
+use crate::boolean::snapping::Snapping;
 
 /// The result of a boolean: a closed solid, where its triangles came from, and a certificate.
 #[derive(Clone, Debug)]
@@ -23,6 +24,12 @@ pub struct Outcome {
 impl Outcome {
     pub(crate) fn new(solid: Solid, origins: Origins, notes: Notes) -> Self {
         Self { solid, origins, list: OnceLock::new(), notes, certificate: OnceLock::new() }
+    }
+
+    /// The same with other origins, one for each that there is, and what was snapped before.
+    pub(crate) fn of_snapped(self, origin: impl Fn(Origin) -> Origin, snapping: Snapping) -> Self {
+        let origins = self.origins.iter().map(origin).collect();
+        Self::new(self.solid, origins, Notes { snapping: Some(snapping), ..self.notes })
     }
 
     /// The result; an empty one is a success.
