@@ -50,15 +50,15 @@ impl Seen {
         determinant > ORIENT3D_BOUND * permanent + UNDERFLOW_FLOOR
     }
 
-    /// On which side of a plane through `v`, which looks like a line, a point lies; `None` where that is not certain. The plane is
-    /// the same for every `v`, but for its place.
+    /// On which side of a plane through `v`, which looks like a line, a point lies; and whether that is certain. The plane is the
+    /// same for every `v`, but for its place.
     #[inline(always)]
-    pub(crate) fn side(&self, v: &[f64; 3], point: &[f64; 3]) -> Option<bool> {
+    pub(crate) fn side(&self, v: &[f64; 3], point: &[f64; 3]) -> (bool, bool) {
         let terms: [f64; 3] = std::array::from_fn(|k| self.across[k] * (point[k] - v[k]));
         // One of them is 0.
         let sum = terms[0] + terms[1] + terms[2];
         let bound = ORIENT2D_BOUND * (terms[0].abs() + terms[1].abs() + terms[2].abs()) + UNDERFLOW_FLOOR;
-        (sum.abs() > bound).then_some(sum > 0.0)
+        (sum > 0.0, sum.abs() > bound)
     }
 }
 
@@ -89,10 +89,9 @@ mod tests {
                 certain += 1;
                 assert!(orient3d(&v, &a, &b, &eye) != Sign::Positive || round % 3 == 0, "{round}");
             }
-            if let Some(side) = seen.side(&v, &a) {
-                let sum: f64 = (0..3).map(|k| seen.across[k] * (a[k] - v[k])).sum();
-                assert_eq!(side, sum > 0.0);
-            }
+            let (side, is_certain) = seen.side(&v, &a);
+            let sum: f64 = (0..3).map(|k| seen.across[k] * (a[k] - v[k])).sum();
+            assert!(!is_certain || side == (sum > 0.0));
         }
         assert!(certain > 5_000, "{certain}");
     }

@@ -202,12 +202,7 @@ impl Solid {
                 // The total volume is not negative.
                 return Fault::default();
             }
-            let of_edges = || {
-                let table = EdgeTable::new(&mesh.triangles, mesh.positions.len());
-                Patches::new(&table, mesh.triangles.len())
-            };
-            let patches = self.patches().unwrap_or_else(of_edges);
-            inside_out_shells(&Spots { mesh }, &patches, &mesh.triangles, |triangle| triangle)
+            inside_out_shells(&Spots { mesh }, &self.patches(), &mesh.triangles, |triangle| triangle)
         };
         self.inside_out.get_or_init(compute)
     }

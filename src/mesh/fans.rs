@@ -35,34 +35,33 @@ fn of_range(mesh: &Mesh, range: Range<usize>) -> Vec<bool> {
 fn is_plain(positions: &[[f64; 3]], vertex: u32, link: &[u64]) -> bool {
     let v = &positions[vertex as usize];
     let ends = |edge: u64| [edge as u32, (edge >> 32) as u32].map(|end| &positions[end as usize]);
-    // 1. Against the sum of the normals, as long as the areas or, for fans of needles and others, all alike.
-    let (mut by_area, mut by_count) = ([0.0; 3], [0.0; 3]);
-    for &edge in link {
+    let normal = |edge: u64| -> [f64; 3] {
         let [a, b] = ends(edge);
         let (u, w) = (difference(a, v), difference(b, v));
-        let normal: [f64; 3] =
-            std::array::from_fn(|k| u[(k + 1) % 3] * w[(k + 2) % 3] - u[(k + 2) % 3] * w[(k + 1) % 3]);
-        let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
-        for k in 0..3 {
-            by_area[k] += normal[k];
-            by_count[k] += normal[k] / length;
-        }
-    }
-    // 2. Once around.
+        std::array::from_fn(|k| u[(k + 1) % 3] * w[(k + 2) % 3] - u[(k + 2) % 3] * w[(k + 1) % 3])
+    };
+    let sum = |scale: fn(&[f64; 3]) -> f64| {
+        link.iter().fold([0.0; 3], |sum: [f64; 3], &edge| {
+            let normal = normal(edge);
+            let scale = scale(&normal);
+            std::array::from_fn(|k| sum[k] + scale * normal[k])
+        })
+    };
+    // Once around, without a branch for each triangle.
     let is_seen_plain = |direction: [f64; 3]| {
         let Some(seen) = Seen::from(direction) else { return false };
-        let mut rounds = 0;
+        let (mut rounds, mut is_certain) = (0, true);
         for &edge in link {
             let [a, b] = ends(edge);
-            let (Some(from), Some(to)) = (seen.side(v, a), seen.side(v, b)) else { return false };
-            if !seen.is_counter_clockwise(v, a, b) {
-                return false;
-            }
+            let ((from, from_is_certain), (to, _)) = (seen.side(v, a), seen.side(v, b));
+            // (Each end is the start of another.)
+            is_certain &= from_is_certain & seen.is_counter_clockwise(v, a, b);
             rounds += u32::from(!from & to);
         }
-        rounds == 1
+        is_certain && rounds == 1
     };
-    is_seen_plain(by_area) || is_seen_plain(by_count)
+    // Against the sum of the normals, as long as the areas; or for fans of needles and others all alike.
+    is_seen_plain(sum(|_| 1.0)) || is_seen_plain(sum(|[x, y, z]| 1.0 / (x * x + y * y + z * z).sqrt()))
 }
 
 fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {

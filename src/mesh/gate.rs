@@ -7,7 +7,7 @@ use super::clean::{self, Cleaned, Weld};
 use super::diagnose::diagnose_tried;
 use super::measure::signed_volume;
 use super::mend::{self, Leave, Mending};
-use super::{Bounds, Cleaning, Links, Mesh, MeshError, Solid, UnionFind, chain, orient, shells};
+use super::{Bounds, Cleaning, Links, Mesh, MeshError, Solid, chain, orient, shells};
 use crate::parallel::join;
 
 /// What a mesh may be taken through to become a [`Solid`]. As made by [`new`](Self::new) it does what
@@ -301,17 +301,11 @@ fn assemble(
 
 /// The solid without further copies of its shells.
 fn single_shells(solid: Solid) -> Solid {
-    let mesh = &solid.mesh;
-    let mut pieces = UnionFind::new(mesh.positions.len());
-    mesh.triangles.iter().for_each(|&[a, b, c]| {
-        pieces.join(a, b);
-        pieces.join(b, c);
-    });
-    let first = mesh.triangles.first().map_or(0, |triangle| pieces.root(triangle[0]));
-    if mesh.triangles.iter().all(|triangle| pieces.root(triangle[0]) == first) && solid.is_edge_manifold() {
+    if solid.is_edge_manifold() && solid.components() < 2 {
         return solid;
     }
-    let copies = shells::copies(mesh);
+    let mesh = &solid.mesh;
+    let copies = shells::copies(mesh, &solid.patches());
     if copies.is_empty() {
         return solid;
     }

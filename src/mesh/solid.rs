@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use super::edges::EdgeTable;
 use super::measure::{area, signed_volume};
 use super::patches::Patches;
 use super::topology::{self, Shape};
@@ -256,9 +257,13 @@ impl Solid {
         topology::labels(&self.mesh.triangles, self.mesh.positions.len(), self.links())
     }
 
-    /// The components as patches, where no edge has more than two triangles.
-    pub(super) fn patches(&self) -> Option<Patches> {
-        self.is_edge_manifold().then(|| Patches::of_components(self.labelled_components()))
+    /// Its patches: the components, where no edge has more than two triangles.
+    pub(super) fn patches(&self) -> Patches {
+        if self.is_edge_manifold() {
+            return Patches::of_components(self.labelled_components());
+        }
+        let (triangles, vertices) = (&self.mesh.triangles, self.mesh.positions.len());
+        Patches::new(&EdgeTable::new(triangles, vertices), triangles.len())
     }
 }
 

@@ -5,6 +5,9 @@ use crate::boolean::complex::planes;
 use crate::exact::{FILTER_RANGE, PlaneFilter};
 use crate::mesh::plain_fans;
 
+/// The most triangles of which each can have three numbers of its own beside those of the vertices.
+const MOST_TRIANGLES: u32 = (1 << 31) / 3;
+
 /// What tells pairs of triangles of one closed surface apart.
 pub(super) struct Neighbours<'a> {
     mesh: &'a Mesh,
@@ -18,6 +21,29 @@ impl<'a> Neighbours<'a> {
     /// Of a mesh without coordinates larger than `largest`. O(n).
     pub(super) fn new(mesh: &'a Mesh, largest: f64) -> Self {
         Self { mesh, plain: plain_fans(mesh, largest), has_filter: largest <= FILTER_RANGE }
+    }
+
+    /// Whether the triangles round a vertex have nothing in common but it and the edges they share.
+    pub(super) fn is_plain(&self, vertex: u32) -> bool {
+        self.plain[vertex as usize]
+    }
+
+    /// Three numbers of a triangle: its vertices where their fans are plain, and numbers that nothing else has. Triangles that have
+    /// one in common have nothing else in common.
+    #[inline]
+    pub(super) fn marks(&self, triangle: u32) -> [u32; 3] {
+        // No vertex has so large a number, and there are no more triangles than so many.
+        const OWN: u32 = 1 << 31;
+        let vertices = self.mesh.triangles[triangle as usize];
+        std::array::from_fn(|k| {
+            let own = OWN | (3 * triangle.min(MOST_TRIANGLES) + k as u32);
+            if self.plain[vertices[k] as usize] { vertices[k] } else { own }
+        })
+    }
+
+    /// Whether there are few enough triangles for [`marks`](Self::marks).
+    pub(super) fn has_marks(&self) -> bool {
+        self.mesh.triangles.len() <= MOST_TRIANGLES as usize
     }
 
     /// Whether two triangles may cross or lie on each other; false only where it is certain that they have nothing in common but

@@ -6,6 +6,9 @@
 //! whose winding number is neither 0 nor 1; else it is what rounding does to every computed mesh, and the multiplicities
 //! of the boolean carry it.
 
+use glam::Vec3A;
+use obvhs::aabb::Aabb;
+
 use super::apart::{are_plainly_apart, common_corners};
 use super::neighbours::Neighbours;
 use super::self_pairs::self_pairs;
@@ -57,9 +60,9 @@ fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     let largest = bounds.largest();
     // 1. Pairs that are near one another and not plainly apart: none, nearly always.
     let frame = Frame::of(bounds.low, bounds.high);
-    let tree = tree_of(mesh, &frame);
-    let neighbours = Neighbours::new(mesh, largest);
-    let pairs = self_pairs(mesh, &tree, &frame, runner, |pair| neighbours.may_meet(pair))?;
+    let (tree, neighbours) = runner.both(|| tree_of(mesh, &frame), || Neighbours::new(mesh, largest));
+    let may_meet = |pair: [u32; 2]| neighbours.may_meet(pair);
+    let pairs = self_pairs(mesh, &tree, &frame, runner, &neighbours, may_meet)?;
     let part = tolerance_of_one(&mesh.positions);
     let mut result = SelfCrossings { tolerance: part * largest, ..SelfCrossings::default() };
     if pairs.is_empty() {
@@ -126,7 +129,12 @@ struct Surface<'a> {
 
 /// The boxes of all triangles.
 fn tree_of(mesh: &Mesh, frame: &Frame) -> BoxTree {
-    let box_of = |corners: &[u32; 3]| frame.triangle(corners.map(|v| &mesh.positions[v as usize]));
+    // Each vertex once, not with each of its six triangles.
+    let points: Vec<Vec3A> = mesh.positions.iter().map(|position| frame.point(position)).collect();
+    let box_of = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|v| points[v as usize]);
+        Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
+    };
     BoxTree::of_boxes(&mesh.triangles.iter().map(box_of).collect::<Vec<_>>())
 }
 
