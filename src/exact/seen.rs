@@ -17,7 +17,7 @@ impl Seen {
     pub(crate) fn from(vector: [f64; 3]) -> Option<Self> {
         let size = vector.map(f64::abs);
         let largest = size[0].max(size[1]).max(size[2]);
-        if !(largest > 0.0 && largest < f64::INFINITY) {
+        if largest == 0.0 || !vector.iter().all(|x| x.is_finite()) {
             return None;
         }
         // Rounding makes this another direction, which is as good.
@@ -51,14 +51,16 @@ impl Seen {
     }
 
     /// On which side of a plane through `v`, which looks like a line, a point lies; and whether that is certain. The plane is the
-    /// same for every `v`, but for its place.
+    /// same for every `v`, but for its place. A point in it counts to the first side, where it differs from `v` along no axis that
+    /// matters.
     #[inline(always)]
     pub(crate) fn side(&self, v: &[f64; 3], point: &[f64; 3]) -> (bool, bool) {
         let terms: [f64; 3] = std::array::from_fn(|k| self.across[k] * (point[k] - v[k]));
         // One of them is 0.
         let sum = terms[0] + terms[1] + terms[2];
         let bound = ORIENT2D_BOUND * (terms[0].abs() + terms[1].abs() + terms[2].abs()) + UNDERFLOW_FLOOR;
-        (sum > 0.0, sum.abs() > bound)
+        let is_in_plane = (0..3).all(|k| self.across[k] == 0.0 || point[k] == v[k]);
+        (sum >= 0.0, is_in_plane || sum.abs() > bound)
     }
 }
 
@@ -91,7 +93,7 @@ mod tests {
             }
             let (side, is_certain) = seen.side(&v, &a);
             let sum: f64 = (0..3).map(|k| seen.across[k] * (a[k] - v[k])).sum();
-            assert!(!is_certain || side == (sum > 0.0));
+            assert!(!is_certain || side == (sum >= 0.0));
         }
         assert!(certain > 5_000, "{certain}");
     }
@@ -106,6 +108,9 @@ mod tests {
                 (0..3).map(|k| seen.across[k] * seen.direction[k]).filter(|&x| x != 0.0).collect();
             assert!(products.is_empty() || (products.len() == 2 && products[0] == -products[1]), "{d:?}");
         }
+        let seen = Seen::from([0.0, 0.0, 1.0]).expect("a direction");
+        let sides = [[1.0, 0.0, 5.0], [-1.0, 0.0, 0.0]].map(|point| seen.side(&[0.0; 3], &point));
+        assert!(sides.contains(&(true, true)), "{sides:?}");
         assert!(Seen::from([0.0; 3]).is_none() && Seen::from([f64::NAN, 1.0, 1.0]).is_none());
     }
 }

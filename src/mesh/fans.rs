@@ -60,9 +60,15 @@ fn is_plain(positions: &[[f64; 3]], vertex: u32, link: &[u64]) -> bool {
         }
         is_certain && rounds == 1
     };
-    // Against the sum of the normals, as long as the areas; or for fans of needles and others all alike.
-    is_seen_plain(sum(|_| 1.0)) || is_seen_plain(sum(|[x, y, z]| 1.0 / (x * x + y * y + z * z).sqrt()))
+    // Against the sum of the normals, as long as the areas; or for fans of needles and others all alike. The first is turned a
+    // little, so that neighbours along the axes and diagonals of a model are not in the plane that tells how often they go round.
+    let [x, y, z] = sum(|_| 1.0);
+    is_seen_plain([x, SKEW[0] * y, SKEW[1] * z])
+        || is_seen_plain(sum(|[x, y, z]| 1.0 / (x * x + y * y + z * z).sqrt()))
 }
+
+/// What turns a direction by some degrees: no ratios of small integers.
+const SKEW: [f64; 2] = [0.873_1, 1.119_7];
 
 fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
