@@ -37,7 +37,7 @@ const PLACES: usize = 5;
 impl Solid {
     /// Pairs of triangles of this solid that cross each other. Computed once and remembered.
     ///
-    /// Takes about a microsecond per triangle, O(n log n) for fans of any size too. Touching (in a vertex, along an edge, face
+    /// Takes some tenths of a microsecond a triangle, O(n log n) for fans of any size too. Touching (in a vertex, along an edge, face
     /// to face) is not crossing. The tolerance below which a crossing counts as rounding is told in the result: 8 units in the
     /// last place of the coordinates there (of the largest of all, where those are within a sixteenth of it); where all
     /// coordinates are single-precision numbers (STL, glTF), units of single precision.
