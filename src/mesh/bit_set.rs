@@ -25,11 +25,6 @@ impl BitSet {
         })
     }
 
-    /// Adds the elements of another set of the same size.
-    pub(crate) fn unite(&mut self, other: &Self) {
-        self.0.iter_mut().zip(&other.0).for_each(|(word, other)| *word |= other);
-    }
-
     /// Its bits, 64 in a word.
     pub(crate) fn words(&self) -> &[u64] {
         &self.0

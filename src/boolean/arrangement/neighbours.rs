@@ -1,5 +1,6 @@
 //! Pairs of triangles of one surface that plainly do not meet, by what is cheapest: the vertices they share, then their planes.
 
+use super::apart::are_disjoint;
 use crate::Mesh;
 use crate::boolean::complex::planes;
 use crate::exact::{FILTER_RANGE, PlaneFilter};
@@ -69,11 +70,13 @@ impl<'a> Neighbours<'a> {
         }
     }
 
-    /// Whether one of two triangles without common vertices certainly lies on one side of the other's plane.
+    /// Whether one of two triangles without common vertices certainly lies on one side of the other's plane, or of a line that
+    /// they are seen on different sides of.
     #[inline]
     fn are_apart(&self, a: [u32; 3], b: [u32; 3]) -> bool {
         let [a, b] = [a, b].map(|corners| corners.map(|v| &self.mesh.positions[v as usize]));
-        self.has_filter && (is_on_one_side(a, b) || is_on_one_side(b, a))
+        (self.has_filter && (is_on_one_side(a, b) || is_on_one_side(b, a)))
+            || are_disjoint(&a.map(|corner| *corner), &b.map(|corner| *corner))
     }
 
     fn lie_on_each_other(&self, a: [u32; 3], b: [u32; 3]) -> bool {

@@ -3,7 +3,6 @@
 pub(super) mod assemble;
 pub(super) mod certificate;
 pub(super) mod inverted;
-mod near_cells;
 pub(super) mod near_contacts;
 pub(super) mod numbers;
 pub(super) mod origins;

@@ -7,7 +7,6 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::near_cells::near_others;
 use crate::boolean::complex::origin::Origin;
 use crate::exact::at_hand::largest_coordinate;
 use crate::exact::{Projection, Sign, orient2d, orient3d};
@@ -89,8 +88,9 @@ fn boxes_of_operands(mesh: &Mesh, operands: &[u32], count: usize) -> Vec<Bounds>
         }
         boxes
     });
+    // (An empty box may be among them.)
     let unite = |sum: Vec<Bounds>, part: Vec<Bounds>| {
-        sum.iter().zip(&part).map(|(sum, part)| sum.union(part)).collect()
+        sum.into_iter().zip(part).map(|(sum, part)| sum.united(part)).collect()
     };
     parts.into_iter().reduce(unite).unwrap_or_else(|| vec![Bounds::NOTHING; count])
 }
@@ -162,7 +162,7 @@ impl<'a> Region<'a> {
             let all = tree(&filled.concat());
             return visit_pairs(&all, &all, runner, examine);
         }
-        let trees: Vec<BoxTree> = near_others(filled, box_of).iter().map(|list| tree(list)).collect();
+        let trees: Vec<BoxTree> = filled.iter().map(|list| tree(list)).collect();
         let mut found = Vec::new();
         for (k, one) in trees.iter().enumerate() {
             for other in &trees[k + 1..] {
