@@ -14,7 +14,8 @@ use trisect::mesh::Bounds;
 pub(crate) struct Measures {
     vertices: usize,
     triangles: usize,
-    area: f64,
+    /// Absent where nobody is told.
+    area: Option<f64>,
     bounds: Option<Bounds>,
     closed: Option<Closed>,
 }
@@ -34,7 +35,7 @@ impl Measures {
         Self {
             vertices: mesh.positions.len(),
             triangles: mesh.triangles.len(),
-            area: mesh.area(),
+            area: Some(mesh.area()),
             bounds: mesh.bounds(),
             closed: None,
         }
@@ -42,13 +43,25 @@ impl Measures {
 
     /// Measures of a solid.
     pub(crate) fn of_solid(solid: &Solid) -> Self {
+        Self { area: Some(solid.area()), ..Self::for_line(solid) }
+    }
+
+    /// What [`line`](Self::line) tells of a solid, and what costs nothing beside it.
+    pub(crate) fn for_line(solid: &Solid) -> Self {
         let closed = Closed {
             manifold: solid.is_manifold(),
             shells: solid.components(),
             genus: solid.genus(),
             volume: solid.volume(),
         };
-        Self { closed: Some(closed), ..Self::of_mesh(solid.mesh()) }
+        let mesh = solid.mesh();
+        Self {
+            vertices: mesh.positions.len(),
+            triangles: mesh.triangles.len(),
+            area: None,
+            bounds: solid.bounds(),
+            closed: Some(closed),
+        }
     }
 
     /// The part of a summary line after the name.
@@ -78,7 +91,7 @@ impl Measures {
             rows.push(("bounds", format!("{} to {}", three(bounds.low), three(bounds.high))));
             rows.push(("size", three(bounds.size())));
         }
-        rows.push(("area", short(self.area)));
+        rows.extend(self.area.map(|area| ("area", short(area))));
         if let Some(Closed { manifold, shells, genus, volume }) = self.closed {
             rows.push(("volume", short(volume)));
             rows.push(("closed", if manifold { "yes, manifold" } else { "yes, not manifold" }.into()));
@@ -221,8 +234,7 @@ fn distance_to_snap(near: &NearContacts) -> f64 {
 }
 
 /// What there is to say about films and gaps too thin for single precision.
-pub(crate) fn nearly_flush(certificate: &Certificate) -> Option<String> {
-    let near = &certificate.nearly_flush;
+pub(crate) fn nearly_flush(near: &NearContacts) -> Option<String> {
     let places: Vec<String> = near
         .places
         .iter()

@@ -319,7 +319,7 @@ fn what_is_a_hair_short_goes_through_when_snapped() {
     let certificate = &report["result"]["certificate"];
     assert_eq!((&certificate["genus"], &certificate["components"]), (&json!(1), &json!(1)));
     assert_eq!(certificate["snapping"]["unfinished"], false);
-    assert_eq!(volume(&folder, "c.obj"), 12.0);
+    assert_eq!(volume(&folder.read("c.obj")), 12.0);
     for wrong in ["0", "-1", "nan", "short"] {
         folder
             .run(&format!("difference plate.obj short.obj -o c.obj --snap {wrong}"))

@@ -94,7 +94,7 @@ impl BooleanOptions {
     }
 
     /// Whether operands are taken not to cross or touch themselves, unless they are known to. Default: false; each is looked
-    /// through once (about a microsecond a triangle) and remembers what was found, and results of operations need not be
+    /// through once (some tenths of a microsecond a triangle) and remembers what was found, and results of operations need not be
     /// looked through. Where the assumption is wrong the result is closed all the same, but regions count as often as they are
     /// enclosed.
     #[must_use]
