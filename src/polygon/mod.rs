@@ -147,6 +147,35 @@ impl Triangulator {
     }
 }
 
+/// A region, filled.
+#[derive(Debug)]
+pub(crate) struct Region {
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// Whether its boundary winds once around all of it, and nowhere crosses or touches itself but in common vertices.
+    pub(crate) is_simple: bool,
+    /// Triangles that are turned over.
+    pub(crate) inverted: u64,
+}
+
+/// Triangles over what directed edges wind around, as often as they do; every edge is used exactly once, and besides them only
+/// diagonals in pairs. O(n log n) where no edges cross.
+pub(crate) fn fill_wound(points: &[[f64; 2]], edges: &[[u32; 2]]) -> Region {
+    let counted: Vec<counted::CountedEdge> = edges.iter().map(|&edge| (edge, 1)).collect();
+    if let Ok(found) = delaunay::triangulate_between(points, &counted) {
+        let is_simple = found.iter().all(|&(_, winding)| winding == 1);
+        let times = |&([a, b, c], winding): &counted::CountedTriangle| {
+            let corners = if winding > 0 { [a, b, c] } else { [a, c, b] };
+            std::iter::repeat_n(corners, winding.unsigned_abs() as usize)
+        };
+        return Region { triangles: found.iter().flat_map(times).collect(), is_simple, inverted: 0 };
+    }
+    let mut triangles = Vec::new();
+    Triangulator::default().triangulate(points, edges, &mut triangles);
+    let is_inverted = |corners: &&[u32; 3]| ears::shape_of(points, **corners) == Shape::Folded;
+    let inverted = triangles.iter().filter(is_inverted).count() as u64;
+    Region { triangles, is_simple: false, inverted }
+}
+
 /// The corners, if three edges form one triangle: the commonest region.
 fn single_triangle(edges: &[[u32; 2]]) -> Option<[u32; 3]> {
     let [first, second, third] = edges else { return None };

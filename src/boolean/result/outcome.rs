@@ -43,6 +43,11 @@ impl Outcome {
         self.list.get_or_init(|| self.origins.iter().collect())
     }
 
+    /// The same as runs of triangles.
+    pub(crate) fn runs(&self) -> &Origins {
+        &self.origins
+    }
+
     /// What is known of the result. Computed once, when first asked for; O(n), and O(k log k) for the k triangles where parts of
     /// different operands are near one another.
     #[must_use]

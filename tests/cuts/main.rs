@@ -1,0 +1,6 @@
+//! Cuts: planes, sections, parts, sheets, repair.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod models;
+mod planes;
