@@ -46,7 +46,7 @@ pub use expression_text::ExpressionError;
 pub use general::embed::{Embedding, Grid};
 pub use many::options::BooleanOptions;
 pub use many::policy::Embed;
-pub use plane::PlaneCut;
+pub use plane::{PlaneCut, Section, SectionSide, Sections};
 pub use result::certificate::{Certificate, OperandState};
 pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;

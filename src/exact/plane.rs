@@ -204,7 +204,9 @@ impl Plane {
         let position = self.crossing_filter(p, q).unwrap_or_else(|| self.crossing_exact(p, q));
         match self.given {
             // Exactly, whichever way it is computed.
-            Given::Across { axis, at } => std::array::from_fn(|k| if k == axis { at + 0.0 } else { position[k] }),
+            Given::Across { axis, at } => {
+                std::array::from_fn(|k| if k == axis { at + 0.0 } else { position[k] })
+            }
             _ => position,
         }
     }
@@ -232,7 +234,8 @@ impl Plane {
                     return None;
                 }
                 let height = |x: &[f64; 3]| {
-                    let [a, b, c] = [0, 1, 2].map(|k| DoubleDouble::from(normal[k]) * DoubleDouble::from(x[k]));
+                    let [a, b, c] =
+                        [0, 1, 2].map(|k| DoubleDouble::from(normal[k]) * DoubleDouble::from(x[k]));
                     (a + b + c - DoubleDouble::from(*offset), a.high.abs() + b.high.abs() + c.high.abs())
                 };
                 let (of_p, of_q) = (height(p), height(q));
@@ -246,7 +249,8 @@ impl Plane {
     /// The same in integers.
     fn crossing_exact(&self, p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
         if let Given::Points(points) = &self.given {
-            let still = |position: &[f64; 3]| PerturbedPoint { position: *position, first: [0; 3], second: [0; 3] };
+            let still =
+                |position: &[f64; 3]| PerturbedPoint { position: *position, first: [0; 3], second: [0; 3] };
             let corners = points.each_ref().map(still);
             return position::crossing(&still(p), &still(q), corners.each_ref());
         }
@@ -344,7 +348,11 @@ mod tests {
 
     fn random_plane(rng: &mut ChaCha8Rng, kind: usize, scale: f64, grid: bool) -> Plane {
         let number = |rng: &mut ChaCha8Rng| {
-            if grid { scale * f64::from(rng.random_range(-3i32..4)) } else { scale * rng.random_range(-1.0..1.0) }
+            if grid {
+                scale * f64::from(rng.random_range(-3i32..4))
+            } else {
+                scale * rng.random_range(-1.0..1.0)
+            }
         };
         loop {
             let mut point = || -> [f64; 3] { std::array::from_fn(|_| number(rng)) };
@@ -369,12 +377,24 @@ mod tests {
             let plane = random_plane(&mut rng, kind, scale, grid);
             let mut point = || -> [f64; 3] {
                 std::array::from_fn(|_| {
-                    if grid { scale * f64::from(rng.random_range(-3i32..4)) } else { scale * rng.random_range(-1.0..1.0) }
+                    if grid {
+                        scale * f64::from(rng.random_range(-3i32..4))
+                    } else {
+                        scale * rng.random_range(-1.0..1.0)
+                    }
                 })
             };
             let (p, q) = (point(), point());
             let (hp, hq) = (reference(&plane, &p), reference(&plane, &q));
-            let sign = |h: &RBig| Sign::of_i32(if *h == RBig::ZERO { 0 } else if *h < RBig::ZERO { -1 } else { 1 });
+            let sign = |h: &RBig| {
+                Sign::of_i32(if *h == RBig::ZERO {
+                    0
+                } else if *h < RBig::ZERO {
+                    -1
+                } else {
+                    1
+                })
+            };
             assert_eq!(plane.side(&p), sign(&hp), "{plane:?} {p:?}");
             on += usize::from(sign(&hp) == Sign::Zero);
             if sign(&hp) as i8 * sign(&hq) as i8 >= 0 {
@@ -389,7 +409,10 @@ mod tests {
                 let here = distance(found[k]);
                 for neighbour in [found[k].next_up(), found[k].next_down()] {
                     let there = distance(neighbour);
-                    assert!(here < there || here == there && found[k].to_bits() & 1 == 0, "{plane:?} {p:?} {q:?}");
+                    assert!(
+                        here < there || here == there && found[k].to_bits() & 1 == 0,
+                        "{plane:?} {p:?} {q:?}"
+                    );
                 }
             }
         }

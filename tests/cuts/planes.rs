@@ -20,8 +20,9 @@ fn count(variable: &str, usual: usize) -> usize {
 /// A plane through the middle of the box, more or less.
 fn random_plane(rng: &mut ChaCha8Rng, solid: &Solid) -> Plane {
     let bounds = solid.bounds().expect("not empty");
-    let inside: [f64; 3] =
-        std::array::from_fn(|k| bounds.low[k] + rng.random_range(0.1..0.9) * (bounds.high[k] - bounds.low[k]));
+    let inside: [f64; 3] = std::array::from_fn(|k| {
+        bounds.low[k] + rng.random_range(0.1..0.9) * (bounds.high[k] - bounds.low[k])
+    });
     loop {
         let normal: [f64; 3] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
         let offset = (0..3).map(|k| normal[k] * inside[k]).sum();
@@ -35,7 +36,8 @@ fn random_plane(rng: &mut ChaCha8Rng, solid: &Solid) -> Plane {
 fn aligned_plane(rng: &mut ChaCha8Rng, solid: &Solid) -> Plane {
     let mesh = solid.mesh();
     loop {
-        let corners = mesh.triangles[rng.random_range(0..mesh.triangles.len())].map(|v| mesh.positions[v as usize]);
+        let corners =
+            mesh.triangles[rng.random_range(0..mesh.triangles.len())].map(|v| mesh.positions[v as usize]);
         let other = mesh.positions[rng.random_range(0..mesh.positions.len())];
         let plane = match rng.random_range(0..4) {
             0 => {
@@ -217,7 +219,8 @@ fn halves_agree_with_a_large_box() {
                 let positions = &shape.mesh().positions;
                 positions[rng.random_range(0..positions.len())][axis]
             };
-            let (above, below) = check(shape, &Plane::across(axis, at).unwrap(), &format!("axis {axis}, {at}"));
+            let (above, below) =
+                check(shape, &Plane::across(axis, at).unwrap(), &format!("axis {axis}, {at}"));
             let (mut low, mut high) = ([-9.0; 3], [9.0; 3]);
             high[axis] = at;
             let half = cuboid(low, high);
@@ -259,7 +262,9 @@ fn halves_of_all_models_are_closed_and_add_up() {
             }
         }
     }
-    eprintln!("{tried} halves, {not_manifold} not manifold, {flat} triangles without area, {inverted} turned over");
+    eprintln!(
+        "{tried} halves, {not_manifold} not manifold, {flat} triangles without area, {inverted} turned over"
+    );
     assert!(tried > 0);
     assert_eq!(not_manifold, 0);
 }

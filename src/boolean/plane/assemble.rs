@@ -23,14 +23,17 @@ pub(super) fn assemble(split: &Split<'_>, nodes: &Nodes, half: Half, new: &New) 
     let count = split.mesh.triangles.len();
     let mut triangles = Vec::new();
     let mut kept = Kept::none(Origin { operand: 0, triangle: 0, reversed: false }, count);
+    let any_replaced = !new.replaced.is_empty();
     // 1. Whole triangles. Those that touch the plane are few, and looked at one by one.
-    let mut touching = split.touching(half).filter(|triangle| new.replaced.binary_search(triangle).is_err()).peekable();
+    let mut touching =
+        split.touching(half).filter(|triangle| new.replaced.binary_search(triangle).is_err()).peekable();
     for (word, (bits, chunk)) in kept.bits_mut().iter_mut().zip(split.mesh.triangles.chunks(64)).enumerate() {
         let first = 64 * word as u32;
         let mut in_word = 0u64;
         for (bit, corners) in chunk.iter().enumerate() {
             let marks = corners.map(|v| split.mark(v));
-            let is_strictly = marks == [mark; 3];
+            let is_strictly = marks == [mark; 3]
+                && (!any_replaced || new.replaced.binary_search(&(first + bit as u32)).is_err());
             if is_strictly || touching.next_if_eq(&(first + bit as u32)).is_some() {
                 triangles.push(corners.map(|v| numbers[v as usize]));
                 in_word |= 1 << bit;
@@ -53,7 +56,7 @@ pub(super) fn assemble(split: &Split<'_>, nodes: &Nodes, half: Half, new: &New) 
 
 /// The number of each point in the half, and where those are that have one.
 fn numbers(split: &Split<'_>, nodes: &Nodes, half: Half, new: &New) -> (Vec<u32>, Vec<[f64; 3]>) {
-    let vertices = split.marks.len();
+    let vertices = split.vertex_count();
     let mark = half.mark();
     let mut numbers = vec![NONE; nodes.point_count() as usize + new.copies.len()];
     // 1. Points of new triangles, and of whole ones in the plane.
@@ -76,7 +79,9 @@ fn numbers(split: &Split<'_>, nodes: &Nodes, half: Half, new: &New) -> (Vec<u32>
     doubtful.sort_unstable();
     doubtful.dedup();
     if !doubtful.is_empty() {
-        for corners in split.mesh.triangles.iter().filter(|corners| corners.iter().all(|&v| split.mark(v) == mark)) {
+        for corners in
+            split.mesh.triangles.iter().filter(|corners| corners.iter().all(|&v| split.mark(v) == mark))
+        {
             for v in corners {
                 if let Ok(place) = doubtful.binary_search(v) {
                     doubtful.remove(place);
@@ -86,7 +91,7 @@ fn numbers(split: &Split<'_>, nodes: &Nodes, half: Half, new: &New) -> (Vec<u32>
     }
     let mut positions = Vec::new();
     for (v, position) in split.mesh.positions.iter().enumerate() {
-        let of_vertex = split.marks[v];
+        let of_vertex = split.mark(v as u32);
         let is_used = numbers[v] == 0 && (of_vertex == mark || of_vertex == ON)
             || of_vertex == mark && doubtful.binary_search(&(v as u32)).is_err();
         numbers[v] = if is_used { positions.len() as u32 } else { NONE };

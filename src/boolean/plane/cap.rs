@@ -42,6 +42,7 @@ pub(super) fn cap(split: &Split<'_>, nodes: &Nodes) -> Cap {
     let number = |point: &Point| points.partition_point(|other| other < point) as u32;
     let edges: Vec<[u32; 2]> = edges.iter().map(|edge| edge.each_ref().map(number)).collect();
     let Region { triangles, is_simple, inverted } = polygon::fill_wound(&flat, &edges);
-    let triangles = triangles.into_iter().map(|corners| corners.map(|number| points[number as usize])).collect();
+    let triangles =
+        triangles.into_iter().map(|corners| corners.map(|number| points[number as usize])).collect();
     Cap { triangles, is_simple, inverted }
 }

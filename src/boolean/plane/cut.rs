@@ -150,13 +150,19 @@ impl Cut<'_> {
         let (below, above) = self.runner.both(|| one(Half::Below), || one(Half::Above));
         control.check()?;
         // 7. What is known of them.
-        let on = split.marks.iter().filter(|&&mark| mark == super::split::ON).count() as u64;
-        let finish = |made: Option<(Arrays, u64)>| made.map(|made| self.outcome(made, on, &cap, seen)).transpose();
+        let on = split.count_on();
+        let finish =
+            |made: Option<(Arrays, u64)>| made.map(|made| self.outcome(made, on, &cap, seen)).transpose();
         Ok(Some([finish(below)?, finish(above)?]))
     }
 
     /// The halves where the plane passes the solid by.
-    fn whole(&self, split: &Split<'_>, wanted: &[Half], seen: Seen<'_>) -> Result<[Option<Outcome>; 2], Error> {
+    fn whole(
+        &self,
+        split: &Split<'_>,
+        wanted: &[Half],
+        seen: Seen<'_>,
+    ) -> Result<[Option<Outcome>; 2], Error> {
         let of = |half: Half| -> Result<Option<Outcome>, Error> {
             if !wanted.contains(&half) {
                 return Ok(None);
@@ -176,7 +182,13 @@ impl Cut<'_> {
     }
 
     /// The result of a half.
-    fn outcome(&self, (arrays, inverted): (Arrays, u64), contacts: u64, cap: &Cap, seen: Seen<'_>) -> Result<Outcome, Error> {
+    fn outcome(
+        &self,
+        (arrays, inverted): (Arrays, u64),
+        contacts: u64,
+        cap: &Cap,
+        seen: Seen<'_>,
+    ) -> Result<Outcome, Error> {
         let Arrays { mesh, mut origins } = arrays;
         let groups = self.groups(&mesh, &origins);
         let mut operands = vec![OperandState::of(self.solid)];

@@ -11,16 +11,22 @@
 //!    triangulation of what it winds around.
 //! 5. `separate`: what touches itself in the plane comes apart.
 //! 6. `assemble`: the arrays of each half.
+//!
+//! `sections` does the first, second and fourth for many parallel planes at once, and keeps the outlines: each is a `section`.
 
 mod assemble;
 mod cap;
 mod cut;
 mod nodes;
 mod pieces;
+mod section;
+mod sections;
 mod separate;
 mod split;
 
 pub use cut::PlaneCut;
+pub use section::Section;
+pub use sections::{SectionSide, Sections};
 
 use crate::exact::Plane;
 use crate::{Error, Outcome, Solid};

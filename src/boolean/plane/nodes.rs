@@ -44,6 +44,8 @@ pub(super) struct Nodes {
     /// The point that stands for a node, in the cap and in each half.
     in_cap: Vec<Point>,
     in_half: [Vec<Point>; 2],
+    /// Ends of edges that stand for nodes, in each half; ascending.
+    ends: [Vec<u32>; 2],
     /// The number of vertices: that of the first node.
     first: u32,
     /// Whether some edge has other than two cut faces, or points at the same place became one.
@@ -56,10 +58,12 @@ impl Nodes {
     /// # Errors
     /// [`Error::TooLarge`] where vertices and nodes cannot be numbered; limits.
     pub(super) fn new(split: &Split<'_>, merge: bool, runner: Runner<'_>) -> Result<Self, Error> {
-        let vertices = split.marks.len();
+        let vertices = split.vertex_count();
         // Two for each cut face at most.
         if vertices + 2 * split.cut.len() > u32::MAX as usize / 2 {
-            return Err(Error::TooLarge { what: format!("{vertices} vertices cut in {} triangles", split.cut.len()) });
+            return Err(Error::TooLarge {
+                what: format!("{vertices} vertices cut in {} triangles", split.cut.len()),
+            });
         }
         let first = vertices as u32;
         // 1. Nodes, in the order of the triangles that have them.
@@ -69,13 +73,14 @@ impl Nodes {
         let plane_faces = if merge { merge_faces(split, &nodes, &faces, &mut dropped) } else { Vec::new() };
         runner.control.check()?;
         // 3. Where they are.
-        let positions = runner.gather(nodes.len(), AT_ONCE, nodes.len(), |range, positions: &mut Vec<[f64; 3]>| {
-            positions.extend(range.map(|node| {
-                let Node { below, above, .. } = nodes[node];
-                let [p, q] = [below, above].map(|v| &split.mesh.positions[v as usize]);
-                if dropped[node] { [0.0; 3] } else { split.plane.crossing(p, q) }
-            }));
-        })?;
+        let positions =
+            runner.gather(nodes.len(), AT_ONCE, nodes.len(), |range, positions: &mut Vec<[f64; 3]>| {
+                positions.extend(range.map(|node| {
+                    let Node { below, above, .. } = nodes[node];
+                    let [p, q] = [below, above].map(|v| &split.mesh.positions[v as usize]);
+                    if dropped[node] { [0.0; 3] } else { split.plane.crossing(p, q) }
+                }));
+            })?;
         let may_pinch = nodes.iter().any(|node| node.count != 2);
         let mut found = Self {
             faces,
@@ -84,6 +89,7 @@ impl Nodes {
             positions,
             in_cap: Vec::new(),
             in_half: [Vec::new(), Vec::new()],
+            ends: [Vec::new(), Vec::new()],
             first,
             may_pinch,
         };
@@ -102,6 +108,11 @@ impl Nodes {
             None => split.mesh.positions[point as usize],
             Some(node) => self.positions[node as usize],
         }
+    }
+
+    /// The ends of edges that stand for nodes in a half, ascending.
+    pub(super) fn ends(&self, half: Half) -> &[u32] {
+        &self.ends[half as usize]
     }
 
     pub(super) fn is_node(&self, point: Point) -> bool {
@@ -155,6 +166,9 @@ impl Nodes {
                 }
             }
             self.may_pinch |= !ends.is_empty();
+            let mut vertices: Vec<u32> = ends.values().copied().collect();
+            vertices.sort_unstable();
+            self.ends[half as usize] = vertices;
             self.in_half[half as usize] =
                 self.in_cap.iter().map(|point| ends.get(point).copied().unwrap_or(*point)).collect();
         }

@@ -118,7 +118,8 @@ impl Cutter<'_> {
         points.sort_unstable();
         points.dedup();
         let source = self.nodes.faces[places[0] as usize].triangle;
-        let projection = Projection::of(&self.split.corners(source).map(|v| self.split.mesh.positions[v as usize]));
+        let projection =
+            Projection::of(&self.split.corners(source).map(|v| self.split.mesh.positions[v as usize]));
         let flat: Vec<[f64; 2]> =
             points.iter().map(|&point| projection.project(&self.nodes.position(self.split, point))).collect();
         let number = |point: &Point| points.partition_point(|other| other < point) as u32;

@@ -68,9 +68,18 @@ pub(super) fn separate(split: &Split<'_>, nodes: &Nodes, half: Half, pieces: Vec
     // 1. All triangles at points in the plane, under numbers of their own.
     let new = pieces.len();
     let mut patch = Patch { pieces, corners: Vec::new(), positions: Vec::new(), is_complete: Vec::new() };
-    patch.pieces.extend(
-        split.touching(half).map(|triangle| Piece { corners: split.corners(triangle), source: Some(triangle) }),
-    );
+    let whole = |triangle: u32| Piece { corners: split.corners(triangle), source: Some(triangle) };
+    patch.pieces.extend(split.touching(half).map(whole));
+    let ends = nodes.ends(half);
+    if !ends.is_empty() {
+        // Vertices that stand for nodes: the triangles that only they have in the patch.
+        let is_at_end = |triangle: &u32| {
+            let corners = split.corners(*triangle);
+            corners.iter().all(|&v| split.mark(v) == half.mark())
+                && corners.iter().any(|v| ends.binary_search(v).is_ok())
+        };
+        patch.pieces.extend((0..split.mesh.triangles.len() as u32).filter(is_at_end).map(whole));
+    }
     let mut points: Vec<Point> = Vec::new();
     let mut numbers: FxHashMap<Point, u32> = FxHashMap::default();
     for piece in &patch.pieces {
@@ -83,7 +92,9 @@ pub(super) fn separate(split: &Split<'_>, nodes: &Nodes, half: Half, pieces: Vec
         patch.corners.push(corners);
     }
     patch.positions = points.iter().map(|&point| nodes.position(split, point)).collect();
-    patch.is_complete = points.iter().map(|&point| nodes.is_node(point) || split.mark(point) == ON).collect();
+    let is_seam =
+        |point: Point| nodes.is_node(point) || split.mark(point) == ON || ends.binary_search(&point).is_ok();
+    patch.is_complete = points.iter().map(|&point| is_seam(point)).collect();
     let before = patch.corners.clone();
     // 2. Apart.
     let half_edges = HalfEdges::of(&patch);

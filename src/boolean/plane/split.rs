@@ -1,5 +1,7 @@
 //! On which side of the plane everything lies.
 
+use std::cmp::Ordering;
+
 use crate::Error;
 use crate::exact::{Plane, Sign, orient2d};
 use crate::mesh::Mesh;
@@ -33,12 +35,19 @@ const CUT: u8 = BELOW | ABOVE;
 /// Vertices or triangles that one thread looks at before the limits are checked: about 100 us of work.
 const AT_ONCE: usize = 1 << 15;
 
+/// The mark of each vertex.
+enum Marks<'a> {
+    /// One by one.
+    Each(Vec<u8>),
+    /// By how many of several parallel planes each vertex has passed; see [`Split::of_rank`].
+    Ranks { ranks: &'a [u32], on: u32, merged_with: u8 },
+}
+
 /// A mesh against a plane.
 pub(super) struct Split<'a> {
     pub(super) mesh: &'a Mesh,
     pub(super) plane: &'a Plane,
-    /// The mark of each vertex.
-    pub(super) marks: Vec<u8>,
+    marks: Marks<'a>,
     /// Triangles with corners strictly on both sides, ascending.
     pub(super) cut: Vec<u32>,
     /// Triangles on one side that have a corner in the plane, and triangles in it, ascending.
@@ -66,7 +75,31 @@ impl<'a> Split<'a> {
         } else {
             Vec::new()
         };
-        Ok(Self { mesh, plane, marks, cut, touching })
+        Ok(Self { mesh, plane, marks: Marks::Each(marks), cut, touching })
+    }
+
+    /// The same for one of several parallel planes: `ranks` are twice the number of planes that each vertex is above, and one more
+    /// where it is on the next one. `on` is the rank of what is on this one, which counts as `merged_with`. `met` are the triangles
+    /// that meet the plane, ascending.
+    pub(super) fn of_rank(
+        mesh: &'a Mesh,
+        plane: &'a Plane,
+        ranks: &'a [u32],
+        on: u32,
+        merged_with: u8,
+        met: &[u32],
+    ) -> Self {
+        let marks = Marks::Ranks { ranks, on, merged_with };
+        let mut split = Self { mesh, plane, marks, cut: Vec::new(), touching: Vec::new() };
+        for &triangle in met {
+            let [a, b, c] = split.corners(triangle).map(|v| split.mark(v));
+            if a | b | c == CUT {
+                split.cut.push(triangle);
+            } else if a == ON || b == ON || c == ON {
+                split.touching.push(triangle);
+            }
+        }
+        split
     }
 
     /// Whether nothing meets the plane, so that each half is all or nothing.
@@ -76,7 +109,24 @@ impl<'a> Split<'a> {
 
     #[inline]
     pub(super) fn mark(&self, vertex: u32) -> u8 {
-        self.marks[vertex as usize]
+        match &self.marks {
+            Marks::Each(marks) => marks[vertex as usize],
+            Marks::Ranks { ranks, on, merged_with } => match ranks[vertex as usize].cmp(on) {
+                Ordering::Less => BELOW,
+                Ordering::Equal => *merged_with,
+                Ordering::Greater => ABOVE,
+            },
+        }
+    }
+
+    /// The number of vertices.
+    pub(super) fn vertex_count(&self) -> usize {
+        self.mesh.positions.len()
+    }
+
+    /// How many vertices lie on the plane.
+    pub(super) fn count_on(&self) -> u64 {
+        (0..self.vertex_count() as u32).filter(|&v| self.mark(v) == ON).count() as u64
     }
 
     #[inline]
