@@ -46,6 +46,7 @@ pub use expression_text::ExpressionError;
 pub use general::embed::{Embedding, Grid};
 pub use many::options::BooleanOptions;
 pub use many::policy::Embed;
+pub use many::trim::{TrimSide, Trimmed};
 pub use plane::{PlaneCut, Section, SectionSide, Sections};
 pub use result::certificate::{Certificate, OperandState};
 pub use result::near_contacts::{NearContact, NearContacts};

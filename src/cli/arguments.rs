@@ -8,7 +8,7 @@ use trisect::Operation;
 use super::argument_groups::{Common, Inputs, Placing, Reading, Repair, Results};
 #[cfg(feature = "subdivision")]
 use super::cage_arguments::{FreeFormVerb, Subdivide};
-use super::cut_arguments::{Cut, Section, Split};
+use super::cut_arguments::{Cut, Section, Split, Trim};
 #[cfg(feature = "parametric")]
 use super::field_arguments::CurveVerb;
 use super::field_arguments::{Eval, SampleGrid, Slice};
@@ -89,6 +89,9 @@ pub(crate) enum Verb {
         after_help = "Examples:\n  trisect split parts.stl -o part.stl\n  trisect split block.stl --by mould.stl -o half.stl"
     )]
     Split(Split),
+    /// What of an open surface lies inside a solid, or outside it
+    #[command(after_help = "Example:\n  trisect trim terrain.obj house.stl --outside -o terrain-cut.obj")]
+    Trim(Trim),
     /// Say whether files can be used as operands, and if not, why and where
     #[command(
         after_help = "Exit code 0: all usable; 3: at least one is not; 2: at least one cannot be read."
@@ -149,6 +152,7 @@ impl Verb {
             Self::Cut(_) => "cut",
             Self::Section(_) => "section",
             Self::Split(_) => "split",
+            Self::Trim(_) => "trim",
             Self::Check(_) => "check",
             Self::Info(_) => "info",
             Self::Convert(_) => "convert",

@@ -85,6 +85,22 @@ pub(crate) struct Section {
     pub(crate) output: Vec<PathBuf>,
 }
 
+/// Trimming an open surface.
+#[derive(Debug, Args)]
+#[command(group = clap::ArgGroup::new("side").required(true).args(["inside", "outside"]))]
+pub(crate) struct Trim {
+    #[command(flatten)]
+    pub(crate) inputs: Inputs,
+    /// Keep what of the first input, which may be open, lies inside the second
+    #[arg(long, help_heading = "Results")]
+    pub(crate) inside: bool,
+    /// Keep what lies outside it
+    #[arg(long, help_heading = "Results")]
+    pub(crate) outside: bool,
+    #[command(flatten)]
+    pub(crate) results: Results,
+}
+
 /// Splitting into parts.
 #[derive(Debug, Args)]
 pub(crate) struct Split {

@@ -49,6 +49,7 @@ mod stream;
 #[cfg(feature = "subdivision")]
 mod subdivide;
 mod task;
+mod trim;
 mod usable;
 mod values;
 mod verbs;
@@ -139,6 +140,7 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Cut(cut) => cut::run(cut, matches, &mut session),
             Verb::Section(section) => section::run(section, matches, &mut session),
             Verb::Split(split) => split::run(split, matches, &mut session),
+            Verb::Trim(trim) => trim::run(trim, matches, &mut session),
             Verb::Check(check) => check::run(check, matches, &mut session),
             Verb::Info(info) => info::run(info, matches, &mut session),
             Verb::Convert(convert) => convert::run(convert, matches, &mut session),

@@ -5,7 +5,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 /// What a word that is no verb should have been.
 const MEANT: [(&[&str], &str); 8] = [
     (&["subtract", "minus", "diff", "carve"], "see `difference`"),
-    (&["trim", "clip", "halve"], "see `cut` for planes, `intersection` and `difference` for solids"),
+    (&["clip", "halve", "bisect"], "see `cut` for planes, `intersection` and `difference` for solids"),
     (&["layers", "contour", "contours"], "see `section`"),
     (&["merge", "add", "join", "unite"], "see `union`"),
     (&["and", "common", "overlap"], "see `intersection`"),

@@ -2,7 +2,7 @@
 
 use super::edges::EdgeTable;
 use super::patches::Patches;
-use super::{Buckets, Mesh, Solid, nesting};
+use super::{Buckets, Mesh, MeshError, Solid, clean, nesting};
 
 impl Solid {
     /// For every triangle the body it is in, counted from 0 in the order of their first triangles. A body is a shell that faces
@@ -88,6 +88,17 @@ impl Solid {
 }
 
 impl Mesh {
+    /// Some of its triangles, with the vertices they have.
+    pub(crate) fn selected(&self, triangles: &[u32]) -> Self {
+        select(self, triangles)
+    }
+
+    /// Whether all corners are in range, all coordinates of corners finite, and the groups fit.
+    pub(crate) fn check(&self) -> Result<(), MeshError> {
+        clean::check_corners(self)?;
+        self.groups.fault(self.triangles.len()).map_or(Ok(()), |fault| Err(MeshError::Groups(fault)))
+    }
+
     /// The triangles of each face group as a mesh of its own, with the number of the group; groups without triangles are left out.
     /// A mesh without groups is one. These surfaces are open where groups meet.
     #[must_use]

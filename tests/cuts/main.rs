@@ -3,4 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod models;
+mod parts;
 mod planes;
+mod sections;
+mod sheets;

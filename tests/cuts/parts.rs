@@ -10,7 +10,8 @@ fn the_bodies_of_a_solid_add_up_to_it() {
     let mut all = Mesh::default();
     for i in 0..27 {
         let place = [f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)].map(|x| 3.0 * x);
-        all.append(&primitives::geodesic_sphere(1.0, 4).expect("a ball").translated(place)).expect("few vertices");
+        all.append(&primitives::geodesic_sphere(1.0, 4).expect("a ball").translated(place))
+            .expect("few vertices");
         if i % 2 == 1 {
             let cavity = primitives::geodesic_sphere(0.5, 3).expect("a ball").reversed().translated(place);
             all.append(&cavity).expect("few vertices");

@@ -221,11 +221,9 @@ fn halves_agree_with_a_large_box() {
             };
             let (above, below) =
                 check(shape, &Plane::across(axis, at).unwrap(), &format!("axis {axis}, {at}"));
-            let (mut low, mut high) = ([-9.0; 3], [9.0; 3]);
+            let (low, mut high) = ([-9.0; 3], [9.0; 3]);
             high[axis] = at;
             let half = cuboid(low, high);
-            (low, high) = ([-9.0; 3], [9.0; 3]);
-            low[axis] = at;
             assert!((volume(&below) - volume(&shape.intersection(&half).unwrap())).abs() < 1e-12);
             assert!((volume(&above) - volume(&shape.difference(&half).unwrap())).abs() < 1e-12);
             assert_sound(&above, "above");
@@ -267,4 +265,61 @@ fn halves_of_all_models_are_closed_and_add_up() {
     );
     assert!(tried > 0);
     assert_eq!(not_manifold, 0);
+}
+
+#[cfg(feature = "model")]
+mod half_spaces {
+    use std::path::Path;
+
+    use trisect::model::{Evaluation, Model};
+
+    fn volume(text: &str) -> Result<f64, trisect::Error> {
+        let model = Model::parse(text, Path::new("."))?;
+        Ok(Evaluation::new().tolerance(0.02).run(&model)?.mesh.volume())
+    }
+
+    const BOX: &str = r#"{"kind": "box", "size": [2, 2, 2]}"#;
+    const BELOW: &str = r#"{"kind": "half_space", "plane": [0, 0, 1, 0.5]}"#;
+
+    fn tree(operation: &str, operands: &[&str]) -> String {
+        format!(r#"{{"operation": "{operation}", "operands": [{}]}}"#, operands.join(", "))
+    }
+
+    #[test]
+    fn half_spaces_cut_what_they_are_operands_with() {
+        let part = volume(&tree("intersection", &[BOX, BELOW])).unwrap();
+        let rest = volume(&tree("difference", &[BOX, BELOW])).unwrap();
+        assert_eq!(part + rest, 8.0);
+        assert!(part > 0.0 && rest > 0.0);
+        let slope = r#"{"kind": "half_space", "points": [[0, 0, 0], [1, 0, 1], [0, 1, 0]]}"#;
+        let inner = tree("intersection", &[BOX, BELOW, slope]);
+        let whole =
+            tree("union", &[&inner, &tree("difference", &[&tree("intersection", &[BOX, BELOW]), slope])]);
+        assert!((volume(&whole).unwrap() - part).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_unbounded_is_refused() {
+        for (text, part) in [
+            (BELOW.to_owned(), "unbounded"),
+            (tree("union", &[BOX, BELOW]), "unbounded"),
+            (tree("difference", &[BELOW, BOX]), "unbounded"),
+            (r#"{"kind": "half_space", "plane": [0, 0, 0, 1]}"#.to_owned(), "normal"),
+            (r#"{"kind": "half_space"}"#.to_owned(), "`plane`"),
+        ] {
+            let error = volume(&text).unwrap_err().to_string();
+            assert!(error.contains(part), "{error}");
+        }
+    }
+
+    #[test]
+    fn half_spaces_are_fields_too() {
+        let text = tree(
+            "intersection",
+            &[r#"{"kind": "sphere", "radius": 1}"#, r#"{"kind": "half_space", "plane": [3, 0, 4, 0]}"#],
+        )
+        .replacen("{", r#"{"evaluate": "field", "#, 1);
+        let half = volume(&text).unwrap();
+        assert!((half - 2.0 / 3.0 * std::f64::consts::PI).abs() < 0.05, "{half}");
+    }
 }

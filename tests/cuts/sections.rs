@@ -74,7 +74,8 @@ fn sections_are_what_cuts_are_closed_with() {
 fn areas_integrate_to_the_volume() {
     // Between neighbouring heights of vertices the area is quadratic: Simpson's rule is exact.
     let ball = primitives::geodesic_sphere(1.0, 5).expect("a ball");
-    let ring = primitives::torus(2.0, 0.6, 14, 9).expect("a ring").rotated([1.0, 2.0, 3.0], 40.0).expect("turned");
+    let ring =
+        primitives::torus(2.0, 0.6, 14, 9).expect("a ring").rotated([1.0, 2.0, 3.0], 40.0).expect("turned");
     for shape in [solid(ball), solid(ring)] {
         for axis in 0..3 {
             let mut heights: Vec<f64> = shape.mesh().positions.iter().map(|p| p[axis]).collect();
@@ -82,7 +83,8 @@ fn areas_integrate_to_the_volume() {
             heights.dedup();
             let level = |at: f64| Plane::across(axis, at).expect("a plane");
             let planes: Vec<Plane> = heights.iter().map(|&at| level(at)).collect();
-            let middles: Vec<Plane> = heights.windows(2).map(|pair| level(0.5 * (pair[0] + pair[1]))).collect();
+            let middles: Vec<Plane> =
+                heights.windows(2).map(|pair| level(0.5 * (pair[0] + pair[1]))).collect();
             let areas = |side: SectionSide, planes: &[Plane]| -> Vec<f64> {
                 let sections = Sections::new().side(side).at(&shape, planes).expect("sections");
                 sections.iter().map(Section::area).collect()

@@ -59,8 +59,12 @@ fn sections_are_written_in_three_formats() {
     let folder = folder();
     let line = "section block.off --heights 0:1:4 --side above -o s.svg -o s.dxf -o s.json --json";
     let object = folder.run(line).exits(0).json();
-    let areas: Vec<f64> =
-        object["sections"].as_array().expect("a list").iter().map(|s| s["area"].as_f64().expect("a number")).collect();
+    let areas: Vec<f64> = object["sections"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|s| s["area"].as_f64().expect("a number"))
+        .collect();
     assert_eq!(areas, [6.0, 6.0, 6.0, 6.0, 0.0]);
     assert!(folder.read("s.svg").contains("<path"));
     assert_eq!(folder.read("s.dxf").matches("POLYLINE").count(), 4);
@@ -88,4 +92,18 @@ fn holes_are_filled_only_when_asked() {
     folder.run("union open.off --fill-holes -o c.off").exits(0).says("hole filled").says("area");
     folder.run("union open.off --fill-holes=3 -o c.off").exits(3);
     folder.run("union open.off --fill-holes --as-is -o c.off").exits(1).says("contradict");
+}
+
+#[test]
+fn an_open_surface_is_trimmed() {
+    let folder = folder();
+    let square = vec![[-1.0, -1.0, 1.0], [9.0, -1.0, 1.0], [9.0, 9.0, 1.0], [-1.0, 9.0, 1.0]];
+    let sheet = Mesh::new(square, vec![[0, 1, 2], [0, 2, 3]]);
+    sheet.save(folder.path("sheet.obj")).expect("written");
+    folder.run("trim sheet.obj block.off --inside -o in.obj").exits(0).says("not closed");
+    folder.run("trim sheet.obj block.off --outside -o out.obj").exits(0);
+    let area = |name: &str| Mesh::load(folder.path(name)).expect("a mesh").area();
+    assert_eq!([area("in.obj"), area("out.obj")], [6.0, 94.0]);
+    folder.run("trim sheet.obj block.off -o in.obj").exits(1).says("--inside");
+    folder.run("trim sheet.obj --inside -o in.obj").exits(1).says("two inputs");
 }

@@ -12,6 +12,7 @@ pub(super) mod made;
 mod merge_order;
 pub(super) mod options;
 pub(super) mod policy;
+pub(super) mod trim;
 
 use crate::boolean::complex::operation::Operation;
 use crate::boolean::result::outcome::Outcome;
