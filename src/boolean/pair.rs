@@ -115,7 +115,8 @@ fn combine_parts(
     // 4. Order: the crossings along each edge, and by face.
     let curve = Curve::new(&complex, crossings, &sheets, runner)?;
     // 5. Winding numbers: what lies inside what.
-    let windings = Windings::new(&curve, &overlap, &bounds, runner)?;
+    let asked = [0, 1].map(|operand| parts.iter().any(|part| part.operand == operand));
+    let windings = Windings::new(&curve, &overlap, &bounds, asked, runner)?;
     // 6. Identification: crossings are located, and those that coincide become one point.
     let contacts = curve.contacts() + windings.contacts;
     let mut arrangement = Arrangement::new(curve, sheets, settings.remove_vertices, runner)?;

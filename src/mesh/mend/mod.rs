@@ -108,7 +108,9 @@ pub(super) fn mend_by_filling<'a>(
         surface.drop_copies();
     }
     fill::fill(&mut surface, most);
-    (surface.is_closed() && !surface.triangles.is_empty()).then_some(surface)
+    // A sheet and its filling enclose nothing.
+    let is_body = measure::enclosed_volume(&mesh.positions, &surface.triangles) != 0.0;
+    (surface.is_closed() && is_body).then_some(surface)
 }
 
 /// The least distance within which joining vertices (and splitting edges) closes the surface of `triangles`; `None` if none
