@@ -88,7 +88,9 @@ impl Rounding {
         };
         let size = self.size_beside(from, middle, to, factor);
         let height = ulps * self.unit * size;
-        let area = if is_far(longest, size) { area_from_near_end(from, middle, to) } else { area };
+        if is_far(longest, size) {
+            return is_within(height, from, middle, to);
+        }
         area <= height * height * longest
     }
 
@@ -97,12 +99,10 @@ impl Rounding {
         let (factor, [from, middle, to]) = near_one([p, at, q].map(|point| DVec3::from_array(*point)));
         let (size, longest) = (self.size_beside(from, middle, to, factor), from.distance_squared(to));
         let distance = 2.0 * ROUNDING_ULPS * self.unit * size;
-        let area = if is_far(longest, size) {
-            area_from_near_end(from, middle, to)
-        } else {
-            (to - from).cross(middle - from).length_squared()
-        };
-        area <= distance * distance * longest
+        if is_far(longest, size) {
+            return is_within(distance, from, middle, to);
+        }
+        (to - from).cross(middle - from).length_squared() <= distance * distance * longest
     }
 
     /// The size that rounding is measured by beside a point near the line between two others, all multiplied by `factor`.
@@ -141,11 +141,18 @@ fn is_far(longest: f64, size: f64) -> bool {
     longest > 16.0 * size * size
 }
 
-/// The square of the doubled area of a triangle, from the end of its longest side that is nearer to its third corner.
-fn area_from_near_end(from: DVec3, middle: DVec3, to: DVec3) -> f64 {
+/// Whether the third corner of a triangle is within a distance of its longest side, where that is long beside the size of the
+/// coordinates at the third corner. From the end that is nearer to that corner, and without squares, which would vanish.
+fn is_within(distance: f64, from: DVec3, middle: DVec3, to: DVec3) -> bool {
     let (before, after) = (middle - from, to - middle);
-    let shorter = if before.length_squared() <= after.length_squared() { before } else { after };
-    (to - from).cross(shorter).length_squared()
+    let shorter = if length(before) <= length(after) { before } else { after };
+    length((to - from).cross(shorter)) <= distance * length(to - from)
+}
+
+/// The length of a vector whose square an `f64` need not hold.
+fn length(vector: DVec3) -> f64 {
+    let [x, y, z] = vector.to_array();
+    x.hypot(y).hypot(z)
 }
 
 /// The squares of the doubled area of a triangle, and of its longest side.
@@ -186,6 +193,20 @@ mod tests {
         assert!(!rounding.is_near_line(&far, &p, &q));
         assert!(rounding.is_low([&far, &p, &[1.0, 1e-16, 0.0]]));
         assert!(rounding.is_near_line(&[-1e38, 0.0, 0.0], &[0.5, 1e-16, 0.0], &[1.0, 0.0, 0.0]));
+    }
+
+    #[test]
+    fn a_corner_so_far_that_squares_vanish_does_not_either() {
+        // Between the near corners the squares of heights are below the smallest number beside the square of the side.
+        for far in [1e160, 1e189, 1e300] {
+            let [far, p, q] = [[-2.0 * far, far, -far], [-0.3, 0.5, -0.8], [-0.4, 0.1, -0.7]];
+            let rounding = Rounding::up_to(2.0 * far[1]);
+            for corners in [[&far, &p, &q], [&p, &far, &q], [&q, &p, &far]] {
+                assert!(!rounding.is_low(corners) && !rounding.has_no_height(corners), "{far:?}");
+            }
+            assert!(!rounding.is_near_line(&far, &p, &q));
+            assert!(rounding.is_low([&far, &p, &p.map(|x| x * (1.0 + 2e-16))]));
+        }
     }
 
     #[test]

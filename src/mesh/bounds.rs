@@ -23,8 +23,6 @@ impl Bounds {
     /// Contains nothing: the neutral element of [`include`](Self::include) and [`union`](Self::union).
     pub(crate) const NOTHING: Self = Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
 
-    /// Grows the box to contain `point`.
-    #[inline]
     /// The smallest box round both.
     pub(crate) fn united(self, other: Self) -> Self {
         Self {
@@ -33,6 +31,8 @@ impl Bounds {
         }
     }
 
+    /// Grows the box to contain `point`.
+    #[inline]
     pub(crate) fn include(&mut self, point: &[f64; 3]) {
         for axis in 0..3 {
             // Comparisons, not f64::min: they compile to one instruction and skip not-a-numbers alike.
