@@ -45,11 +45,8 @@ pub(crate) fn run(arguments: &Cut, matches: &ArgMatches, session: &mut Session<'
     combine::describe(&operands, session);
     let Some(operand) = operands.first() else { return Err(Fault::usage("an input is needed")) };
     if arguments.dry_run {
-        session.console.say(&format!(
-            "dry run: would cut {} at {}",
-            operand.request.name(),
-            words::counted(arguments.plane.len(), "plane")
-        ));
+        let planes = words::counted(arguments.plane.len(), "plane");
+        session.console.say(&format!("dry run: would cut {} at {planes}", operand.request.name()));
         session.note("dry_run", true);
         return Ok(Exit::Fine);
     }

@@ -55,31 +55,16 @@ pub(crate) fn run(
 
     let start = Instant::now();
     let planes = planes(arguments)?;
-    let side = match arguments.side {
-        Side::Inside => SectionSide::Inside,
-        Side::Above => SectionSide::Above,
-        Side::Below => SectionSide::Below,
-    };
     let options =
         BooleanOptions::new().rule(operand.request.rule).assume_clean(assume_clean).control(control);
     let options = match session.common.threads {
         Some(threads) => options.threads(usize::from(threads)),
         None => options,
     };
-    let sections = Sections::new().side(side).options(options).at(&operand.solid, &planes)?;
+    let sections = Sections::new().side(side(arguments)).options(options).at(&operand.solid, &planes)?;
     let seconds = session.took("run", start);
 
-    let layers: Vec<Layer<'_>> = sections
-        .iter()
-        .enumerate()
-        .map(|(index, section)| {
-            let (name, height) = match section.plane().as_level() {
-                Some((axis, at)) => (format!("{}={at}", ["x", "y", "z"][axis]), at),
-                None => (format!("plane {}", index + 1), 0.0),
-            };
-            Layer { name, height, shapes: section.shapes() }
-        })
-        .collect();
+    let layers = layers(&sections);
     note(&sections, &layers, session);
     let start = Instant::now();
     let written = |(path, format): (&std::path::PathBuf, &&'static str)| {
@@ -95,6 +80,25 @@ pub(crate) fn run(
     session.note("outputs", outputs);
     session.took("write", start);
 
+    say(arguments, &sections, seconds, session);
+    Ok(Exit::Fine)
+}
+
+/// The sections as layers of a drawing.
+fn layers(sections: &[trisect::Section]) -> Vec<Layer<'_>> {
+    let layer = |(index, section): (usize, &'_ trisect::Section)| match section.plane().as_level() {
+        Some((axis, at)) => (format!("{}={at}", ["x", "y", "z"][axis]), at),
+        None => (format!("plane {}", index + 1), 0.0),
+    };
+    let named = sections.iter().enumerate().map(layer);
+    named
+        .zip(sections)
+        .map(|((name, height), section)| Layer { name, height, shapes: section.shapes() })
+        .collect()
+}
+
+/// Says what was made.
+fn say(arguments: &Section, sections: &[trisect::Section], seconds: f64, session: &Session<'_>) {
     let polygons: usize = sections.iter().map(|section| section.shapes().len()).sum();
     let area: f64 = sections.iter().map(trisect::Section::area).sum();
     let files: Vec<String> = arguments.output.iter().map(|path| path.display().to_string()).collect();
@@ -107,7 +111,14 @@ pub(crate) fn run(
         words::short(area),
         words::time(seconds)
     ));
-    Ok(Exit::Fine)
+}
+
+fn side(arguments: &Section) -> SectionSide {
+    match arguments.side {
+        Side::Inside => SectionSide::Inside,
+        Side::Above => SectionSide::Above,
+        Side::Below => SectionSide::Below,
+    }
 }
 
 /// The format that a name tells.

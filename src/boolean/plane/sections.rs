@@ -152,7 +152,7 @@ impl Sections {
                 let [a, b, c] = corners.map(|v| ranks[v as usize]);
                 let (low, high) = (a.min(b).min(c), a.max(b).max(c));
                 // Plane j has rank 2 j + 1.
-                found.extend((low / 2..(high + 1) / 2).map(|plane| (plane, triangle)));
+                found.extend((low / 2..high.div_ceil(2)).map(|plane| (plane, triangle)));
             }
         };
         let met = runner.gather(mesh.triangles.len(), AT_ONCE, 0, meetings)?;
@@ -255,7 +255,7 @@ mod tests {
         let section = block.section(&plane).unwrap();
         assert_eq!(section.shapes()[0][0].len(), 6);
         assert!((section.area() - 6.0 * 3.0f64.sqrt() / 2.0).abs() < 1e-12);
-        for &point in section.shapes()[0][0].iter() {
+        for &point in &section.shapes()[0][0] {
             assert!(section.place(point).iter().sum::<f64>().abs() < 1e-12);
         }
     }

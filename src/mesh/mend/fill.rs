@@ -218,14 +218,13 @@ mod tests {
     fn holes_that_share_a_vertex_are_two() {
         let mesh = primitives::octahedron(1.0).unwrap();
         // Two faces that meet in a vertex alone.
-        let [a, b] = [0usize, 1].map(|first| mesh.triangles[first]);
+        let a = mesh.triangles[0];
         let opposite = (0..8)
             .find(|&t| {
                 let common = mesh.triangles[t].iter().filter(|v| a.contains(v)).count();
                 t != 0 && common == 1
             })
             .unwrap();
-        let _ = b;
         let mut open = mesh.clone();
         open.triangles.remove(opposite);
         open.triangles.remove(0);
@@ -241,14 +240,10 @@ mod tests {
         let positions: Vec<[f64; 3]> = flat.map(|[x, y]| [x, y, 5.0]).to_vec();
         for turn in 0..6 {
             let ring: Vec<u32> = (0..6).map(|i| (i + turn) % 6).collect();
-            for triangles in [smallest(&positions, &ring, |_, _| false)] {
-                let sum: f64 = triangles
-                    .iter()
-                    .map(|t| t.map(|v| positions[v as usize]))
-                    .map(|[p, q, r]| area(p, q, r))
-                    .sum();
-                assert!((sum - 5.0).abs() < 1e-12, "{triangles:?}");
-            }
+            let triangles = smallest(&positions, &ring, |_, _| false);
+            let corners = triangles.iter().map(|t| t.map(|v| positions[v as usize]));
+            let sum: f64 = corners.map(|[p, q, r]| area(p, q, r)).sum();
+            assert!((sum - 5.0).abs() < 1e-12, "{triangles:?}");
         }
     }
 }
