@@ -95,7 +95,8 @@ pub mod subdivision;
 
 pub use boolean::{
     BooleanOptions, Certificate, Contact, Embed, Embedding, Expression, ExpressionError, Grid, NearContact,
-    NearContacts, OperandState, Operation, Origin, Outcome, Rule, Snapping, UnknownName, boolean,
+    NearContacts, OperandState, Operation, Origin, Outcome, PlaneCut, Rule, Section, SectionSide, Sections,
+    Snapping, TrimSide, Trimmed, UnknownName, boolean,
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};

@@ -7,7 +7,7 @@ use serde_json::Value;
 use trisect::io::Format;
 use trisect::{BooleanOptions, Embed, Grid, OperandState, Operation, Outcome, Rule, Solid};
 
-use super::argument_groups::Colours;
+use super::argument_groups::{Colours, Results};
 use super::arguments::{Combination, Combine};
 use super::fault::{Exit, Fault};
 use super::mended;
@@ -122,7 +122,7 @@ fn finish(
     let mut outputs = Vec::new();
     for ((outcome, targets), suffix) in outcomes.iter().zip(targets).zip(suffixes) {
         let name = suffix.strip_prefix('-').unwrap_or("result");
-        outputs.extend(write(arguments, targets, outcome, format, session)?);
+        outputs.extend(write(&arguments.results, targets, outcome, format, session)?);
         results.push(tell(name, outcome, targets, seconds, session));
     }
     if let Some(first) = results.first() {
@@ -157,7 +157,7 @@ fn options(
 }
 
 /// Warns of inverted bodies of operands that the rule leaves out.
-fn warn_of_inward(outcome: &Outcome, operands: &[Operand], session: &mut Session<'_>) {
+pub(super) fn warn_of_inward(outcome: &Outcome, operands: &[Operand], session: &mut Session<'_>) {
     for (index, (state, operand)) in outcome.operand_states().iter().zip(operands).enumerate() {
         if let OperandState::Resolved { inward_volume, .. } = *state
             && inward_volume > 0.0
@@ -175,7 +175,13 @@ fn warn_of_inward(outcome: &Outcome, operands: &[Operand], session: &mut Session
 }
 
 /// Says what a result is, and returns it for the report.
-fn tell(name: &str, outcome: &Outcome, targets: &[Target], seconds: f64, session: &mut Session<'_>) -> Value {
+pub(super) fn tell(
+    name: &str,
+    outcome: &Outcome,
+    targets: &[Target],
+    seconds: f64,
+    session: &mut Session<'_>,
+) -> Value {
     // What nobody is told is not computed.
     let measures = if session.is_reported() {
         Measures::of_solid(outcome.solid())
@@ -264,7 +270,7 @@ fn refuse_pointless(arguments: &Combine, targets: &[Target], session: &Session<'
 }
 
 /// One line and one JSON object for every operand, and its warnings.
-fn describe(operands: &[Operand], session: &mut Session<'_>) {
+pub(super) fn describe(operands: &[Operand], session: &mut Session<'_>) {
     let mut described = Vec::new();
     for (index, operand) in operands.iter().enumerate() {
         let measures = if session.is_reported() {
@@ -290,8 +296,9 @@ fn describe(operands: &[Operand], session: &mut Session<'_>) {
     session.note("operands", described);
 }
 
-fn write(
-    arguments: &Combine,
+/// Writes a result.
+pub(super) fn write(
+    results: &Results,
     targets: &[Target],
     outcome: &Outcome,
     format: Option<Format>,
@@ -299,15 +306,15 @@ fn write(
 ) -> Result<Vec<Value>, Fault> {
     let start = Instant::now();
     session.console.stage("writing", 1.0);
-    let mesh = recenter::placed(outcome.solid().mesh(), &arguments.results.writing, session);
+    let mesh = recenter::placed(outcome.solid().mesh(), &results.writing, session);
     let mesh = mesh.as_ref();
-    let drawing = &arguments.results.drawing;
+    let drawing = &results.drawing;
     let picture = || {
         let operands = outcome.origins().iter().map(|origin| origin.operand as usize);
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), mesh, operands);
         trisect::render::mesh(mesh, &output::view(drawing, format), colours.as_deref())
     };
-    let options = output::write_options(&arguments.results.writing, &session.limits);
+    let options = output::write_options(&results.writing, &session.limits);
     let product = Product { mesh, options, picture: &picture, documents: &[] };
     let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
     for warning in warnings {

@@ -25,6 +25,7 @@
 
 mod beside;
 mod detect;
+pub mod drawing;
 mod error;
 mod faces;
 mod file;

@@ -34,6 +34,7 @@ pub struct Gate {
     orient: bool,
     closed_parts: bool,
     single_shells: bool,
+    fill_holes: Option<usize>,
 }
 
 /// Which vertices of open edges are made one, besides those at equal coordinates.
@@ -100,6 +101,16 @@ impl Gate {
     #[must_use]
     pub fn single_shells(mut self, single_shells: bool) -> Self {
         self.single_shells = single_shells;
+        self
+    }
+
+    /// Holes with up to so many edges are filled where the surface is still open otherwise, each with the triangles of the smallest
+    /// area in sum (long ones ear by ear), and without new vertices. The surface that was there is not known: the filling may cross
+    /// the rest, which [`Solid::self_crossings`] finds. In [`Solid::source_triangle`] and for groups it counts as a triangle beside
+    /// the hole. By default no hole is filled.
+    #[must_use]
+    pub fn fill_holes(mut self, most_edges: usize) -> Self {
+        self.fill_holes = Some(most_edges);
         self
     }
 
@@ -190,8 +201,15 @@ impl Gate {
             let leave = Leave { distance: distance(), closed_parts: true };
             Some(mend(leave)?.within(leave.distance))
         };
-        let mended =
-            mend(leave).or_else(by_distance).or_else(|| if self.closed_parts { parts() } else { None })?;
+        let filled = || {
+            let (most, distance) = (self.fill_holes?, distance());
+            let filled = mend::mend_by_filling(mesh, &cleaned.triangles, &cleaned.source, distance, most)?;
+            Some(filled.within(distance))
+        };
+        let mended = mend(leave)
+            .or_else(by_distance)
+            .or_else(filled)
+            .or_else(|| if self.closed_parts { parts() } else { None })?;
         Some((mended.triangles, mended.source, mended.report))
     }
 }

@@ -4,6 +4,7 @@
 //! mends what can be mended without guessing, and otherwise tells what is wrong and where ([`Diagnosis`]).
 
 mod bit_set;
+mod bodies;
 mod bounds;
 mod buckets;
 mod chain;

@@ -38,8 +38,17 @@ pub(super) fn group(points: &[[f64; 2]], loops: Vec<Vec<u32>>) -> Vec<Polygon> {
         }
     }
     let outlines = polygons.len();
+    // What lies in an outline lies in its box.
+    let boxes: Vec<_> = if holes.is_empty() {
+        Vec::new()
+    } else {
+        polygons.iter().map(|of| box_of(points, &of.outer)).collect()
+    };
     for hole in holes {
+        let own = box_of(points, &hole);
+        let is_in_box = |i: &usize| (0..2).all(|k| boxes[*i].0[k] <= own.0[k] && own.1[k] <= boxes[*i].1[k]);
         let around = (0..outlines)
+            .filter(is_in_box)
             .filter(|&i| contains(points, &polygons[i].outer, &hole))
             .min_by(|&i, &j| outline_area[i].total_cmp(&outline_area[j]));
         match around {
@@ -48,6 +57,13 @@ pub(super) fn group(points: &[[f64; 2]], loops: Vec<Vec<u32>>) -> Vec<Polygon> {
         }
     }
     polygons
+}
+
+fn box_of(points: &[[f64; 2]], ring: &[u32]) -> ([f64; 2], [f64; 2]) {
+    let nothing = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    ring.iter().map(|&vertex| points[vertex as usize]).fold(nothing, |(low, high), p| {
+        ([low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])])
+    })
 }
 
 /// The doubled area of a loop, all coordinates multiplied by a power of two.

@@ -11,12 +11,14 @@ mod ears;
 mod face;
 mod holes;
 mod loops;
+mod region;
 mod winding;
 
 use delaunay::Bridges;
 
 pub(crate) use delaunay::{Conflict, Overlay, fill_region};
 pub(crate) use face::{FaceTriangulator, Tiling};
+pub(crate) use region::{Region, fill_wound, polygons};
 pub(crate) use winding::{Edge, Found, by_winding, cross_properly};
 
 /// From this many vertices a constrained Delaunay triangulation (n log n) replaces ear clipping (at least quadratic). On random

@@ -314,7 +314,7 @@ fn what_is_a_hair_short_goes_through_when_snapped() {
     // Films are left, and the warning says what takes them away.
     folder.run("difference plate.obj short.obj -o c.obj").exits(0).says("--snap 1e-7").says("2 shells");
     let ran = folder.run("difference plate.obj short.obj -o c.obj --snap 1e-7 --json").exits(0);
-    ran.says("snapped by up to 1e-7: 8 vertices moved");
+    let ran = ran.says("snapped by up to 1e-7: 8 vertices moved");
     let report: Value = serde_json::from_str(&ran.out).unwrap();
     let certificate = &report["result"]["certificate"];
     assert_eq!((&certificate["genus"], &certificate["components"]), (&json!(1), &json!(1)));

@@ -5,13 +5,14 @@
 //! - `expressions`: any operands and any expressions, in one arrangement;
 //! - `made`: the last step of both.
 
-mod expressions;
+pub(super) mod expressions;
 mod groups;
 mod in_pairs;
-mod made;
+pub(super) mod made;
 mod merge_order;
 pub(super) mod options;
 pub(super) mod policy;
+pub(super) mod trim;
 
 use crate::boolean::complex::operation::Operation;
 use crate::boolean::result::outcome::Outcome;

@@ -250,6 +250,15 @@ impl BooleanOptions {
         Ok(outcomes.swap_remove(0))
     }
 
+    /// Other work under these settings, on the threads that were asked for.
+    pub(in crate::boolean) fn work<T: Send>(
+        &self,
+        work: impl FnOnce(Policy, Runner<'_>) -> Result<T, Error> + Send,
+    ) -> Result<T, Error> {
+        self.control.check()?;
+        self.on_threads(|runner| work(self.policy, runner))
+    }
+
     /// Runs on the threads that were asked for.
     fn on_threads<T: Send>(
         &self,

@@ -60,6 +60,23 @@ impl Outcome {
         self.list.get_or_init(|| self.origins.iter().collect())
     }
 
+    /// This outcome of a cut of what another one made, told of the other's operands: for cuts one after the other. `plane` is the
+    /// number that the plane gets among them. O(n).
+    #[must_use]
+    pub fn after(mut self, earlier: &Self, plane: u32) -> Self {
+        let plane = Origins::from_iter([Origin { operand: plane, triangle: 0, reversed: false }]);
+        self.origins = self.origins.compose([&earlier.origins, &plane]);
+        self.list = OnceLock::new();
+        self.certificate = OnceLock::new();
+        self.notes.operands.clone_from(&earlier.notes.operands);
+        self
+    }
+
+    /// The same as runs of triangles.
+    pub(crate) fn runs(&self) -> &Origins {
+        &self.origins
+    }
+
     /// What is known of the result. Computed once, when first asked for; O(n), and O(k log k) for the k triangles where parts of
     /// different operands are near one another.
     #[must_use]
