@@ -111,6 +111,13 @@ pub enum Error {
     },
 }
 
+/// Numbers that are no plane are an argument without meaning.
+impl From<crate::exact::PlaneFault> for Error {
+    fn from(fault: crate::exact::PlaneFault) -> Self {
+        Self::InvalidArgument(fault.to_string())
+    }
+}
+
 /// The kinds of failure a program tells apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]

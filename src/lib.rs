@@ -96,8 +96,8 @@ pub mod subdivision;
 
 pub use boolean::{
     BooleanOptions, Certificate, Contact, CornerOrigin, CutFaces, Embed, Embedding, Expression,
-    ExpressionError, Grid, NearContact, NearContacts, OperandState, Operation, Origin, Outcome, Rule,
-    UnknownName, boolean,
+    ExpressionError, Grid, NearContact, NearContacts, OperandState, Operation, Origin, Outcome, PlaneCut,
+    Rule, Section, SectionSide, Sections, Snapping, TrimSide, Trimmed, UnknownName, boolean,
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};

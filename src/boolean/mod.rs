@@ -15,6 +15,7 @@
 //! - `cut`: kept pieces of cut faces become triangles (step 7);
 //! - `tidy`: what touches separates; triangles without area and needless vertices go (step 8);
 //! - `result`: untouched triangles keep their order, and vertices their bits (step 9);
+//! - `snapping`: before all that, and only where it is asked for, what is nearer than a distance is made the same;
 //! - `pair`: all steps for two operands; `many`: which pairs are combined in which order;
 //! - `general`: the same for any number of surfaces that may cross and touch themselves, and any `expression` of them, in one
 //!   arrangement.
@@ -33,9 +34,11 @@ mod expression_text;
 mod general;
 mod many;
 mod pair;
+mod plane;
 mod result;
 mod rounding;
 mod rule;
+mod snapping;
 mod tidy;
 
 pub use complex::operation::{Contact, Operation, UnknownName};
@@ -45,12 +48,15 @@ pub use expression_text::ExpressionError;
 pub use general::embed::{Embedding, Grid};
 pub use many::options::BooleanOptions;
 pub use many::policy::Embed;
+pub use many::trim::{TrimSide, Trimmed};
+pub use plane::{PlaneCut, Section, SectionSide, Sections};
 pub use result::attributes::CornerOrigin;
 pub use result::certificate::{Certificate, OperandState};
 pub use result::cut_faces::CutFaces;
 pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;
 pub use rule::Rule;
+pub use snapping::Snapping;
 
 use crate::{Error, Solid};
 

@@ -8,7 +8,7 @@ use crate::boolean::arrangement::sheets::{self, Rule};
 use crate::boolean::candidates::Candidates;
 use crate::boolean::candidates::overlap::{Overlap, Place};
 use crate::boolean::classify::body::Body;
-use crate::boolean::classify::multiplicity::{self, Part};
+use crate::boolean::classify::multiplicity::{self, Keep, Part};
 use crate::boolean::classify::winding::Windings;
 use crate::boolean::complex::classes;
 use crate::boolean::complex::operation::Operation;
@@ -22,7 +22,7 @@ use crate::boolean::rounding::Rounding;
 use crate::boolean::tidy::{self, Ground, tidy};
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
-use crate::{Error, Solid};
+use crate::{Error, Mesh, Solid};
 
 /// The most vertices of both operands together; the other half of all 32-bit numbers is left for crossings.
 const MOST_VERTICES: usize = 1 << 31;
@@ -72,24 +72,61 @@ pub(super) fn combine(
     settings: Settings<'_>,
     runner: Runner<'_>,
 ) -> Result<Combined, Error> {
-    let (operands, bounds) = (operands(a, b), bounds(a, b));
+    let wanted = Wanted { parts: multiplicity::parts(operation), motion: motion(operation, settings.fuse) };
+    combine_parts(wanted, [a.mesh(), b.mesh()], bounds(a, b), settings, runner)
+}
+
+/// What of a surface, which need not be closed, lies inside a solid, or outside it: the steps are the same, and of the solid nothing
+/// is kept. Only what winds around the sheet is without meaning then, and nothing of that is asked.
+///
+/// # Errors
+/// As [`combine`].
+pub(super) fn trim(
+    sheet: &Mesh,
+    by: &Solid,
+    keep: Keep,
+    settings: Settings<'_>,
+    runner: Runner<'_>,
+) -> Result<Combined, Error> {
+    let parts = [Part { operand: 0, keep, reversed: false }];
+    let wanted = Wanted { parts: &parts, motion: Motion::Shrink };
+    let bounds = [sheet.bounds(), by.bounds()].map(|bounds| bounds.unwrap_or(Bounds::NOTHING));
+    combine_parts(wanted, [sheet, by.mesh()], bounds, settings, runner)
+}
+
+/// What is wanted of two surfaces.
+#[derive(Clone, Copy)]
+struct Wanted<'a> {
+    parts: &'a [Part],
+    /// Which way the first moves.
+    motion: Motion,
+}
+
+fn combine_parts(
+    wanted: Wanted<'_>,
+    meshes: [&Mesh; 2],
+    bounds: [Bounds; 2],
+    settings: Settings<'_>,
+    runner: Runner<'_>,
+) -> Result<Combined, Error> {
+    let operands = meshes
+        .map(|mesh| Operand { positions: mesh.positions.as_slice(), triangles: mesh.triangles.as_slice() });
     check_size(&operands)?;
-    let parts = multiplicity::parts(operation);
+    let parts = wanted.parts;
     let _tables = runner.control.reserve(fixed_tables(&operands))?;
 
     // 1. Candidates: pairs of triangles that may meet.
     let mut overlap = Overlap::new(&operands, &bounds, runner)?;
     let near = std::mem::take(&mut overlap.near);
     // 2. Perturbation: the operands as one complex in general position.
-    let wanted = settings.attributed.filter(|_| settings.remove_vertices);
-    let sequences = wanted.map(|Attributed { origins, .. }| origins.map(Sequence::new));
+    let attributed = settings.attributed.filter(|_| settings.remove_vertices);
+    let sequences = attributed.map(|Attributed { origins, .. }| origins.map(Sequence::new));
     let origin = |operand: usize, face: u32| match &sequences {
         Some(sequences) => sequences[operand].at(face),
         None => Origin { operand: operand as u32, triangle: face, reversed: false },
     };
-    let classes = wanted.map(|Attributed { givens, .. }| classes::Attributed { givens, origin: &origin });
-    let motion = motion(operation, settings.fuse);
-    let complex = Complex::new(operands, settings.groups, motion, largest_coordinate(&bounds), near)
+    let classes = attributed.map(|Attributed { givens, .. }| classes::Attributed { givens, origin: &origin });
+    let complex = Complex::new(operands, settings.groups, wanted.motion, largest_coordinate(&bounds), near)
         .with_attributes(classes);
     let candidates = Candidates::new(&complex, &overlap, runner)?;
     // 3. Crossings: the intersection curve. Faces that touch and cannot be kept apart form sheets.
@@ -100,7 +137,8 @@ pub(super) fn combine(
     // 4. Order: the crossings along each edge, and by face.
     let curve = Curve::new(&complex, crossings, &sheets, runner)?;
     // 5. Winding numbers: what lies inside what.
-    let windings = Windings::new(&curve, &overlap, &bounds, runner)?;
+    let asked = [0, 1].map(|operand| parts.iter().any(|part| part.operand == operand));
+    let windings = Windings::new(&curve, &overlap, &bounds, asked, runner)?;
     // 6. Identification: crossings are located, and those that coincide become one point.
     let contacts = curve.contacts() + windings.contacts;
     let mut arrangement = Arrangement::new(curve, sheets, settings.remove_vertices, runner)?;
@@ -181,15 +219,10 @@ fn sheet_rule(parts: &[Part]) -> Rule {
     match parts {
         // A part turned over looks the other way.
         [of_a, of_b] => Rule::AtSaddles { opposite: of_a.reversed == of_b.reversed },
+        // Of a sheet alone there is nothing to add up: it moves against its front, wherever it touches the solid.
+        [_] => Rule::AtSaddles { opposite: false },
         _ => Rule::All,
     }
-}
-
-fn operands<'a>(a: &'a Solid, b: &'a Solid) -> [Operand<'a>; 2] {
-    [a, b].map(|solid| Operand {
-        positions: solid.mesh().positions.as_slice(),
-        triangles: solid.mesh().triangles.as_slice(),
-    })
 }
 
 /// The boxes of both; that of an empty operand meets nothing.

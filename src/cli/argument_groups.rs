@@ -132,6 +132,12 @@ pub(crate) struct Admitting {
     /// Leave out the parts of an input that are not closed
     #[arg(long, num_args = 0, default_missing_value = "true", action = clap::ArgAction::Append)]
     closed_parts: Vec<bool>,
+    /// Fill holes, those with up to MAX edges if it is given; the surface that was there is not known
+    #[arg(
+        long, value_name = "MAX", num_args = 0..=1, require_equals = true, default_missing_value = "all",
+        value_parser = values::hole, action = clap::ArgAction::Append
+    )]
+    fill_holes: Vec<usize>,
     /// Mend nothing: refuse an input that is not closed as it is
     #[arg(long, num_args = 0, default_missing_value = "true", action = clap::ArgAction::Append)]
     as_is: Vec<bool>,

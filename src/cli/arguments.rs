@@ -8,10 +8,12 @@ use trisect::Operation;
 use super::argument_groups::{Common, Inputs, Placing, Reading, Repair, Results};
 #[cfg(feature = "subdivision")]
 use super::cage_arguments::{FreeFormVerb, Subdivide};
+use super::cut_arguments::{Cut, Section, Split, Trim};
 #[cfg(feature = "parametric")]
 use super::field_arguments::CurveVerb;
 use super::field_arguments::{Eval, SampleGrid, Slice};
 use super::surface::{self, CutUv};
+use super::values;
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -71,6 +73,27 @@ pub(crate) enum Verb {
                             logo.glb"
     )]
     Resolve(Combine),
+    /// Cut at planes, closed by caps
+    #[command(
+        after_help = "Examples:\n  trisect cut part.stl --plane z=12.5 -o above.stl -o below.stl\n  trisect cut part.stl --plane \
+                            x=0 --plane y=0 -o quarter.stl\n  trisect cut part.glb --plane 1,1,0,3 --keep below --cap \
+                            cut#d08030 -o open.glb --png open.png"
+    )]
+    Cut(Cut),
+    /// The polygons where planes meet a solid
+    #[command(
+        after_help = "Examples:\n  trisect section part.stl --plane z=1 -o section.svg\n  trisect section part.stl --heights \
+                            0:0.2:10 --side above -o layers.json -o layers.dxf"
+    )]
+    Section(Section),
+    /// Bodies as files of their own, or the cells that another solid makes of one
+    #[command(
+        after_help = "Examples:\n  trisect split parts.stl -o part.stl\n  trisect split block.stl --by mould.stl -o half.stl"
+    )]
+    Split(Split),
+    /// What of an open surface lies inside a solid, or outside it
+    #[command(after_help = "Example:\n  trisect trim terrain.obj house.stl --outside -o terrain-cut.obj")]
+    Trim(Trim),
     /// Say whether files can be used as operands, and if not, why and where
     #[command(
         after_help = "Exit code 0: all usable; 3: at least one is not; 2: at least one cannot be read."
@@ -128,6 +151,10 @@ impl Verb {
             Self::Xor(_) => Operation::SymmetricDifference.name(),
             Self::Combine(_) => "combine",
             Self::Resolve(_) => "resolve",
+            Self::Cut(_) => "cut",
+            Self::Section(_) => "section",
+            Self::Split(_) => "split",
+            Self::Trim(_) => "trim",
             Self::Check(_) => "check",
             Self::Info(_) => "info",
             Self::Convert(_) => "convert",
@@ -161,6 +188,9 @@ pub(crate) struct Combine {
     /// Lay texture coordinates on cut faces: planar or box, with how many to a unit of length (box:0.5)
     #[arg(long, value_name = "KIND[:DENSITY]", value_parser = surface::cut_uv, help_heading = "Results")]
     pub(crate) cut_uv: Option<CutUv>,
+    /// Before the operation, make the same what is no further apart than this: vertices, edges and faces of all inputs
+    #[arg(long, value_name = "UNITS", value_parser = values::length, help_heading = "Results", allow_hyphen_values = true)]
+    pub(crate) snap: Option<f64>,
     /// Read and check the inputs, say what would be done, write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,

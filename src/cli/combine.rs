@@ -7,7 +7,7 @@ use serde_json::Value;
 use trisect::io::{Format, WriteOptions};
 use trisect::{BooleanOptions, Embed, Grid, OperandState, Operation, Outcome, Rule, Solid};
 
-use super::argument_groups::{Colours, Writing};
+use super::argument_groups::{Colours, Results, Writing};
 use super::arguments::{Combination, Combine};
 use super::fault::{Exit, Fault};
 use super::mended;
@@ -95,7 +95,7 @@ fn run_task(
         &session.console,
     )?;
     session.took("read", start);
-    describe(&operands, &arguments.results.writing, session);
+    describe(&operands, Some(&arguments.results.writing), session);
     if arguments.dry_run {
         announce(task, &operands, &targets.concat(), session);
         return Ok(Exit::Fine);
@@ -117,9 +117,9 @@ fn run_task(
 }
 
 /// How results are written: the format of the first operand, which tells what is up, and the options.
-struct Style {
-    format: Option<Format>,
-    options: WriteOptions,
+pub(super) struct Style {
+    pub(super) format: Option<Format>,
+    pub(super) options: WriteOptions,
 }
 
 /// Writes all results and says what they are.
@@ -136,7 +136,7 @@ fn finish(
     let mut outputs = Vec::new();
     for ((outcome, targets), suffix) in outcomes.iter().zip(targets).zip(suffixes) {
         let name = suffix.strip_prefix('-').unwrap_or("result");
-        outputs.extend(write(arguments, targets, outcome, style, session)?);
+        outputs.extend(write(&arguments.results, targets, outcome, style, session)?);
         results.push(tell(name, outcome, targets, seconds, session));
     }
     if let Some(first) = results.first() {
@@ -161,6 +161,10 @@ fn options(
         .embed(embedding(arguments, targets))
         .cut_faces(surface::cut_faces(arguments, operands.iter().map(|operand| &operand.solid)))
         .assume_clean(arguments.inputs.using.assume_clean);
+    let options = match arguments.snap {
+        Some(distance) => options.snap(distance),
+        None => options,
+    };
     match session.common.threads {
         Some(threads) => options.threads(usize::from(threads)),
         None => options,
@@ -168,8 +172,8 @@ fn options(
 }
 
 /// Warns of inverted bodies of operands that the rule leaves out.
-fn warn_of_inward(outcome: &Outcome, operands: &[Operand], session: &mut Session<'_>) {
-    for (index, (state, operand)) in outcome.certificate().operands.iter().zip(operands).enumerate() {
+pub(super) fn warn_of_inward(outcome: &Outcome, operands: &[Operand], session: &mut Session<'_>) {
+    for (index, (state, operand)) in outcome.operand_states().iter().zip(operands).enumerate() {
         if let OperandState::Resolved { inward_volume, .. } = *state
             && inward_volume > 0.0
             && operand.request.rule == Rule::Positive
@@ -186,22 +190,42 @@ fn warn_of_inward(outcome: &Outcome, operands: &[Operand], session: &mut Session
 }
 
 /// Says what a result is, and returns it for the report.
-fn tell(name: &str, outcome: &Outcome, targets: &[Target], seconds: f64, session: &mut Session<'_>) -> Value {
-    let certificate = outcome.certificate();
-    let measures = Measures::of_solid(outcome.solid());
+pub(super) fn tell(
+    name: &str,
+    outcome: &Outcome,
+    targets: &[Target],
+    seconds: f64,
+    session: &mut Session<'_>,
+) -> Value {
+    // What nobody is told is not computed.
+    let measures = if session.is_reported() {
+        Measures::of_solid(outcome.solid())
+    } else {
+        Measures::for_line(outcome.solid())
+    };
     let mut result = measures.to_json();
-    result.insert("certificate".into(), report::certificate(certificate));
-    if let Some(warning) = report::nearly_flush(certificate) {
+    if session.is_reported() {
+        result.insert("certificate".into(), report::certificate(outcome.certificate()));
+    }
+    if let Some(warning) = report::nearly_flush(outcome.nearly_flush()) {
         session.warn(warning);
     }
-    if let Some(left) = certificate.embedding.map(|done| done.left).filter(|&left| left > 0) {
+    if let Some(snapping) = outcome.snapping() {
+        session.console.say(&format!("{name}: {}", report::snapping(snapping)));
+        if snapping.unfinished {
+            session.warn(format!("{name}: something nearer than the distance to snap by was left as it was"));
+        }
+    }
+    if let Some(left) = outcome.embedding().map(|done| done.left).filter(|&left| left > 0) {
         let triangles = words::counted(left, "triangle");
         session.warn(format!("{name}: {triangles} still cross others or lie on them after rounding"));
     }
     let names: Vec<String> = targets.iter().map(Target::name).collect();
     let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
     session.console.say(&format!("{name}: {} ({}){arrow}", measures.line(), words::time(seconds)));
-    session.console.detail(&certificate.to_string());
+    if session.common.verbose > 0 {
+        session.console.detail(&outcome.certificate().to_string());
+    }
     result.into()
 }
 
@@ -261,10 +285,14 @@ fn refuse_pointless(arguments: &Combine, targets: &[Target], session: &Session<'
 }
 
 /// One line and one JSON object for every operand, and its warnings.
-fn describe(operands: &[Operand], writing: &Writing, session: &mut Session<'_>) {
+pub(super) fn describe(operands: &[Operand], writing: Option<&Writing>, session: &mut Session<'_>) {
     let mut described = Vec::new();
     for (index, operand) in operands.iter().enumerate() {
-        let measures = Measures::of_solid(&operand.solid);
+        let measures = if session.is_reported() {
+            Measures::of_solid(&operand.solid)
+        } else {
+            Measures::for_line(&operand.solid)
+        };
         session.console.say(&report::operand_line(operand, &measures));
         if let (Some(cleaning), _) = report::cleaning(&operand.solid) {
             session.console.detail(&format!("  {cleaning}"));
@@ -275,7 +303,7 @@ fn describe(operands: &[Operand], writing: &Writing, session: &mut Session<'_>) 
         for transform in &operand.request.transforms {
             session.console.detail(&format!("  {transform}"));
         }
-        let lost = scenes::lost(&operand.contents, writing, index);
+        let lost = writing.map(|writing| scenes::lost(&operand.contents, writing, index)).unwrap_or_default();
         for warning in lost.iter().chain(&operand.warnings) {
             session.warn(format!("operand {} ({}): {warning}", index + 1, operand.request.name()));
         }
@@ -284,8 +312,9 @@ fn describe(operands: &[Operand], writing: &Writing, session: &mut Session<'_>) 
     session.note("operands", described);
 }
 
-fn write(
-    arguments: &Combine,
+/// Writes a result.
+pub(super) fn write(
+    results: &Results,
     targets: &[Target],
     outcome: &Outcome,
     style: &Style,
@@ -293,9 +322,9 @@ fn write(
 ) -> Result<Vec<Value>, Fault> {
     let start = Instant::now();
     session.console.stage("writing", 1.0);
-    let mesh = recenter::placed(outcome.solid().mesh(), &arguments.results.writing, session);
+    let mesh = recenter::placed(outcome.solid().mesh(), &results.writing, session);
     let mesh = mesh.as_ref();
-    let drawing = &arguments.results.drawing;
+    let drawing = &results.drawing;
     let picture = || {
         let operands = outcome.origins().iter().map(|origin| origin.operand as usize);
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), operands);

@@ -180,8 +180,8 @@ pub(crate) fn way_out(error: &Error, remedy: Option<&Remedy>) -> Option<String> 
                 "no option closes it: its faces cannot be turned to agree (a surface with one side, or sheets that meet in \
                  an edge); repair it in a mesh editor"
             } else {
-                "no option closes it: its open edges are rims of holes, which must be filled in a mesh editor (or it is a \
-                 sheet, which must be given a thickness)"
+                "no option closes it: its open edges are rims of holes, and filled it encloses nothing (a sheet must be given \
+                 a thickness; `trim` takes it as it is)"
             }
             .into(),
         ),

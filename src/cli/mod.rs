@@ -16,6 +16,8 @@ mod crossings;
 mod curve;
 #[cfg(feature = "parametric")]
 mod curve_text;
+mod cut;
+mod cut_arguments;
 mod documents;
 mod eval;
 mod fault;
@@ -38,16 +40,19 @@ mod repairs;
 mod report;
 mod requests;
 mod scenes;
+mod section;
 mod selection;
 mod session;
 mod slice;
 mod source;
+mod split;
 mod stage;
 mod stream;
 #[cfg(feature = "subdivision")]
 mod subdivide;
 mod surface;
 mod task;
+mod trim;
 mod usable;
 mod values;
 mod verbs;
@@ -135,6 +140,10 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             }
             Verb::Combine(combination) => combine::run_combination(combination, matches, &mut session),
             Verb::Resolve(resolve) => combine::run_resolve(resolve, matches, &mut session),
+            Verb::Cut(cut) => cut::run(cut, matches, &mut session),
+            Verb::Section(section) => section::run(section, matches, &mut session),
+            Verb::Split(split) => split::run(split, matches, &mut session),
+            Verb::Trim(trim) => trim::run(trim, matches, &mut session),
             Verb::Check(check) => check::run(check, matches, &mut session),
             Verb::Info(info) => info::run(info, matches, &mut session),
             Verb::Convert(convert) => convert::run(convert, matches, &mut session),

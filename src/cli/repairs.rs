@@ -9,6 +9,8 @@ pub(crate) struct Repairs {
     pub(crate) orient: bool,
     pub(crate) closed_parts: bool,
     pub(crate) as_is: bool,
+    /// Holes with up to so many edges are filled.
+    pub(crate) fill_holes: Option<usize>,
 }
 
 impl Repairs {
@@ -19,13 +21,17 @@ impl Repairs {
             orient: self.orient || all.orient,
             closed_parts: self.closed_parts || all.closed_parts,
             as_is: self.as_is || all.as_is,
+            fill_holes: self.fill_holes.or(all.fill_holes),
         }
     }
 
     /// The gate that does this.
     pub(crate) fn gate(self) -> Gate {
-        Gate::new()
-            .weld(self.weld)
+        let gate = match self.fill_holes {
+            Some(most) => Gate::new().fill_holes(most),
+            None => Gate::new(),
+        };
+        gate.weld(self.weld)
             .orient(self.orient)
             .closed_parts(self.closed_parts)
             .as_is(self.as_is)
@@ -34,7 +40,11 @@ impl Repairs {
 
     /// Which two of these contradict each other.
     pub(crate) fn contradiction(self) -> Option<&'static str> {
-        let other = if self.weld != Welding::Rounding { "--weld" } else { "--closed-parts" };
-        (self.as_is && (self.closed_parts || self.weld != Welding::Rounding)).then_some(other)
+        let contradictions = [
+            (self.weld != Welding::Rounding, "--weld"),
+            (self.closed_parts, "--closed-parts"),
+            (self.fill_holes.is_some(), "--fill-holes"),
+        ];
+        contradictions.into_iter().find(|&(is_asked, _)| self.as_is && is_asked).map(|(_, name)| name)
     }
 }

@@ -171,6 +171,10 @@ fn placed_repairs(matches: &ArgMatches) -> Vec<(usize, Repairs)> {
             repairs.extend(placed::<bool>(matches, id).map(|(at, _)| (at, asked)));
         }
     }
+    if takes("fill_holes") {
+        let filling = placed::<usize>(matches, "fill_holes");
+        repairs.extend(filling.map(|(at, most)| (at, Repairs { fill_holes: Some(most), ..none })));
+    }
     if takes("weld") {
         repairs.extend(placed(matches, "weld").map(|(at, weld)| (at, Repairs { weld, ..none })));
     }

@@ -163,7 +163,7 @@ fn remedy(
     if repairs.as_is {
         sets.push((String::new(), Repairs { as_is: false, ..repairs }));
     }
-    let (weld, orient, parts) = ("--weld auto", "--orient", "--closed-parts");
+    let (weld, orient, parts, fill) = ("--weld auto", "--orient", "--closed-parts", "--fill-holes");
     for names in [
         &[weld][..],
         &[orient],
@@ -172,11 +172,14 @@ fn remedy(
         &[weld, parts],
         &[orient, parts],
         &[weld, orient, parts],
+        &[fill],
+        &[orient, fill],
     ] {
         let has = |name: &str| names.contains(&name);
         let set_already = (has(weld) && repairs.weld != Welding::Rounding)
             || (has(orient) && repairs.orient)
-            || (has(parts) && repairs.closed_parts);
+            || (has(parts) && repairs.closed_parts)
+            || (has(fill) && repairs.fill_holes.is_some());
         if set_already || (inwards && names != [orient]) {
             continue;
         }
@@ -184,6 +187,7 @@ fn remedy(
             weld: if has(weld) { Welding::Closing } else { repairs.weld },
             orient: repairs.orient || has(orient),
             closed_parts: repairs.closed_parts || has(parts),
+            fill_holes: if has(fill) { Some(usize::MAX) } else { repairs.fill_holes },
             as_is: false,
         };
         sets.push((names.join(" "), asked));

@@ -2,8 +2,10 @@
 
 use std::time::Duration;
 
+use trisect::exact::{Plane, PlaneFault};
 use trisect::io::Format;
 use trisect::mesh::Welding;
+use trisect::{FaceGroup, Material};
 
 /// `count` finite numbers separated by commas or blanks.
 fn numbers<const COUNT: usize>(text: &str) -> Result<[f64; COUNT], String> {
@@ -42,6 +44,83 @@ pub(crate) fn welding(text: &str) -> Result<Welding, String> {
         "auto" => Ok(Welding::Closing),
         _ => distance(text).map(Welding::Within).map_err(|error| format!("{error} (or auto)")),
     }
+}
+
+/// The most edges of a hole: a number of at least 3, or `all`.
+pub(crate) fn hole(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        _ if text == "all" => Ok(usize::MAX),
+        Ok(most) if most >= 3 => Ok(most),
+        _ => Err("expected the most edges that a hole may have, a number of at least 3".into()),
+    }
+}
+
+/// A plane: `x=1.5`, `y=..` or `z=..`; `a,b,c,d` for a x + b y + c z = d; or three points as nine numbers.
+pub(crate) fn plane(text: &str) -> Result<Plane, String> {
+    let told = |fault: PlaneFault| fault.to_string();
+    if let Some((axis, at)) = text.split_once('=') {
+        let axis = ["x", "y", "z"].iter().position(|name| name.eq_ignore_ascii_case(axis.trim()));
+        let axis = axis.ok_or("expected x=, y= or z= and a number")?;
+        return Plane::across(axis, number(at)?).map_err(told);
+    }
+    let text = text.replace(';', ",");
+    match text.split([',', ' ', '\t', '\n']).filter(|word| !word.is_empty()).count() {
+        4 => numbers(&text).and_then(|[a, b, c, d]| Plane::new([a, b, c], d).map_err(told)),
+        9 => numbers(&text).and_then(|[a, b, c, d, e, f, g, h, i]| {
+            Plane::through([a, b, c], [d, e, f], [g, h, i]).map_err(told)
+        }),
+        _ => Err(
+            "expected z=12.5 (or x=, y=), a,b,c,d for a x + b y + c z = d, or three points x,y,z,x,y,z,x,y,z"
+                .into(),
+        ),
+    }
+}
+
+/// Heights: `first:step:last`, or numbers separated by commas.
+pub(crate) fn heights(text: &str) -> Result<Heights, String> {
+    /// So many sections of one file are a mistake.
+    const MOST: f64 = 1e6;
+    let list = if text.contains(':') {
+        let [first, step, last]: [f64; 3] = numbers(&text.replace(':', ","))?;
+        let count = ((last - first) / step * (1.0 + f64::EPSILON)).floor();
+        if !(step > 0.0 && (0.0..MOST).contains(&count)) {
+            return Err(
+                "expected FIRST:STEP:LAST with a positive step and LAST not below FIRST, such as 0:0.2:10"
+                    .into(),
+            );
+        }
+        (0..=count as u32).map(|i| first + f64::from(i) * step).collect()
+    } else {
+        let words = text.split([',', ' ']).filter(|word| !word.is_empty());
+        words.map(number).collect::<Result<Vec<f64>, _>>()?
+    };
+    if list.is_empty() { Err("expected at least one height".into()) } else { Ok(Heights(list)) }
+}
+
+/// Several heights.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Heights(pub(crate) Vec<f64>);
+
+/// The group of the faces that close a cut: a name, and a colour if it ends with #RRGGBB.
+pub(crate) fn material(text: &str) -> Result<FaceGroup, String> {
+    let (name, colour) = match text.rsplit_once('#') {
+        None => (text, None),
+        Some((name, digits)) => {
+            let value = u32::from_str_radix(digits, 16).ok().filter(|_| digits.len() == 6);
+            let value = value.ok_or("a colour is # and six digits, such as cap#d08030")?;
+            (name, Some([16, 8, 0].map(|shift| (value >> shift & 0xff) as u8)))
+        }
+    };
+    if name.is_empty() {
+        return Err("expected a name, such as cap or cap#d08030".into());
+    }
+    // Colours are written as screens show them; materials have them linear.
+    let linear = |byte: u8| {
+        let x = f32::from(byte) / 255.0;
+        if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
+    };
+    let material = colour.map(|[r, g, b]| Material::plain(name, [linear(r), linear(g), linear(b), 1.0]));
+    Ok(FaceGroup { name: name.to_owned(), material })
 }
 
 /// A length that is positive.
@@ -188,6 +267,34 @@ mod tests {
         assert!(scale("0").is_err());
         assert!(scale("1,2").is_err());
         assert!(scale("big").is_err());
+    }
+
+    #[test]
+    fn planes_are_levels_coefficients_or_points() {
+        assert_eq!(plane("z=12.5"), Ok(Plane::across(2, 12.5).unwrap()));
+        assert_eq!(plane("1,2,3,4"), Ok(Plane::new([1.0, 2.0, 3.0], 4.0).unwrap()));
+        let points = Plane::through([0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0]).unwrap();
+        assert_eq!(plane("0,0,0;1,0,0;0,1,1"), Ok(points));
+        for bad in ["w=1", "z=", "1,2,3", "0,0,0,1", "0,0,0,1,1,1,2,2,2"] {
+            assert!(plane(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn heights_are_ranges_or_lists() {
+        assert_eq!(heights("0:0.25:1"), Ok(Heights(vec![0.0, 0.25, 0.5, 0.75, 1.0])));
+        assert_eq!(heights("0:0.1:0.3").unwrap().0.len(), 4);
+        assert_eq!(heights("3,1,2"), Ok(Heights(vec![3.0, 1.0, 2.0])));
+        for bad in ["", "0:0:1", "1:0.1:0", "0:1e-9:1", "0:1"] {
+            assert!(heights(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn materials_have_a_name_and_perhaps_a_colour() {
+        assert_eq!(material("cap"), Ok(FaceGroup { name: "cap".into(), material: None }));
+        assert_eq!(material("cap#ff0000").unwrap().material.unwrap().base_color, [1.0, 0.0, 0.0, 1.0]);
+        assert!(material("#ff0000").is_err() && material("cap#red").is_err());
     }
 
     #[test]

@@ -3,15 +3,16 @@
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 /// What a word that is no verb should have been.
-const MEANT: [(&[&str], &str); 7] = [
+const MEANT: [(&[&str], &str); 8] = [
     (&["subtract", "minus", "diff", "carve"], "see `difference`"),
-    (&["cut", "trim", "section"], "see `difference`, or `slice` for a picture of a plane section"),
+    (&["clip", "halve", "bisect"], "see `cut` for planes, `intersection` and `difference` for solids"),
+    (&["layers", "contour", "contours"], "see `section`"),
     (&["merge", "add", "join", "unite"], "see `union`"),
     (&["and", "common", "overlap"], "see `intersection`"),
-    (&["split"], "see `intersection` and `difference` with a body that covers one side"),
+    (&["explode", "separate", "parts"], "see `split`"),
     (
         &["repair", "fix", "heal"],
-        "see `check`, which says what is wrong, `resolve` for what crosses itself, and `convert` with --weld or --orient",
+        "see `check`, which says what is wrong, `resolve` for what crosses itself, and the options --weld, --orient, --fill-holes and --closed-parts of every verb",
     ),
     (&["hull", "offset", "minkowski", "decimate"], "there is no such operation"),
 ];

@@ -26,7 +26,6 @@ pub(crate) fn crossing_filter(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 
 pub(super) fn near_crossing(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]) -> Option<[Near; 3]> {
     const LOW: f64 = f64::from_bits((1023 - 300) << 52);
     const HIGH: f64 = f64::from_bits((1023 + 300) << 52);
-    const TINY: f64 = f64::from_bits((1023 - 900) << 52);
     let [a, b, c] = triangle;
     let difference = |x: &[f64; 3], y: &[f64; 3]| -> [DoubleDouble; 3] {
         std::array::from_fn(|k| DoubleDouble::difference(x[k], y[k]))
@@ -45,9 +44,22 @@ pub(super) fn near_crossing(p: &[f64; 3], q: &[f64; 3], triangle: [&[f64; 3]; 3]
     });
     let height = |x: &[DoubleDouble; 3]| normal[0] * x[0] + normal[1] * x[1] + normal[2] * x[2];
     let (height_p, height_q) = (height(&to_p), height(&to_q));
-    let total = height_p - height_q;
     // Every height is a sum of six products of at most this size, each a few times 2^-104 off: 2^-98 of it is generous.
-    let scale = size_u * size_v * reach;
+    between(p, q, [height_p, height_q], size_u * size_v * reach)
+}
+
+/// The point of edge `(p, q)` at which a linear function is zero that has the heights at its ends, up to errors. Each height is at
+/// most 2^-98 of `scale` off.
+#[inline]
+pub(super) fn between(
+    p: &[f64; 3],
+    q: &[f64; 3],
+    [height_p, height_q]: [DoubleDouble; 2],
+    scale: f64,
+) -> Option<[Near; 3]> {
+    const TINY: f64 = f64::from_bits((1023 - 900) << 52);
+    let along: [DoubleDouble; 3] = std::array::from_fn(|k| DoubleDouble::difference(q[k], p[k]));
+    let total = height_p - height_q;
     let condition = scale / total.high.abs();
     if condition.is_nan() || condition > f64::from_bits((1023 + 36) << 52) {
         return None;

@@ -20,6 +20,12 @@ impl Projection {
         if looks_along { Self { x, y } } else { Self { x: y, y: x } }
     }
 
+    /// Along an axis, seen from its positive end, or else from its negative one.
+    pub(crate) fn seen_from(axis: usize, positive_end: bool) -> Self {
+        let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
+        if positive_end { Self { x, y } } else { Self { x: y, y: x } }
+    }
+
     /// The axis that is dropped.
     pub(crate) fn axis(self) -> usize {
         3 - self.x - self.y

@@ -27,6 +27,7 @@ mod beside;
 mod color;
 mod contents;
 mod detect;
+pub mod drawing;
 mod error;
 mod faces;
 mod file;

@@ -46,13 +46,45 @@ pub(super) struct Nesting {
 /// Copies of a patch are as nested as the first of them, and do not count otherwise.
 pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &Patches) -> Vec<Nesting> {
     let count = patches.closed.len();
+    let Some(looked) = look(positions, triangles, patches) else { return vec![Nesting::default(); count] };
+    let nesting = decide(count, &looked.rays, &looked.met);
+    looked.originals.iter().map(|&original| nesting[original as usize]).collect()
+}
+
+/// For each patch the patches that it lies inside of, ascending. Those that it crosses, or touches wherever it was looked at, are
+/// not among them.
+pub(super) fn containers(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &Patches) -> Vec<Vec<u32>> {
+    let mut containers = vec![Vec::new(); patches.closed.len()];
+    let Some(looked) = look(positions, triangles, patches) else { return containers };
+    for (&(inner, outer), crossings) in &looked.met {
+        if is_inside(crossings, looked.rays[inner as usize]).0 {
+            containers[inner as usize].push(outer);
+        }
+    }
+    containers.iter_mut().for_each(|of_patch| of_patch.sort_unstable());
+    looked.originals.iter().map(|&original| containers[original as usize].clone()).collect()
+}
+
+/// What the rays of all patches met.
+struct Looked {
+    /// The first copy of each patch.
+    originals: Vec<u32>,
+    /// How many rays each patch has.
+    rays: Vec<usize>,
+    /// By inner and outer patch.
+    met: FxHashMap<(u32, u32), [Crossings; RAYS]>,
+}
+
+/// `None` where there are not two closed patches.
+fn look(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &Patches) -> Option<Looked> {
+    let count = patches.closed.len();
     let originals = shells::originals(positions, triangles, patches, false);
     let counts: Vec<bool> = (0..)
         .zip(&originals)
         .map(|(patch, &original)| patches.closed[patch] && original as usize == patch)
         .collect();
     if counts.iter().filter(|&&counts| counts).count() < 2 {
-        return vec![Nesting::default(); count];
+        return None;
     }
     let corners = |patch: usize| {
         let members = patches.triangles.get(patch).iter();
@@ -97,24 +129,28 @@ pub(super) fn nesting(positions: &[[f64; 3]], triangles: &[[u32; 3]], patches: &
             crossings.touching |= extent.low[2] <= z && side_of_plane(&corners, start.place) == Sign::Zero;
         });
     }
-    let nesting = decide(count, &rays, &met);
-    originals.iter().map(|&original| nesting[original as usize]).collect()
+    Some(Looked { originals, rays, met })
+}
+
+/// Whether rays tell that a patch is inside another, and whether that is unclear.
+fn is_inside(crossings: &[Crossings; RAYS], rays: usize) -> (bool, bool) {
+    let (middle, extremes) = crossings[..rays].split_last().unwrap_or((&crossings[0], &[]));
+    let mut telling: Vec<bool> = extremes.iter().filter(|ray| !ray.touching).map(|ray| ray.odd).collect();
+    if telling.is_empty() && !middle.touching {
+        telling.push(middle.odd);
+    }
+    let inside = !telling.is_empty() && telling.iter().all(|&odd| odd);
+    (inside, !inside && (telling.is_empty() || telling.contains(&true)))
 }
 
 /// What the crossings of the rays of each patch with each other patch say.
 fn decide(count: usize, rays: &[usize], met: &FxHashMap<(u32, u32), [Crossings; RAYS]>) -> Vec<Nesting> {
     let mut nesting = vec![Nesting::default(); count];
     for (&(inner, _), crossings) in met {
-        let (middle, extremes) =
-            crossings[..rays[inner as usize]].split_last().unwrap_or((&crossings[0], &[]));
-        let mut telling: Vec<bool> = extremes.iter().filter(|ray| !ray.touching).map(|ray| ray.odd).collect();
-        if telling.is_empty() && !middle.touching {
-            telling.push(middle.odd);
-        }
-        let inside = !telling.is_empty() && telling.iter().all(|&odd| odd);
+        let (inside, unclear) = is_inside(crossings, rays[inner as usize]);
         let nesting = &mut nesting[inner as usize];
         nesting.inside ^= inside;
-        nesting.unclear |= !inside && (telling.is_empty() || telling.contains(&true));
+        nesting.unclear |= unclear;
     }
     nesting
 }

@@ -25,6 +25,7 @@
 mod cage;
 mod contour;
 mod evaluate;
+mod half_space;
 #[cfg(feature = "parametric")]
 mod parametric;
 mod parse;
@@ -46,6 +47,7 @@ use crate::{Control, Mesh};
 use cage::Cage;
 use contour::PlaneRegion;
 use glam::DAffine3;
+use half_space::HalfSpace;
 #[cfg(feature = "parametric")]
 use parametric::Parametric;
 use primitive::Primitive;
@@ -126,6 +128,8 @@ enum Kind {
         /// Nodes the formula uses by name.
         uses: Vec<(String, usize)>,
     },
+    /// All that is below a plane.
+    HalfSpace(HalfSpace),
     /// A plane region, the same at every height.
     Contour(PlaneRegion),
     /// Patches, or a region moved.
@@ -195,6 +199,7 @@ impl Model {
             Kind::Formula { uses, .. } => uses.iter().map(|used| used.1).collect(),
             Kind::Mesh(_)
             | Kind::Primitive(_)
+            | Kind::HalfSpace(_)
             | Kind::Contour(_)
             | Kind::Parametric(_)
             | Kind::Cage(_)

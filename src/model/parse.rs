@@ -9,6 +9,7 @@ use serde_json::{Map, Value};
 
 #[cfg(feature = "parametric")]
 use super::contour::PlaneRegion;
+use super::half_space::HalfSpace;
 #[cfg(feature = "parametric")]
 use super::parametric::{self, Curves, Described, Parametric};
 use super::{Defaults, Kind, Mode, Model, Node, contour, fault, primitive, references, transform};
@@ -21,7 +22,7 @@ use crate::io::Format;
 const CUSTOM: &str = "x-";
 /// Kinds of solids that are described as in `docs/parametric.md`.
 const PARAMETRIC: [&str; 4] = ["patches", "extrusion", "revolution", "sweep"];
-const KINDS: &str = "union, intersection, difference, xor, complement, mesh, box, sphere, cylinder, cone, torus, \
+const KINDS: &str = "union, intersection, difference, xor, complement, mesh, box, sphere, cylinder, cone, torus, half_space, \
                      formula, contour, region, patches, extrusion, revolution, sweep, parametric, \
                      freeform";
 
@@ -266,6 +267,10 @@ impl ModelReader<'_> {
                 let file: Option<String> = take(&mut object, "file").map_err(within(label))?;
                 let file = file.ok_or_else(|| fault("`file` is missing").in_node(label))?;
                 Kind::Mesh(file.into())
+            }
+            "half_space" => {
+                let keys = Value::Object(std::mem::take(&mut object));
+                Kind::HalfSpace(HalfSpace::parse(keys).map_err(fault).map_err(within(label))?)
             }
             "formula" => {
                 let text: Option<Text> = take(&mut object, "formula").map_err(within(label))?;

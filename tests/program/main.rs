@@ -8,6 +8,7 @@ mod common;
 #[cfg(feature = "subdivision")]
 mod cages;
 mod curve;
+mod cuts;
 mod engine;
 mod eval;
 mod operations;

@@ -85,12 +85,16 @@ fn a_seam_a_rounding_apart_is_joined_and_told() {
 }
 
 #[test]
-fn an_open_surface_that_nothing_closes_is_told_so() {
+fn what_closes_an_open_surface_is_told() {
     let folder = Folder::new();
     folder.write("open.obj", opened(&unit_cube()));
-    let ran = folder.run("union open.obj -o c.obj --json").exits(3).says("rims of holes");
+    let ran = folder.run("union open.obj -o c.obj --json").exits(3).says("usable with --fill-holes");
+    assert_eq!(ran.json()["error"]["remedy"], "--fill-holes");
+    // A triangle by itself is all rim: filled it encloses nothing.
+    folder.write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let ran = folder.run("union sheet.obj -o c.obj --json").exits(3).says("rims of holes");
     assert!(ran.json()["error"]["remedy"].is_null());
-    prints(&folder.run("check open.obj").exits(3), "no option closes it");
+    prints(&folder.run("check sheet.obj").exits(3), "no option closes it");
 }
 
 #[test]

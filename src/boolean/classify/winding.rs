@@ -23,7 +23,8 @@ pub(crate) struct Windings {
 }
 
 impl Windings {
-    /// Finds them for operands with the given boxes, outside which all are 0.
+    /// Finds them for operands with the given boxes, outside which all are 0. Those around the vertices of an operand that nobody
+    /// asks for are not found, and called 0: if the first is open, nothing winds around the second's.
     ///
     /// # Errors
     /// Only limits.
@@ -31,9 +32,15 @@ impl Windings {
         curve: &Curve<'_>,
         overlap: &Overlap,
         bounds: &[Bounds; 2],
+        wanted: [bool; 2],
         runner: Runner<'_>,
     ) -> Result<Self, Error> {
-        let of_operand = |operand: usize| winding_numbers(curve, operand, overlap, bounds, runner);
+        let of_operand = |operand: usize| {
+            if wanted[operand] {
+                return winding_numbers(curve, operand, overlap, bounds, runner);
+            }
+            Ok((vec![0; curve.complex.operands[operand].positions.len()], 0))
+        };
         let (a, b) = runner.both(|| of_operand(0), || of_operand(1));
         let ((a, contacts_a), (b, contacts_b)) = (a?, b?);
         Ok(Self { of_vertex: [a, b], contacts: contacts_a + contacts_b })

@@ -31,7 +31,7 @@ pub(super) struct Wanted<'a> {
 
 /// Whether an operand neither crosses itself, except by a few roundings, nor touches itself and all its shells face the right way, so that the steps for two
 /// operands are right for it. It is looked through if that is not known, unless the policy says what to take for granted.
-pub(super) fn is_simple(policy: Policy, solid: &Solid, control: &Control) -> Result<bool, Error> {
+pub(in crate::boolean) fn is_simple(policy: Policy, solid: &Solid, control: &Control) -> Result<bool, Error> {
     if policy.assume_clean && solid.known_self_crossings().is_none() {
         return Ok(true);
     }

@@ -15,20 +15,20 @@ use crate::mesh::{FaceGroups, Polygons};
 use crate::parallel::Runner;
 
 /// A result, but for crossings that rounding made.
-pub(super) struct Made {
-    pub(super) solid: Solid,
-    pub(super) origins: Origins,
-    pub(super) groups: FaceGroups,
-    pub(super) notes: Notes,
+pub(in crate::boolean) struct Made {
+    pub(in crate::boolean) solid: Solid,
+    pub(in crate::boolean) origins: Origins,
+    pub(in crate::boolean) groups: FaceGroups,
+    pub(in crate::boolean) notes: Notes,
     /// Whether rounding may have made something cross.
-    pub(super) may_cross: bool,
+    pub(in crate::boolean) may_cross: bool,
     /// Whether it is known to cross itself no deeper than rounding.
-    pub(super) is_clean: bool,
+    pub(in crate::boolean) is_clean: bool,
 }
 
 impl Made {
     /// Resolves crossings as the policy says.
-    pub(super) fn finish(
+    pub(in crate::boolean) fn finish(
         mut self,
         policy: Policy,
         operands: &[&Solid],

@@ -42,15 +42,20 @@ pub(crate) fn carried(
     if operands.iter().all(|solid| solid.mesh().attributes.is_empty()) {
         return Ok(Vec::new());
     }
-    let run = |(first, count, whole): (Origin, u32, bool)| Run {
-        source: first.operand,
-        triangle: first.triangle,
-        count,
-        reversed: first.reversed,
-        whole,
+    // What comes from no operand, as the cap of a cut at a plane, comes from a mesh of nothing.
+    let nothing = Mesh::default();
+    let run = |(first, count, whole): (Origin, u32, bool)| {
+        let is_given = (first.operand as usize) < operands.len();
+        Run {
+            source: if is_given { first.operand } else { operands.len() as u32 },
+            triangle: if is_given { first.triangle } else { 0 },
+            count,
+            reversed: first.reversed,
+            whole: whole || !is_given,
+        }
     };
     let runs: Vec<Run> = origins.stretches().map(run).collect();
-    let sources: Vec<&Mesh> = operands.iter().map(|solid| solid.mesh()).collect();
+    let sources: Vec<&Mesh> = operands.iter().map(|solid| solid.mesh()).chain([&nothing]).collect();
     let planes = Planes::new(operands, unit);
     let descent = Descent {
         sources: &sources,

@@ -179,7 +179,7 @@ mod tests {
         let candidates = Candidates::new(&complex, &overlap, runner).unwrap();
         let crossings = Crossings::find(&complex, &candidates, runner).unwrap();
         let curve = Curve::new(&complex, crossings, &[], runner).unwrap();
-        let windings = Windings::new(&curve, &overlap, &bounds, runner).unwrap();
+        let windings = Windings::new(&curve, &overlap, &bounds, [true; 2], runner).unwrap();
         let arrangement = Arrangement::new(curve, Vec::new(), true, runner).unwrap();
         let parts = multiplicity::parts(Operation::Intersection);
         let body = Body { arrangement: &arrangement, windings: &windings, parts };

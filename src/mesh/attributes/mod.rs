@@ -13,7 +13,7 @@ pub(crate) use carry::{CornerPlace, Descent, Run, carry, reach};
 pub(super) use lists::{append, keep, reverse, reverse_some};
 pub(crate) use moved::moved;
 pub(super) use moved::turn_corners;
-pub(super) use pieces::of_pieces;
+pub(crate) use pieces::of_pieces;
 
 use super::{AttributeFault, Mesh, MeshError};
 

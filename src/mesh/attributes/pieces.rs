@@ -7,7 +7,7 @@ use crate::parallel::Runner;
 
 /// The attributes of `triangles`, of which `source` tells the triangle of `mesh` that each is, or is a piece of. Where a
 /// triangle is all that is left of another, its corners are that one's in their order, wherever their vertices have moved.
-pub(in crate::mesh) fn of_pieces(
+pub(crate) fn of_pieces(
     mesh: &Mesh,
     positions: &[[f64; 3]],
     triangles: &[[u32; 3]],

@@ -9,9 +9,12 @@
 //! 2. Further copies of triangles are left out ([`duplicates`]).
 //! 3. Fins, stray triangles and walls stored once are left out ([`cells`]).
 //!
+//! Holes are filled only on request ([`fill`]), where nothing else does.
+//!
 //! Triangles without area are left out before, where that leaves fewer edges open.
 
 mod cells;
+mod fill;
 mod points;
 mod report;
 mod rounding;
@@ -20,6 +23,7 @@ mod sew;
 mod splits;
 
 pub use report::Mending;
+pub(crate) use splits::fan_around_splits;
 
 use super::places::{Fault, Spots};
 use super::{Bounds, Mesh, chain, duplicates, measure, weld};
@@ -88,6 +92,26 @@ fn mend_with<'a>(
     }
     // The first of those that leave out the least.
     found.into_iter().reduce(|best, next| if open_area(&next) < open_area(&best) { next } else { best })
+}
+
+/// The same by filling holes of up to `most` edges, after seams are joined and copies left out.
+pub(super) fn mend_by_filling<'a>(
+    mesh: &'a Mesh,
+    triangles: &[[u32; 3]],
+    source: &[u32],
+    distance: Option<f64>,
+    most: usize,
+) -> Option<Surface<'a>> {
+    let mut surface = Surface::new(mesh, triangles.to_vec(), source.to_vec());
+    let splits = if distance.is_some() { Splits::ByDistance } else { Splits::ByRounding };
+    sew::sew(&mut surface, Sewing { distance, splits, where_it_closes: distance.is_none() });
+    if !surface.is_closed() {
+        surface.drop_copies();
+    }
+    fill::fill(&mut surface, most);
+    // A sheet and its filling enclose nothing.
+    let is_body = measure::enclosed_volume(&mesh.positions, &surface.triangles) != 0.0;
+    (surface.is_closed() && is_body).then_some(surface)
 }
 
 /// The least distance within which joining vertices (and splitting edges) closes the surface of `triangles`; `None` if none

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::super::places::Fault;
+use super::super::places::{Fault, short};
 
 /// What was done to make a closed surface of a mesh that was none, each kind counted, with its first places. All numbers
 /// are those of the mesh as given. Nothing was done where all counts are zero: the case of every mesh that is closed.
@@ -22,6 +22,12 @@ pub struct Mending {
     pub split_edges: Fault,
     /// Triangles left out that have no area.
     pub zero_area: Fault,
+    /// Holes filled because that was asked for, each placed at a vertex of its rim.
+    pub filled: Fault,
+    /// How many triangles fill them.
+    pub filled_triangles: usize,
+    /// The area of these, in squared units of the coordinates.
+    pub filled_area: f64,
     /// Further copies of a triangle left out.
     pub copies: Fault,
     /// Shells left out as further copies of another shell, each placed at its first triangle.
@@ -49,6 +55,9 @@ impl Mending {
         distance: None,
         split_edges: Fault::NONE,
         zero_area: Fault::NONE,
+        filled: Fault::NONE,
+        filled_triangles: 0,
+        filled_area: 0.0,
         copies: Fault::NONE,
         copied_shells: Fault::NONE,
         fins: Fault::NONE,
@@ -66,19 +75,20 @@ impl Mending {
         self.turned == 0 && self.kinds().iter().all(|(.., fault)| fault.is_none())
     }
 
-    /// What leaves the surface as it was but for rounding and for what counted twice, with the name of one and of several.
+    /// What leaves the surface as it was but for rounding, for what counted twice and for holes filled, with the name of one and of
+    /// several.
     #[must_use]
     pub fn sewn(&self) -> Vec<(&'static str, &'static str, &Fault)> {
-        self.kinds()[..5].iter().filter(|(.., fault)| !fault.is_none()).copied().collect()
+        self.kinds()[..6].iter().filter(|(.., fault)| !fault.is_none()).copied().collect()
     }
 
     /// What left out a piece of surface that the mesh had, with the name of one and of several.
     #[must_use]
     pub fn left_out(&self) -> Vec<(&'static str, &'static str, &Fault)> {
-        self.kinds()[5..].iter().filter(|(.., fault)| !fault.is_none()).copied().collect()
+        self.kinds()[6..].iter().filter(|(.., fault)| !fault.is_none()).copied().collect()
     }
 
-    fn kinds(&self) -> [(&'static str, &'static str, &Fault); 9] {
+    fn kinds(&self) -> [(&'static str, &'static str, &Fault); 10] {
         [
             ("vertex of a seam joined", "vertices of seams joined", &self.seams),
             (
@@ -89,6 +99,7 @@ impl Mending {
             ("triangle without area left out", "triangles without area left out", &self.zero_area),
             ("copy of a triangle left out", "copies of triangles left out", &self.copies),
             ("copy of a shell left out", "copies of shells left out", &self.copied_shells),
+            ("hole filled", "holes filled", &self.filled),
             ("triangle of a fin left out", "triangles of fins left out", &self.fins),
             ("stray triangle left out", "stray triangles left out", &self.strays),
             (
@@ -107,6 +118,12 @@ impl fmt::Display for Mending {
         for (one, several, fault) in self.kinds() {
             if !fault.is_none() {
                 words.push(format!("{} {}", fault.count, if fault.count == 1 { one } else { several }));
+            }
+            if std::ptr::eq(fault, &self.filled) && self.filled_triangles > 0 {
+                let count = self.filled_triangles;
+                let triangles = if count == 1 { "triangle" } else { "triangles" };
+                let text = format!(" ({count} {triangles}, area {})", short(self.filled_area));
+                words.last_mut().into_iter().for_each(|word| word.push_str(&text));
             }
         }
         if !self.seams.is_none() {

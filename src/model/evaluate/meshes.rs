@@ -8,7 +8,8 @@ use glam::{DAffine3, DVec3};
 
 use super::ExtractionReport;
 use super::state::State;
-use crate::boolean::{BooleanOptions, Expression, Operation};
+use crate::boolean::{BooleanOptions, Expression, Operation, PlaneCut};
+use crate::exact::Plane;
 use crate::field::{Extracted, Extraction, extrude};
 use crate::io::ReadOptions;
 use crate::model::{Kind, Mode};
@@ -60,6 +61,11 @@ impl State<'_> {
                     let what = "a complement is unbounded and has no mesh: use `difference`, or evaluate it as a field";
                     return Err(Error::Model(what.into()).in_node(label));
                 }
+                Kind::HalfSpace(_) => {
+                    let what = "a half-space is unbounded and has no mesh: use it in an `intersection`, take it off in a \
+                                `difference`, or evaluate it as a field";
+                    return Err(Error::Model(what.into()).in_node(label));
+                }
                 Kind::Reference(_, target) => (*self.operand_solid(*target)?).mesh().clone(),
                 Kind::Mesh(file) => {
                     self.loaded(&self.model.folder.join(file)).map_err(|error| error.in_node(label))?
@@ -102,11 +108,61 @@ impl State<'_> {
 
     /// What an exact operation gives.
     fn of_tree(&mut self, operation: Operation, operands: &[usize], label: &str) -> Result<Mesh, Error> {
+        // 1. Half-spaces have no surface to arrange: they cut what the others make.
+        let planes: Vec<Plane> = operands
+            .iter()
+            .map(|&operand| self.half_space(operand))
+            .filter_map(Result::transpose)
+            .collect::<Result<_, _>>()?;
+        let solids: Vec<usize> = operands
+            .iter()
+            .copied()
+            .filter(|&operand| !matches!(self.half_space(operand), Ok(Some(_))))
+            .collect();
+        let is_bounded = match operation {
+            Operation::Intersection => !solids.is_empty(),
+            Operation::Difference => solids.first() == operands.first(),
+            Operation::Union | Operation::SymmetricDifference => planes.is_empty(),
+        };
+        if !is_bounded {
+            let what = format!(
+                "this {operation} of a half-space is unbounded and has no mesh: intersect it with a body"
+            );
+            return Err(Error::Model(what).in_node(label));
+        }
+        // 2. All others at once.
         let mut leaves = Leaves::default();
-        let expression = self.operation(operation, operands, &mut leaves)?;
+        let expression = self.operation(operation, &solids, &mut leaves)?;
         let options = BooleanOptions::new().control(self.settings.control.clone());
         let outcome = options.evaluate(&expression, leaves.solids.iter().map(Arc::as_ref));
-        Ok(outcome.map_err(|error| error.in_node(label))?.into_solid().into_mesh())
+        let mut solid = outcome.map_err(|error| error.in_node(label))?.into_solid();
+        // 3. Plane by plane.
+        for plane in planes {
+            let cut = PlaneCut::new(plane).options(options.clone());
+            let kept = if operation == Operation::Difference { cut.above(&solid) } else { cut.below(&solid) };
+            solid = kept.map_err(|error| error.in_node(label))?.into_solid();
+        }
+        Ok(solid.into_mesh())
+    }
+
+    /// The plane of a node that is a half-space.
+    fn half_space(&self, node: usize) -> Result<Option<Plane>, Error> {
+        let mut at = &self.model.nodes[node];
+        let mut is_moved = at.transform != DAffine3::IDENTITY;
+        // (Names do not lead round in a circle: that is checked when a model is read.)
+        while let Kind::Reference(_, target) = &at.kind {
+            at = &self.model.nodes[*target];
+            is_moved |= at.transform != DAffine3::IDENTITY;
+        }
+        match &at.kind {
+            Kind::HalfSpace(_) if is_moved => {
+                let what =
+                    "a half-space is not moved, so that its plane stays exact: give the plane where it is";
+                Err(Error::Model(what.into()).in_node(self.label(node)))
+            }
+            Kind::HalfSpace(half_space) => Ok(Some(half_space.plane)),
+            _ => Ok(None),
+        }
     }
 
     /// A whole tree of exact operations as one expression of its leaves: nothing is rounded in between.
@@ -135,7 +191,10 @@ impl State<'_> {
             && leaves.operations <= MOST_OPERATIONS;
         if is_plain && self.mode(node, Some(Mode::Exact)) == Mode::Exact {
             match &at.kind {
-                Kind::Operation(operation, operands) => {
+                // (With a half-space among its operands it is evaluated by itself.)
+                Kind::Operation(operation, operands)
+                    if operands.iter().all(|&operand| matches!(self.half_space(operand), Ok(None))) =>
+                {
                     let (operation, operands) = (*operation, operands.clone());
                     return self.operation(operation, &operands, leaves);
                 }

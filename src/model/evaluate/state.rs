@@ -199,6 +199,13 @@ impl<'a> State<'a> {
                 let (graph, root) = field.graph();
                 Ok(self.graph.import(graph, root))
             }
+            Kind::HalfSpace(half_space) => {
+                let formula = half_space.formula().map_err(|error| Error::from(error).in_node(label))?;
+                let field =
+                    formula.compile(system, &[], &[]).map_err(|error| Error::from(error).in_node(label))?;
+                let (graph, root) = field.graph();
+                Ok(self.graph.import(graph, root))
+            }
             Kind::Contour(_) => {
                 let contours = self.region(node)?;
                 let distance = ContourDistance::new(&contours).map_err(|error| error.in_node(label))?;

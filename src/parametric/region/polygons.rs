@@ -105,6 +105,13 @@ impl Polygons {
     }
 }
 
+/// The polygons of a section: in coordinates of its plane, for the operations on regions.
+impl From<&crate::Section> for Polygons {
+    fn from(section: &crate::Section) -> Self {
+        Self::trusted(section.shapes().to_vec())
+    }
+}
+
 /// Area inside a closed polygon, positive counter-clockwise.
 pub(crate) fn signed_area(contour: &[Point<2>]) -> f64 {
     let origin = contour[0];

@@ -1,0 +1,259 @@
+//! Where edges pass through the plane.
+
+use rustc_hash::FxHashMap;
+
+use super::split::{ABOVE, BELOW, Half, ON, Split};
+use crate::Error;
+use crate::exact::{Projection, Sign, orient2d, orient3d};
+use crate::mesh::UnionFind;
+use crate::parallel::Runner;
+
+/// A vertex, or a node: nodes are numbered after the vertices.
+pub(super) type Point = u32;
+
+/// Nodes that one thread locates before the limits are checked.
+const AT_ONCE: usize = 1 << 10;
+
+/// An edge from below to above.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    below: u32,
+    above: u32,
+    /// The first two cut faces at the edge, by their places, and how many there are.
+    faces: [u32; 2],
+    count: u32,
+}
+
+/// A cut triangle: on its way round, it leaves what is below at `exit` and comes back at `entry`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CutFace {
+    pub(super) triangle: u32,
+    pub(super) exit: Point,
+    pub(super) entry: Point,
+}
+
+/// All nodes, and the cut triangles between them.
+pub(super) struct Nodes {
+    pub(super) faces: Vec<CutFace>,
+    /// Faces of one plane of the solid side by side, by their places, ascending; most are alone.
+    pub(super) plane_faces: Vec<Vec<u32>>,
+    /// Whether the seam runs straight on over a node, so that it is no point.
+    dropped: Vec<bool>,
+    /// Where each node is; nothing of sense for dropped ones.
+    positions: Vec<[f64; 3]>,
+    /// The point that stands for a node, in the cap and in each half.
+    in_cap: Vec<Point>,
+    in_half: [Vec<Point>; 2],
+    /// Ends of edges that stand for nodes, in each half; ascending.
+    ends: [Vec<u32>; 2],
+    /// The number of vertices: that of the first node.
+    first: u32,
+    /// Whether some edge has other than two cut faces, or points at the same place became one.
+    pub(super) may_pinch: bool,
+}
+
+impl Nodes {
+    /// Finds, merges and locates all nodes. With `merge`, faces of one plane are cut as one.
+    ///
+    /// # Errors
+    /// [`Error::TooLarge`] where vertices and nodes cannot be numbered; limits.
+    pub(super) fn new(split: &Split<'_>, merge: bool, runner: Runner<'_>) -> Result<Self, Error> {
+        let vertices = split.vertex_count();
+        // Two for each cut face at most.
+        if vertices + 2 * split.cut.len() > u32::MAX as usize / 2 {
+            return Err(Error::TooLarge {
+                what: format!("{vertices} vertices cut in {} triangles", split.cut.len()),
+            });
+        }
+        let first = vertices as u32;
+        // 1. Nodes, in the order of the triangles that have them.
+        let (nodes, faces) = find(split, first);
+        // 2. Faces of one plane.
+        let mut dropped = vec![false; nodes.len()];
+        let plane_faces = if merge { merge_faces(split, &nodes, &faces, &mut dropped) } else { Vec::new() };
+        runner.control.check()?;
+        // 3. Where they are.
+        let positions =
+            runner.gather(nodes.len(), AT_ONCE, nodes.len(), |range, positions: &mut Vec<[f64; 3]>| {
+                positions.extend(range.map(|node| {
+                    let Node { below, above, .. } = nodes[node];
+                    let [p, q] = [below, above].map(|v| &split.mesh.positions[v as usize]);
+                    if dropped[node] { [0.0; 3] } else { split.plane.crossing(p, q) }
+                }));
+            })?;
+        let may_pinch = nodes.iter().any(|node| node.count != 2);
+        let mut found = Self {
+            faces,
+            plane_faces,
+            dropped,
+            positions,
+            in_cap: Vec::new(),
+            in_half: [Vec::new(), Vec::new()],
+            ends: [Vec::new(), Vec::new()],
+            first,
+            may_pinch,
+        };
+        // 4. Which are one.
+        found.identify(split, &nodes);
+        Ok(found)
+    }
+
+    /// How many points there are, vertices included.
+    pub(super) fn point_count(&self) -> u32 {
+        self.first + self.positions.len() as u32
+    }
+
+    pub(super) fn position(&self, split: &Split<'_>, point: Point) -> [f64; 3] {
+        match point.checked_sub(self.first) {
+            None => split.mesh.positions[point as usize],
+            Some(node) => self.positions[node as usize],
+        }
+    }
+
+    /// The ends of edges that stand for nodes in a half, ascending.
+    pub(super) fn ends(&self, half: Half) -> &[u32] {
+        &self.ends[half as usize]
+    }
+
+    pub(super) fn is_node(&self, point: Point) -> bool {
+        point >= self.first
+    }
+
+    /// Whether the seam runs straight on over a point.
+    pub(super) fn is_dropped(&self, point: Point) -> bool {
+        self.is_node(point) && self.dropped[(point - self.first) as usize]
+    }
+
+    /// The point that stands for another in the cap.
+    pub(super) fn in_cap(&self, point: Point) -> Point {
+        if self.is_node(point) { self.in_cap[(point - self.first) as usize] } else { point }
+    }
+
+    /// The point that stands for another in a half.
+    pub(super) fn in_half(&self, half: Half, point: Point) -> Point {
+        if self.is_node(point) { self.in_half[half as usize][(point - self.first) as usize] } else { point }
+    }
+
+    /// Makes nodes at the same place one; and a node one with a vertex in the plane there, or, in one half, with the end of its edge
+    /// if rounding put it there.
+    fn identify(&mut self, split: &Split<'_>, nodes: &[Node]) {
+        let key = |position: &[f64; 3]| position.map(|x| (x + 0.0).to_bits());
+        let mut at: FxHashMap<[u64; 3], Point> = FxHashMap::default();
+        // 1. Vertices of cut faces in the plane come first.
+        for face in &self.faces {
+            for point in [face.exit, face.entry].into_iter().filter(|&point| point < self.first) {
+                at.entry(key(&split.mesh.positions[point as usize])).or_insert(point);
+            }
+        }
+        // 2. Then nodes in their order.
+        self.in_cap = (0..nodes.len())
+            .map(|node| {
+                let own = self.first + node as u32;
+                if self.dropped[node] { own } else { *at.entry(key(&self.positions[node])).or_insert(own) }
+            })
+            .collect();
+        self.may_pinch |= (self.first..).zip(&self.in_cap).any(|(own, &point)| own != point);
+        // 3. Ends of edges: the lowest for all nodes of one place.
+        for half in Half::BOTH {
+            let mut ends: FxHashMap<Point, u32> = FxHashMap::default();
+            for (node, &point) in nodes.iter().zip(&self.in_cap) {
+                let end = if half == Half::Below { node.below } else { node.above };
+                if self.is_node(point)
+                    && !self.is_dropped(point)
+                    && split.mesh.positions[end as usize] == self.positions[(point - self.first) as usize]
+                {
+                    ends.entry(point).and_modify(|lowest| *lowest = (*lowest).min(end)).or_insert(end);
+                }
+            }
+            self.may_pinch |= !ends.is_empty();
+            let mut vertices: Vec<u32> = ends.values().copied().collect();
+            vertices.sort_unstable();
+            self.ends[half as usize] = vertices;
+            self.in_half[half as usize] =
+                self.in_cap.iter().map(|point| ends.get(point).copied().unwrap_or(*point)).collect();
+        }
+    }
+}
+
+/// All nodes and cut faces.
+fn find(split: &Split<'_>, first: u32) -> (Vec<Node>, Vec<CutFace>) {
+    let mut nodes: Vec<Node> = Vec::with_capacity(split.cut.len());
+    let mut of_edge: FxHashMap<(u32, u32), u32> = FxHashMap::default();
+    of_edge.reserve(split.cut.len());
+    let mut faces = Vec::with_capacity(split.cut.len());
+    for (place, &triangle) in (0..).zip(&split.cut) {
+        let corners = split.corners(triangle);
+        let marks = corners.map(|v| split.mark(v));
+        let mut node = |below: u32, above: u32| {
+            let number = *of_edge.entry((below, above)).or_insert_with(|| {
+                nodes.push(Node { below, above, faces: [place; 2], count: 0 });
+                nodes.len() as u32 - 1
+            });
+            let node = &mut nodes[number as usize];
+            if node.count == 1 {
+                node.faces[1] = place;
+            }
+            node.count += 1;
+            first + number
+        };
+        let (mut exit, mut entry) = (0, 0);
+        for k in 0..3 {
+            let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+            match [marks[k], marks[next]] {
+                [BELOW, ABOVE] => exit = node(corners[k], corners[next]),
+                [ABOVE, BELOW] => entry = node(corners[next], corners[k]),
+                [ON, ABOVE] if marks[last] == BELOW => exit = corners[k],
+                [ON, BELOW] if marks[last] == ABOVE => entry = corners[k],
+                _ => {}
+            }
+        }
+        faces.push(CutFace { triangle, exit, entry });
+    }
+    (nodes, faces)
+}
+
+/// Faces of one plane of the solid side by side, and which nodes between them are dropped.
+fn merge_faces(split: &Split<'_>, nodes: &[Node], faces: &[CutFace], dropped: &mut [bool]) -> Vec<Vec<u32>> {
+    let mut joined = UnionFind::new(faces.len());
+    let mut any = false;
+    for (node, dropped) in nodes.iter().zip(dropped) {
+        let [f, g] = node.faces;
+        if node.count == 2 && are_one_plane(split, faces[f as usize].triangle, faces[g as usize].triangle) {
+            joined.join(f, g);
+            *dropped = true;
+            any = true;
+        }
+    }
+    if !any {
+        return Vec::new();
+    }
+    let mut of_root: FxHashMap<u32, usize> = FxHashMap::default();
+    let mut plane_faces: Vec<Vec<u32>> = Vec::new();
+    for face in 0..faces.len() as u32 {
+        let place = *of_root.entry(joined.root(face)).or_insert_with(|| {
+            plane_faces.push(Vec::new());
+            plane_faces.len() - 1
+        });
+        plane_faces[place].push(face);
+    }
+    plane_faces
+}
+
+/// Whether two triangles that share an edge lie in one plane, look the same way, and are of one group.
+fn are_one_plane(split: &Split<'_>, f: u32, g: u32) -> bool {
+    let groups = &split.mesh.groups.of_triangle;
+    if groups.get(f as usize) != groups.get(g as usize) {
+        return false;
+    }
+    let [of_f, of_g] = [f, g].map(|t| split.corners(t).map(|v| split.mesh.positions[v as usize]));
+    let [a, b, c] = &of_f;
+    if of_g.iter().any(|corner| orient3d(a, b, c, corner) != Sign::Zero) {
+        return false;
+    }
+    let projection = Projection::of(&of_f);
+    let looks_up = |corners: &[[f64; 3]; 3]| {
+        let [a, b, c] = corners.map(|corner| projection.project(&corner));
+        orient2d(a, b, c) == Sign::Positive
+    };
+    looks_up(&of_f) && looks_up(&of_g)
+}

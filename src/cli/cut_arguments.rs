@@ -1,0 +1,120 @@
+//! What may stand on the command line of `cut`, `section` and `split`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use trisect::FaceGroup;
+use trisect::exact::Plane;
+
+use super::argument_groups::{Inputs, Results};
+use super::field_arguments::Axis;
+use super::values::{self, Heights};
+
+/// Which halves of a cut are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Keep {
+    /// What is above the plane, or above all of them
+    Above,
+    /// What is below the plane, or below all of them
+    Below,
+    /// Both, or all pieces that several planes make
+    Both,
+}
+
+/// Cutting at planes.
+#[derive(Debug, Args)]
+pub(crate) struct Cut {
+    #[command(flatten)]
+    pub(crate) inputs: Inputs,
+    /// The plane: z=12.5 (or x=, y=), a,b,c,d for a x + b y + c z = d, or three points; several cut one after the other
+    #[arg(
+        long, value_name = "PLANE", value_parser = values::plane, required = true, allow_hyphen_values = true,
+        help_heading = "Results"
+    )]
+    pub(crate) plane: Vec<Plane>,
+    /// Which part is kept; above is where the coordinate, or a x + b y + c z, is larger, or from where three points run
+    /// counter-clockwise
+    #[arg(long, value_name = "PART", value_enum, default_value_t = Keep::Both, help_heading = "Results")]
+    pub(crate) keep: Keep,
+    /// The group of the new faces, with a colour if it ends with #RRGGBB
+    #[arg(long, value_name = "MATERIAL", value_parser = values::material, help_heading = "Results")]
+    pub(crate) cap: Option<FaceGroup>,
+    #[command(flatten)]
+    pub(crate) results: Results,
+    /// Read and check the input, say what would be done, write nothing
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+}
+
+/// What counts where faces lie in the plane of a section.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Side {
+    /// What has the solid above and below
+    Inside,
+    /// What has the solid above: a layer that begins there
+    Above,
+    /// What has the solid below: a layer that ends there
+    Below,
+}
+
+/// Sections at planes.
+#[derive(Debug, Args)]
+#[command(group = clap::ArgGroup::new("where").required(true).args(["plane", "heights"]))]
+pub(crate) struct Section {
+    #[command(flatten)]
+    pub(crate) inputs: Inputs,
+    /// The plane: z=12.5 (or x=, y=), a,b,c,d for a x + b y + c z = d, or three points; there may be several
+    #[arg(
+        long, value_name = "PLANE", value_parser = values::plane, allow_hyphen_values = true, help_heading = "Results"
+    )]
+    pub(crate) plane: Vec<Plane>,
+    /// Layers: FIRST:STEP:LAST, or heights separated by commas
+    #[arg(
+        long, value_name = "HEIGHTS", value_parser = values::heights, allow_hyphen_values = true,
+        help_heading = "Results"
+    )]
+    pub(crate) heights: Option<Heights>,
+    /// The axis of the heights
+    #[arg(long, value_enum, default_value_t = Axis::Z, help_heading = "Results")]
+    pub(crate) axis: Axis,
+    /// What counts where faces of the solid lie in the plane
+    #[arg(long, value_enum, default_value_t = Side::Inside, help_heading = "Results")]
+    pub(crate) side: Side,
+    /// Where the polygons go: *.svg, *.dxf or *.json; `-` is standard output, as JSON
+    #[arg(short, long, value_name = "FILE", help_heading = "Outputs")]
+    pub(crate) output: Vec<PathBuf>,
+}
+
+/// Trimming an open surface.
+#[derive(Debug, Args)]
+#[command(group = clap::ArgGroup::new("side").required(true).args(["inside", "outside"]))]
+pub(crate) struct Trim {
+    #[command(flatten)]
+    pub(crate) inputs: Inputs,
+    /// Keep what of the first input, which may be open, lies inside the second
+    #[arg(long, help_heading = "Results")]
+    pub(crate) inside: bool,
+    /// Keep what lies outside it
+    #[arg(long, help_heading = "Results")]
+    pub(crate) outside: bool,
+    #[command(flatten)]
+    pub(crate) results: Results,
+}
+
+/// Splitting into parts.
+#[derive(Debug, Args)]
+pub(crate) struct Split {
+    #[command(flatten)]
+    pub(crate) inputs: Inputs,
+    /// Cut by this solid first: what is outside it, inside it, and of it outside the input, with common seams
+    #[arg(long, value_name = "FILE", conflicts_with = "groups", help_heading = "Results")]
+    pub(crate) by: Option<PathBuf>,
+    /// The surfaces of the face groups instead of bodies; they are open where groups meet
+    #[arg(long, help_heading = "Results")]
+    pub(crate) groups: bool,
+    /// With --by: each cell's bodies as files of their own
+    #[arg(long, requires = "by", help_heading = "Results")]
+    pub(crate) explode: bool,
+    #[command(flatten)]
+    pub(crate) results: Results,
+}

@@ -1,0 +1,109 @@
+//! `cut`, `section`, `split`, and holes filled.
+
+use crate::common::program::Folder;
+use trisect::{Mesh, primitives};
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    let save = |name: &str, mesh: &Mesh| mesh.save(folder.path(name)).expect("written");
+    save("block.off", &primitives::cuboid([0.0; 3], [2.0, 3.0, 4.0]).expect("a box"));
+    let mut two = primitives::cuboid([0.0; 3], [1.0; 3]).expect("a box");
+    two.append(&primitives::cuboid([5.0; 3], [8.0; 3]).expect("a box")).expect("few vertices");
+    save("two.off", &two);
+    let mut open = primitives::geodesic_sphere(1.0, 6).expect("a ball");
+    open.triangles.drain(..5);
+    save("open.off", &open);
+    folder
+}
+
+fn volume(folder: &Folder, name: &str) -> f64 {
+    Mesh::load(folder.path(name)).expect("a mesh").volume()
+}
+
+#[test]
+fn a_file_is_cut_in_two() {
+    let folder = folder();
+    folder.run("cut block.off --plane z=1 -o above.off -o below.off").exits(0).says("above:").says("below:");
+    assert_eq!([volume(&folder, "above.off"), volume(&folder, "below.off")], [18.0, 6.0]);
+    folder.run("cut block.off --plane 0,0,2,2 --keep below -o low.off").exits(0);
+    assert_eq!(folder.read("low.off"), folder.read("below.off"));
+    folder.run("cut block.off --plane 0,0,1;1,0,1;0,1,1 -o half.off").exits(0);
+    assert_eq!(folder.read("half-above.off"), folder.read("above.off"));
+    let object = folder.run("cut block.off --plane z=9 --keep above --json").exits(0).json();
+    assert_eq!(object["results"][0]["triangles"], 0);
+}
+
+#[test]
+fn several_planes_make_pieces() {
+    let folder = folder();
+    folder.run("cut block.off --plane x=1 --plane y=1 --cap cut#d08030 -o piece.obj").exits(0);
+    let volumes = ["aa", "ba", "ab", "bb"].map(|name| volume(&folder, &format!("piece-{name}.obj")));
+    assert_eq!(volumes, [8.0, 8.0, 4.0, 4.0]);
+    assert!(folder.read("piece-aa.obj").contains("cut"));
+    folder.run("cut block.off --plane x=1 --plane y=1 --keep below -o corner.obj").exits(0);
+    assert_eq!(volume(&folder, "corner.obj"), 4.0);
+}
+
+#[test]
+fn what_is_no_plane_is_told() {
+    let folder = folder();
+    folder.run("cut block.off --plane w=1 -o c.off").exits(1).says("x=, y= or z=");
+    folder.run("cut block.off --plane 0,0,0,1 -o c.off").exits(1).says("normal");
+    folder.run("cut block.off two.off --plane z=1 -o c.off").exits(1).says("one input");
+    folder.run("cut block.off --plane z=1").exits(1).says("nowhere to put the result");
+    folder.run("cut open.off --plane z=0 -o c.off").exits(3).says("--fill-holes");
+}
+
+#[test]
+fn sections_are_written_in_three_formats() {
+    let folder = folder();
+    let line = "section block.off --heights 0:1:4 --side above -o s.svg -o s.dxf -o s.json --json";
+    let object = folder.run(line).exits(0).json();
+    let areas: Vec<f64> = object["sections"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|s| s["area"].as_f64().expect("a number"))
+        .collect();
+    assert_eq!(areas, [6.0, 6.0, 6.0, 6.0, 0.0]);
+    assert!(folder.read("s.svg").contains("<path"));
+    assert_eq!(folder.read("s.dxf").matches("POLYLINE").count(), 4);
+    let drawing: serde_json::Value = serde_json::from_str(&folder.read("s.json")).expect("JSON");
+    assert_eq!(drawing["layers"][1]["polygons"][0]["outline"].as_array().expect("points").len(), 4);
+    folder.run("section block.off --plane x=1 -o s.stl").exits(1).says("*.svg, *.dxf or *.json");
+}
+
+#[test]
+fn bodies_and_cells_get_files_of_their_own() {
+    let folder = folder();
+    folder.run("split two.off -o part.off").exits(0).says("2 parts");
+    assert_eq!(["part-1.off", "part-2.off"].map(|name| volume(&folder, name)), [27.0, 1.0]);
+    folder.run("split block.off --by two.off -o cell.off").exits(0);
+    let names = ["cell-difference.off", "cell-intersection.off", "cell-reverse.off"];
+    assert_eq!(names.map(|name| volume(&folder, name)), [23.0, 1.0, 27.0]);
+    folder.run("split two.off --by block.off --explode -o cell.off").exits(0);
+    assert_eq!(volume(&folder, "cell-difference-1.off"), 27.0);
+}
+
+#[test]
+fn holes_are_filled_only_when_asked() {
+    let folder = folder();
+    folder.run("union open.off -o c.off").exits(3).says("usable with --fill-holes");
+    folder.run("union open.off --fill-holes -o c.off").exits(0).says("hole filled").says("area");
+    folder.run("union open.off --fill-holes=3 -o c.off").exits(3);
+    folder.run("union open.off --fill-holes --as-is -o c.off").exits(1).says("contradict");
+}
+
+#[test]
+fn an_open_surface_is_trimmed() {
+    let folder = folder();
+    let square = vec![[-1.0, -1.0, 1.0], [9.0, -1.0, 1.0], [9.0, 9.0, 1.0], [-1.0, 9.0, 1.0]];
+    let sheet = Mesh::new(square, vec![[0, 1, 2], [0, 2, 3]]);
+    sheet.save(folder.path("sheet.obj")).expect("written");
+    folder.run("trim sheet.obj block.off --inside -o in.obj").exits(0).says("not closed");
+    folder.run("trim sheet.obj block.off --outside -o out.obj").exits(0);
+    let area = |name: &str| Mesh::load(folder.path(name)).expect("a mesh").area();
+    assert_eq!([area("in.obj"), area("out.obj")], [6.0, 94.0]);
+    folder.run("trim sheet.obj block.off -o in.obj").exits(1).says("--inside");
+    folder.run("trim sheet.obj --inside -o in.obj").exits(1).says("two inputs");
+}
