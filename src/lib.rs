@@ -96,7 +96,7 @@ pub mod subdivision;
 pub use boolean::{
     BooleanOptions, Certificate, Contact, Embed, Embedding, Expression, ExpressionError, Grid, NearContact,
     NearContacts, OperandState, Operation, Origin, Outcome, PlaneCut, Rule, Section, SectionSide, Sections,
-    TrimSide, Trimmed, UnknownName, boolean,
+    Snapping, TrimSide, Trimmed, UnknownName, boolean,
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};

@@ -12,6 +12,7 @@ use super::cut_arguments::{Cut, Section, Split, Trim};
 #[cfg(feature = "parametric")]
 use super::field_arguments::CurveVerb;
 use super::field_arguments::{Eval, SampleGrid, Slice};
+use super::values;
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -180,6 +181,9 @@ pub(crate) struct Combine {
     /// what is read back does not cross itself
     #[arg(long, help_heading = "Results")]
     pub(crate) embed: bool,
+    /// Before the operation, make the same what is no further apart than this: vertices, edges and faces of all inputs
+    #[arg(long, value_name = "UNITS", value_parser = values::length, help_heading = "Results", allow_hyphen_values = true)]
+    pub(crate) snap: Option<f64>,
     /// Read and check the inputs, say what would be done, write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,

@@ -24,6 +24,7 @@ mod plane;
 pub(crate) mod planes;
 pub(crate) mod position;
 mod projection;
+mod seen;
 pub(crate) mod unrounded;
 
 pub(crate) use filter::{FILTER_RANGE, PlaneFilter, orient3d_filter};
@@ -31,3 +32,4 @@ pub use orient::{Sign, collinear, orient2d, orient3d};
 pub use perturbed::orient3d_perturbed;
 pub use plane::{Plane, PlaneFault};
 pub(crate) use projection::Projection;
+pub(crate) use seen::Seen;

@@ -9,13 +9,16 @@ mod bounds;
 mod buckets;
 mod chain;
 mod clean;
+mod components;
 mod diagnose;
 mod diagnosis;
 mod duplicates;
 mod edges;
 mod error;
+mod fans;
 mod gate;
 mod groups;
+mod links;
 mod manifold;
 mod measure;
 mod mend;
@@ -37,17 +40,21 @@ mod union_find;
 mod weighted_union_find;
 mod weld;
 
+use links::Links;
+
 pub(crate) use bit_set::BitSet;
 pub use bounds::Bounds;
 pub(crate) use buckets::Buckets;
 pub use diagnose::diagnose;
 pub use diagnosis::Diagnosis;
 pub use error::{GroupFault, MeshError, TransformFault};
+pub(crate) use fans::plain_fans;
 pub use gate::{Gate, Refusal, Welding};
 pub use groups::{FaceGroup, FaceGroups, Material};
 pub(crate) use manifold::{HalfEdges, Surface, make_manifold};
 pub(crate) use measure::enclosed_volume;
 pub use mend::Mending;
+pub(crate) use mend::fan_around_splits;
 pub use places::{Fault, Place};
 pub use self_crossing::{SelfCrossing, SelfCrossings};
 pub use solid::{Cleaning, Solid};
@@ -57,7 +64,9 @@ pub(crate) use weighted_union_find::WeightedUnionFind;
 
 /// Whether every directed edge is met by its opposite equally often; false for indices out of range.
 pub(crate) fn is_closed(mesh: &Mesh) -> bool {
-    chain::examine(&mesh.triangles, mesh.positions.len()).is_ok_and(|chain| chain.closed)
+    let (triangles, vertices) = (&mesh.triangles, mesh.positions.len());
+    Links::of(triangles, vertices).is_ok_and(|links| links.edge_manifold)
+        || chain::examine(triangles, vertices).is_ok_and(|chain| chain.closed)
 }
 
 /// A triangle mesh: positions, triangles, and the groups the triangles belong to. Plain data without invariants;

@@ -2,7 +2,7 @@
 
 use super::expressions::{self, Wanted};
 use super::policy::{Embed, Policy};
-use super::run;
+use super::{run, snapped};
 use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::expression::Expression;
 use crate::boolean::result::outcome::Outcome;
@@ -34,6 +34,7 @@ impl Default for BooleanOptions {
                 assume_clean: false,
                 rule: Rule::Positive,
                 embed: Embed::default(),
+                snap: None,
             },
             rules: Vec::new(),
         }
@@ -93,7 +94,7 @@ impl BooleanOptions {
     }
 
     /// Whether operands are taken not to cross or touch themselves, unless they are known to. Default: false; each is looked
-    /// through once (about a microsecond a triangle) and remembers what was found, and results of operations need not be
+    /// through once (some tenths of a microsecond a triangle) and remembers what was found, and results of operations need not be
     /// looked through. Where the assumption is wrong the result is closed all the same, but regions count as often as they are
     /// enclosed.
     #[must_use]
@@ -106,6 +107,30 @@ impl BooleanOptions {
     #[must_use]
     pub fn embed(mut self, embed: Embed) -> Self {
         self.policy.embed = embed;
+        self
+    }
+
+    /// Welds the operands to each other before the exact operation: vertices, edges and faces that are no further apart than
+    /// `distance`, in units of the coordinates, are made the same, also within one operand. Openings a little short of the other
+    /// side then go through, and bodies that were flush before they were turned are flush. What that moved is in
+    /// [`Certificate::snapping`](crate::Certificate::snapping). Default: none; nothing is ever snapped unasked.
+    ///
+    /// ```
+    /// use trisect::{BooleanOptions, Operation, Solid, primitives};
+    ///
+    /// // 0.1 + 0.2 is not 0.3.
+    /// let a = Solid::try_from(primitives::cuboid([0.0; 3], [1.0, 1.0, 0.1 + 0.2])?)?;
+    /// let b = Solid::try_from(primitives::cuboid([0.0, 0.0, 0.3], [1.0, 1.0, 1.0])?)?;
+    /// let c = Solid::try_from(primitives::cuboid([0.0, 0.0, 1.0 + 1e-12], [1.0, 1.0, 2.0])?)?;
+    /// let exact = BooleanOptions::new().run(Operation::Union, [&a, &b, &c])?;
+    /// assert_eq!(exact.solid().components(), 2);
+    /// let snapped = BooleanOptions::new().snap(1e-9).run(Operation::Union, [&a, &b, &c])?;
+    /// assert_eq!((snapped.solid().components(), snapped.solid().mesh().triangles.len()), (1, 12));
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
+    #[must_use]
+    pub fn snap(mut self, distance: f64) -> Self {
+        self.policy.snap = Some(distance);
         self
     }
 
@@ -145,7 +170,11 @@ impl BooleanOptions {
         if operands.is_empty() {
             return Err(Error::InvalidArgument("a boolean needs at least one operand".into()));
         }
-        self.on_threads(|runner| run(self.policy, &self.rules, operation, operands, runner))
+        let mut outcomes = self.on_threads(|runner| {
+            let run = |operands: &[&Solid]| run(self.policy, &self.rules, operation, operands, runner);
+            snapped(self.policy, operands, runner, |operands| Ok(vec![run(operands)?]))
+        })?;
+        Ok(outcomes.swap_remove(0))
     }
 
     /// Evaluates an expression of operands, all of them at once: nothing is rounded in between.
@@ -194,7 +223,9 @@ impl BooleanOptions {
         let operands: Vec<&Solid> = operands.into_iter().collect();
         self.control.check()?;
         let wanted = Wanted { expressions, rules: &self.rules, policy: self.policy };
-        self.on_threads(|runner| expressions::run(&wanted, &operands, runner))
+        self.on_threads(|runner| {
+            snapped(self.policy, &operands, runner, |operands| expressions::run(&wanted, operands, runner))
+        })
     }
 
     /// What an operand stands for by its [`rule`](Self::rule), as a surface that crosses itself no deeper than rounding.
