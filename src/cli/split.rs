@@ -92,12 +92,7 @@ fn parts(arguments: &Split, operands: &[Operand], options: &BooleanOptions) -> R
             let name =
                 input.solid.mesh().groups.list.get(group as usize).map_or("", |group| group.name.as_str());
             let operands = vec![group as usize; mesh.triangles.len()];
-            Part {
-                suffix: format!("-{}", file_name(name, group)),
-                solid: closed(&mesh),
-                mesh,
-                operands,
-            }
+            Part { suffix: format!("-{}", file_name(name, group)), solid: closed(&mesh), mesh, operands }
         };
         return Ok(groups.into_iter().map(part).collect());
     }
