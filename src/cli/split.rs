@@ -5,6 +5,7 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::Value;
 use trisect::io::Format;
+use trisect::mesh::Gate;
 use trisect::{BooleanOptions, Expression, Mesh, Outcome, Solid};
 
 use super::argument_groups::{Colours, Results};
@@ -91,7 +92,7 @@ fn parts(arguments: &Split, operands: &[Operand], options: &BooleanOptions) -> R
             let name =
                 input.solid.mesh().groups.list.get(group as usize).map_or("", |group| group.name.as_str());
             let operands = vec![group as usize; mesh.triangles.len()];
-            Part { suffix: format!("-{}", file_name(name, group)), mesh, solid: None, operands }
+            Part { suffix: format!("-{}", file_name(name, group)), solid: closed(&mesh), mesh, operands }
         };
         return Ok(groups.into_iter().map(part).collect());
     }
@@ -114,6 +115,11 @@ fn parts(arguments: &Split, operands: &[Operand], options: &BooleanOptions) -> R
         }
     });
     Ok(parts.collect())
+}
+
+/// A group that is closed by itself, as a solid.
+fn closed(mesh: &Mesh) -> Option<Solid> {
+    Gate::new().as_is(true).solid(mesh.clone()).ok()
 }
 
 /// The bodies of an input, which is resolved where it crosses itself.

@@ -416,7 +416,7 @@ mod tests {
                 }
             }
         }
-        assert!(on > 300 && crossed > 1_000, "{on} {crossed}");
+        assert!(on > 100 && crossed > 1_000, "{on} {crossed}");
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! Cuts: planes, sections, parts, sheets, repair.
 
+#![cfg(feature = "formats")]
+
 #[path = "../common/mod.rs"]
 mod common;
 mod models;
