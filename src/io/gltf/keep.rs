@@ -35,6 +35,12 @@ pub struct KeptScene {
 }
 
 impl KeptScene {
+    /// The scene of a file's bytes; files that it names are not found.
+    #[cfg(test)]
+    pub(super) fn of_bytes(bytes: Vec<u8>, format: Format, node: &str) -> Self {
+        Self { bytes: bytes.into(), format, folder: PathBuf::from("no such folder"), node: node.to_owned() }
+    }
+
     /// The scene of a file, and the node in it: by its name, or "PARENT/NAME".
     ///
     /// # Errors

@@ -162,4 +162,6 @@ impl<'a> Reader<'a> {
 #[cfg(test)]
 mod attribute_tests;
 #[cfg(test)]
+mod keep_tests;
+#[cfg(test)]
 mod tests;
