@@ -17,8 +17,10 @@ mod keep;
 mod manifold;
 mod materials;
 mod morph;
+mod place;
 mod primitive;
 mod scene;
+mod triangles;
 mod write;
 
 pub use keep::KeptScene;

@@ -61,7 +61,9 @@ impl<'a> MaterialMaker<'a> {
             textures.push(Arc::new(Texture { text: map.file.to_string(), images: vec![image] }));
         }
         let text = said.text.clone();
-        if !text.is_empty() {
+        // What a colour says by itself need not be kept.
+        let is_colour = |line: &str| matches!(line.split_whitespace().next(), Some("Kd" | "d" | "Tr") | None);
+        if !text.lines().all(is_colour) {
             material.text = Some(Arc::new(MaterialText { language: MaterialLanguage::Mtl, text, textures }));
         }
         Ok(material)
