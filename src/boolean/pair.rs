@@ -10,8 +10,9 @@ use crate::boolean::candidates::overlap::{Overlap, Place};
 use crate::boolean::classify::body::Body;
 use crate::boolean::classify::multiplicity::{self, Part};
 use crate::boolean::classify::winding::Windings;
-use crate::boolean::complex::classes::Faces;
+use crate::boolean::complex::classes;
 use crate::boolean::complex::operation::Operation;
+use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::predicates::Perturbed;
 use crate::boolean::complex::{Complex, Motion, Operand};
 use crate::boolean::cut::{cut, plane_sums};
@@ -80,10 +81,16 @@ pub(super) fn combine(
     let mut overlap = Overlap::new(&operands, &bounds, runner)?;
     let near = std::mem::take(&mut overlap.near);
     // 2. Perturbation: the operands as one complex in general position.
-    let classes = classes(&operands, &near, settings);
-    let groups = classes.as_ref().map_or(settings.groups, |[a, b]| [a, b]);
+    let wanted = settings.attributed.filter(|_| settings.remove_vertices);
+    let sequences = wanted.map(|Attributed { origins, .. }| origins.map(Sequence::new));
+    let origin = |operand: usize, face: u32| match &sequences {
+        Some(sequences) => sequences[operand].at(face),
+        None => Origin { operand: operand as u32, triangle: face, reversed: false },
+    };
+    let classes = wanted.map(|Attributed { givens, .. }| classes::Attributed { givens, origin: &origin });
     let motion = motion(operation, settings.fuse);
-    let complex = Complex::new(operands, groups, motion, largest_coordinate(&bounds), near);
+    let complex = Complex::new(operands, settings.groups, motion, largest_coordinate(&bounds), near)
+        .with_attributes(classes);
     let candidates = Candidates::new(&complex, &overlap, runner)?;
     // 3. Crossings: the intersection curve. Faces that touch and cannot be kept apart form sheets.
     let crossings = Crossings::find(&complex, &candidates, runner)?;
@@ -103,22 +110,6 @@ pub(super) fn combine(
         result = result.append(build(&mut arrangement, &windings, parts, contacts, settings, runner)?)?;
     }
     Ok(Combined { arrays: result, contacts })
-}
-
-/// Which faces may be merged, where attributes have to be kept: of the two operands' faces, none with each other.
-fn classes(
-    operands: &[Operand<'_>; 2],
-    near: &[Vec<u32>; 2],
-    settings: Settings<'_>,
-) -> Option<[Vec<u32>; 2]> {
-    let Attributed { givens, origins } = settings.attributed.filter(|_| settings.remove_vertices)?;
-    let first = [0, operands[0].triangles.len() as u32];
-    Some([0, 1].map(|i| {
-        let origins = Sequence::new(origins[i]);
-        let Operand { positions, triangles } = operands[i];
-        let origin = |face: u32| origins.at(face);
-        Faces { positions, triangles, groups: settings.groups[i], origin, givens }.classes(&near[i], first[i])
-    }))
 }
 
 /// The sum of some parts of the result.

@@ -6,11 +6,45 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::Operand;
 use super::origin::Origin;
 use super::planes::{lie_in_one_plane, look_same_way};
 use crate::exact::orient3d_filter;
 use crate::mesh::continues;
 use crate::{Mesh, Solid};
+
+/// What tells which faces of two operands have attributes in common.
+#[derive(Clone, Copy)]
+pub(crate) struct Attributed<'a> {
+    /// The meshes with the attributes.
+    pub(crate) givens: &'a [&'a Solid],
+    /// Given an operand and one of its triangles: where it comes from.
+    pub(crate) origin: &'a (dyn Fn(usize, u32) -> Origin + Sync + 'a),
+}
+
+impl std::fmt::Debug for Attributed<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Attributed").finish_non_exhaustive()
+    }
+}
+
+impl Attributed<'_> {
+    /// The classes of the faces of both, of which none has one with the other.
+    pub(crate) fn classes(
+        &self,
+        operands: &[Operand<'_>; 2],
+        groups: [&[u32]; 2],
+        in_question: &[Vec<u32>; 2],
+    ) -> [Vec<u32>; 2] {
+        let first = [0, operands[0].triangles.len() as u32];
+        [0, 1].map(|i| {
+            let Operand { positions, triangles } = operands[i];
+            let origin = |face: u32| (self.origin)(i, face);
+            let faces = Faces { positions, triangles, groups: groups[i], origin, givens: self.givens };
+            faces.classes(&in_question[i], first[i])
+        })
+    }
+}
 
 /// The faces of an operand, and what they were before it became one.
 pub(crate) struct Faces<'a, F> {

@@ -29,6 +29,7 @@ use std::sync::OnceLock;
 
 use rustc_hash::FxHashSet;
 
+use classes::Attributed;
 use directions::Directions;
 use ids::{FaceId, VertexId};
 use origin::Origin;
@@ -62,8 +63,12 @@ pub(crate) enum Motion {
 #[derive(Debug)]
 pub(crate) struct Complex<'a> {
     pub(crate) operands: [Operand<'a>; 2],
-    /// By operand, the result's group of each triangle, or its class (see `classes`); empty if there are none.
+    /// By operand, the result's group of each triangle; empty if there are no groups.
     groups: [&'a [u32]; 2],
+    /// What tells classes of faces, where attributes have to be kept.
+    attributed: Option<Attributed<'a>>,
+    /// By operand, the class of each triangle: made when first asked for, which only faces of one plane do.
+    classes: OnceLock<[Vec<u32>; 2]>,
     motion: Motion,
     /// The largest coordinate.
     largest: f64,
@@ -84,7 +89,14 @@ impl<'a> Complex<'a> {
         largest: f64,
         near: [Vec<u32>; 2],
     ) -> Self {
-        Self { operands, groups, motion, largest, near, directions: OnceLock::new() }
+        let (attributed, classes, directions) = (None, OnceLock::new(), OnceLock::new());
+        Self { operands, groups, attributed, classes, motion, largest, near, directions }
+    }
+
+    /// The same, with what tells classes of faces.
+    pub(crate) fn with_attributes(mut self, attributed: Option<Attributed<'a>>) -> Self {
+        self.attributed = attributed;
+        self
     }
 
     /// One operand to be tested against itself, shrunk: parts that touch separate.

@@ -21,7 +21,9 @@ impl Complex<'_> {
         if x.operand == y.operand && x.triangle == y.triangle {
             return x.reversed == y.reversed;
         }
-        self.are_coplanar(x, y) && look_same_way(&self.source(x), &self.source(y))
+        self.are_coplanar(x, y)
+            && look_same_way(&self.source(x), &self.source(y))
+            && self.class(x) == self.class(y)
     }
 
     /// Whether two sources lie in the same plane, exactly; false for triangles without area.
@@ -40,9 +42,21 @@ impl Complex<'_> {
             && self.are_mergeable(self.origin(f, false), self.origin(g, false))
     }
 
-    /// The group of the face a triangle comes from, or its class.
-    pub(crate) fn group(&self, origin: Origin) -> u32 {
+    fn group(&self, origin: Origin) -> u32 {
         self.groups[origin.operand as usize].get(origin.triangle as usize).copied().unwrap_or(0)
+    }
+
+    /// The class of the face a triangle comes from, where attributes have to be kept, else 0.
+    fn class(&self, origin: Origin) -> u32 {
+        let Some(attributed) = &self.attributed else { return 0 };
+        let classes =
+            self.classes.get_or_init(|| attributed.classes(&self.operands, self.groups, &self.near));
+        classes[origin.operand as usize].get(origin.triangle as usize).copied().unwrap_or(0)
+    }
+
+    /// Whether two faces of one plane belong to one group and one class.
+    pub(crate) fn belong_together(&self, x: Origin, y: Origin) -> bool {
+        self.group(x) == self.group(y) && self.class(x) == self.class(y)
     }
 }
 

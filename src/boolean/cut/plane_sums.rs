@@ -121,8 +121,8 @@ fn faces_of_sheet<'a>(
             sources.push(SheetSource { origin: complex.origin(id, part.reversed), corners });
         }
     }
-    let group = |&face: &FaceId| complex.group(complex.origin(face, false));
-    let keep_borders = sheet.iter().any(|face| group(face) != group(&sheet[0]));
+    let origin = |face: FaceId| complex.origin(face, false);
+    let keep_borders = sheet.iter().any(|&face| !complex.belong_together(origin(face), origin(sheet[0])));
     Some(SheetFaces {
         edges,
         lines,

@@ -29,6 +29,20 @@ struct Rows {
     /// The first row, and how many.
     first: u32,
     count: u32,
+    /// Whether rows that are not in use go. Where most of a source is left, looking for them costs more than they do.
+    compact: bool,
+}
+
+/// Unused rows of a source go if less than this part of its triangles is left.
+const MOSTLY_LEFT: f64 = 0.5;
+
+/// How many triangles of each source there are, as they are and turned round.
+fn counts(plan: &Plan<'_>) -> [Vec<usize>; 2] {
+    let mut counts = [false, true].map(|_| vec![0; plan.of.sources.len()]);
+    for run in plan.of.runs {
+        counts[usize::from(run.reversed)][run.source as usize] += run.count as usize;
+    }
+    counts
 }
 
 /// An attribute of the new mesh while it is being made.
@@ -49,12 +63,19 @@ impl<'a> Table<'a> {
         let has_sides = matches!(kind, AttributeKind::Normal | AttributeKind::Tangent);
         let mut rows = Vec::new();
         let mut next = 0;
+        let mut counts = counts(plan);
+        if !has_sides {
+            let [straight, reversed] = &mut counts;
+            straight.iter_mut().zip(reversed).for_each(|(count, more)| *count += std::mem::take(more));
+        }
         for reversed in [false, true] {
             for (source, mesh) in plan.of.sources.iter().enumerate() {
                 let place = mesh.attributes.iter().position(|attribute| attribute.name == name);
-                let Some(attribute) = place.filter(|_| has_sides || !reversed) else { continue };
+                let triangles = counts[usize::from(reversed)][source];
+                let Some(attribute) = place.filter(|_| triangles > 0) else { continue };
                 let count = mesh.attributes[attribute].len() as u32;
-                rows.push(Rows { source, attribute, reversed, first: next, count });
+                let compact = (triangles as f64) < MOSTLY_LEFT * mesh.triangles.len() as f64;
+                rows.push(Rows { source, attribute, reversed, first: next, count, compact });
                 next += count;
             }
         }
@@ -68,7 +89,8 @@ impl<'a> Table<'a> {
         let mut of_corner = self.of_corners(&new);
         // 3. What is not in use goes.
         let count = self.made_from as usize + self.made.len() / self.components.max(1);
-        let numbers = numbers_in_use(&mut of_corner, count);
+        let compacts = self.rows.iter().any(|rows| rows.compact);
+        let numbers = if compacts { self.numbers_in_use(&mut of_corner, count) } else { None };
         let values = self.values(numbers.as_deref());
         Attribute { name: self.name.into(), components: self.components, values, of_corner }
     }
@@ -155,14 +177,17 @@ impl<'a> Table<'a> {
             let corners = 3 * run.triangle as usize..3 * (run.triangle + run.count) as usize;
             match given {
                 None => of_corner.resize(of_corner.len() + corners.len(), Attribute::NONE),
+                Some((attribute, 0)) if !run.reversed => {
+                    of_corner.extend_from_slice(&attribute.of_corner[corners]);
+                }
                 Some((attribute, first)) if !run.reversed => {
                     of_corner.extend(attribute.of_corner[corners].iter().map(|&index| shifted(index, first)));
                 }
                 Some((attribute, first)) => {
-                    let turned = attribute.of_corner[corners].chunks_exact(3).flat_map(|corners| {
-                        [corners[0], corners[2], corners[1]].map(|index| shifted(index, first))
-                    });
-                    of_corner.extend(turned);
+                    for corners in attribute.of_corner[corners].chunks_exact(3) {
+                        let turned = [corners[0], corners[2], corners[1]];
+                        of_corner.extend_from_slice(&turned.map(|index| shifted(index, first)));
+                    }
                 }
             }
         }
@@ -194,26 +219,29 @@ impl<'a> Table<'a> {
         made.filter(|&(row, _)| is_used(row)).for_each(|(_, value)| values.extend_from_slice(value));
         values
     }
-}
 
-/// Gives the rows in use numbers without gaps, in their order; `None` if all `count` are in use.
-fn numbers_in_use(of_corner: &mut [u32], count: usize) -> Option<Vec<u32>> {
-    let mut numbers = vec![Attribute::NONE; count];
-    for &index in of_corner.iter() {
-        if let Some(number) = numbers.get_mut(index as usize) {
-            *number = 0;
+    /// Gives rows numbers without gaps, in their order, but those that are not in use and may go; `None` if all `count` stay.
+    fn numbers_in_use(&self, of_corner: &mut [u32], count: usize) -> Option<Vec<u32>> {
+        let mut numbers = vec![0; count];
+        for rows in self.rows.iter().filter(|rows| rows.compact) {
+            numbers[rows.first as usize..][..rows.count as usize].fill(Attribute::NONE);
         }
+        for &index in of_corner.iter() {
+            if let Some(number) = numbers.get_mut(index as usize) {
+                *number = 0;
+            }
+        }
+        let mut next = 0;
+        for number in numbers.iter_mut().filter(|number| **number == 0) {
+            *number = next;
+            next += 1;
+        }
+        if next as usize == count {
+            return None;
+        }
+        for index in of_corner.iter_mut().filter(|index| **index != Attribute::NONE) {
+            *index = numbers.get(*index as usize).copied().unwrap_or(Attribute::NONE);
+        }
+        Some(numbers)
     }
-    let mut next = 0;
-    for number in numbers.iter_mut().filter(|number| **number == 0) {
-        *number = next;
-        next += 1;
-    }
-    if next as usize == count {
-        return None;
-    }
-    for index in of_corner.iter_mut().filter(|index| **index != Attribute::NONE) {
-        *index = numbers.get(*index as usize).copied().unwrap_or(Attribute::NONE);
-    }
-    Some(numbers)
 }
