@@ -6,7 +6,7 @@ use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_mai
 use rand::seq::SliceRandom;
 use rand::{SeedableRng, rngs::ChaCha8Rng};
 use trisect::mesh::diagnose;
-use trisect::{Mesh, Solid, primitives};
+use trisect::{Control, Mesh, Solid, primitives};
 
 /// The same mesh with its vertices and triangles in random order: the worst for caches.
 fn shuffled(mesh: &Mesh) -> Mesh {
@@ -60,5 +60,25 @@ fn measures(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, gate, measures);
+/// What the program asks of every operand, of a solid that nobody has asked anything yet.
+fn facts(criterion: &mut Criterion) {
+    let sphere = primitives::icosphere(1.0, 7).expect("the level is small");
+    let solid = Solid::try_from(sphere).expect("closed");
+    let mut group = criterion.benchmark_group("facts");
+    group.sample_size(10).throughput(Throughput::Elements(solid.mesh().triangles.len() as u64));
+    let control = Control::new();
+    group.bench_function("self-crossings", |bencher| {
+        bencher.iter_batched(
+            || solid.clone(),
+            |solid| solid.self_crossings(&control).map(|found| found.count),
+            BatchSize::LargeInput,
+        );
+    });
+    group.bench_function("shells", |bencher| {
+        bencher.iter_batched(|| solid.clone(), |solid| solid.components(), BatchSize::LargeInput);
+    });
+    group.finish();
+}
+
+criterion_group!(benches, gate, measures, facts);
 criterion_main!(benches);

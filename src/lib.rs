@@ -97,7 +97,7 @@ pub mod subdivision;
 pub use boolean::{
     BooleanOptions, Certificate, Contact, CornerOrigin, CutFaces, Embed, Embedding, Expression,
     ExpressionError, Grid, NearContact, NearContacts, OperandState, Operation, Origin, Outcome, Rule,
-    UnknownName, boolean,
+    Snapping, UnknownName, boolean,
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};

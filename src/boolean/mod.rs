@@ -15,6 +15,7 @@
 //! - `cut`: kept pieces of cut faces become triangles (step 7);
 //! - `tidy`: what touches separates; triangles without area and needless vertices go (step 8);
 //! - `result`: untouched triangles keep their order, and vertices their bits (step 9);
+//! - `snapping`: before all that, and only where it is asked for, what is nearer than a distance is made the same;
 //! - `pair`: all steps for two operands; `many`: which pairs are combined in which order;
 //! - `general`: the same for any number of surfaces that may cross and touch themselves, and any `expression` of them, in one
 //!   arrangement.
@@ -36,6 +37,7 @@ mod pair;
 mod result;
 mod rounding;
 mod rule;
+mod snapping;
 mod tidy;
 
 pub use complex::operation::{Contact, Operation, UnknownName};
@@ -51,6 +53,7 @@ pub use result::cut_faces::CutFaces;
 pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;
 pub use rule::Rule;
+pub use snapping::Snapping;
 
 use crate::{Error, Solid};
 

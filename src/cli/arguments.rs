@@ -12,6 +12,7 @@ use super::cage_arguments::{FreeFormVerb, Subdivide};
 use super::field_arguments::CurveVerb;
 use super::field_arguments::{Eval, SampleGrid, Slice};
 use super::surface::{self, CutUv};
+use super::values;
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -161,6 +162,9 @@ pub(crate) struct Combine {
     /// Lay texture coordinates on cut faces: planar or box, with how many to a unit of length (box:0.5)
     #[arg(long, value_name = "KIND[:DENSITY]", value_parser = surface::cut_uv, help_heading = "Results")]
     pub(crate) cut_uv: Option<CutUv>,
+    /// Before the operation, make the same what is no further apart than this: vertices, edges and faces of all inputs
+    #[arg(long, value_name = "UNITS", value_parser = values::length, help_heading = "Results", allow_hyphen_values = true)]
+    pub(crate) snap: Option<f64>,
     /// Read and check the inputs, say what would be done, write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,

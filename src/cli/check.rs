@@ -1,6 +1,8 @@
 //! `check`: can files be operands, and if not, why and where.
 
 use clap::ArgMatches;
+#[cfg(feature = "parallel")]
+use rayon::prelude::*;
 use serde_json::{Value, json};
 use trisect::mesh::Diagnosis;
 use trisect::{Error, MeshError};
@@ -33,18 +35,19 @@ pub(crate) fn run(arguments: &Check, matches: &ArgMatches, session: &mut Session
     let requests = selection::each(requests, &session.limits, &session.control())?;
     let (mut unreadable, mut unusable) = (false, false);
     let mut objects = Vec::new();
-    for request in &requests {
-        session.console.stage(&format!("checking {}", request.name()), 0.0);
-        let verdict = check(request, arguments, session)?;
-        unreadable |= verdict.exit == Exit::Unreadable;
-        unusable |= verdict.exit != Exit::Fine;
-        if !session.common.json && (!session.common.quiet || verdict.exit != Exit::Fine) {
-            session.console.pause(|| stream::print(&verdict.text))?;
+    for batch in requests.chunks(at_once()) {
+        for (request, verdict) in batch.iter().zip(verdicts(batch, arguments, session)) {
+            let verdict = verdict?;
+            unreadable |= verdict.exit == Exit::Unreadable;
+            unusable |= verdict.exit != Exit::Fine;
+            if !session.common.json && (!session.common.quiet || verdict.exit != Exit::Fine) {
+                session.console.pause(|| stream::print(&verdict.text))?;
+            }
+            for warning in verdict.warnings {
+                session.warn(format!("{}: {warning}", request.name()));
+            }
+            objects.push(verdict.object);
         }
-        for warning in verdict.warnings {
-            session.warn(format!("{}: {warning}", request.name()));
-        }
-        objects.push(verdict.object);
     }
     session.note("files", objects);
     session.note("usable", !unusable);
@@ -53,6 +56,26 @@ pub(crate) fn run(arguments: &Check, matches: &ArgMatches, session: &mut Session
         (false, true) => Exit::Unusable,
         (false, false) => Exit::Fine,
     })
+}
+
+/// How many inputs are checked side by side: no more are in memory at once.
+fn at_once() -> usize {
+    #[cfg(feature = "parallel")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "parallel"))]
+    1
+}
+
+/// Checks some inputs side by side; the answers come in their order.
+fn verdicts(requests: &[Request], arguments: &Check, session: &Session<'_>) -> Vec<Result<Verdict, Fault>> {
+    let one = |request: &Request| {
+        session.console.stage(&format!("checking {}", request.name()), 0.0);
+        check(request, arguments, session)
+    };
+    #[cfg(feature = "parallel")]
+    return requests.par_iter().map(one).collect();
+    #[cfg(not(feature = "parallel"))]
+    requests.iter().map(one).collect()
 }
 
 /// Checks one input. Only limits end the run; every other fault is the answer.

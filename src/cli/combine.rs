@@ -161,6 +161,10 @@ fn options(
         .embed(embedding(arguments, targets))
         .cut_faces(surface::cut_faces(arguments, operands.iter().map(|operand| &operand.solid)))
         .assume_clean(arguments.inputs.using.assume_clean);
+    let options = match arguments.snap {
+        Some(distance) => options.snap(distance),
+        None => options,
+    };
     match session.common.threads {
         Some(threads) => options.threads(usize::from(threads)),
         None => options,
@@ -169,7 +173,7 @@ fn options(
 
 /// Warns of inverted bodies of operands that the rule leaves out.
 fn warn_of_inward(outcome: &Outcome, operands: &[Operand], session: &mut Session<'_>) {
-    for (index, (state, operand)) in outcome.certificate().operands.iter().zip(operands).enumerate() {
+    for (index, (state, operand)) in outcome.operand_states().iter().zip(operands).enumerate() {
         if let OperandState::Resolved { inward_volume, .. } = *state
             && inward_volume > 0.0
             && operand.request.rule == Rule::Positive
@@ -187,21 +191,35 @@ fn warn_of_inward(outcome: &Outcome, operands: &[Operand], session: &mut Session
 
 /// Says what a result is, and returns it for the report.
 fn tell(name: &str, outcome: &Outcome, targets: &[Target], seconds: f64, session: &mut Session<'_>) -> Value {
-    let certificate = outcome.certificate();
-    let measures = Measures::of_solid(outcome.solid());
+    // What nobody is told is not computed.
+    let measures = if session.is_reported() {
+        Measures::of_solid(outcome.solid())
+    } else {
+        Measures::for_line(outcome.solid())
+    };
     let mut result = measures.to_json();
-    result.insert("certificate".into(), report::certificate(certificate));
-    if let Some(warning) = report::nearly_flush(certificate) {
+    if session.is_reported() {
+        result.insert("certificate".into(), report::certificate(outcome.certificate()));
+    }
+    if let Some(warning) = report::nearly_flush(outcome.nearly_flush()) {
         session.warn(warning);
     }
-    if let Some(left) = certificate.embedding.map(|done| done.left).filter(|&left| left > 0) {
+    if let Some(snapping) = outcome.snapping() {
+        session.console.say(&format!("{name}: {}", report::snapping(snapping)));
+        if snapping.unfinished {
+            session.warn(format!("{name}: something nearer than the distance to snap by was left as it was"));
+        }
+    }
+    if let Some(left) = outcome.embedding().map(|done| done.left).filter(|&left| left > 0) {
         let triangles = words::counted(left, "triangle");
         session.warn(format!("{name}: {triangles} still cross others or lie on them after rounding"));
     }
     let names: Vec<String> = targets.iter().map(Target::name).collect();
     let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
     session.console.say(&format!("{name}: {} ({}){arrow}", measures.line(), words::time(seconds)));
-    session.console.detail(&certificate.to_string());
+    if session.common.verbose > 0 {
+        session.console.detail(&outcome.certificate().to_string());
+    }
     result.into()
 }
 
@@ -264,7 +282,11 @@ fn refuse_pointless(arguments: &Combine, targets: &[Target], session: &Session<'
 fn describe(operands: &[Operand], writing: &Writing, session: &mut Session<'_>) {
     let mut described = Vec::new();
     for (index, operand) in operands.iter().enumerate() {
-        let measures = Measures::of_solid(&operand.solid);
+        let measures = if session.is_reported() {
+            Measures::of_solid(&operand.solid)
+        } else {
+            Measures::for_line(&operand.solid)
+        };
         session.console.say(&report::operand_line(operand, &measures));
         if let (Some(cleaning), _) = report::cleaning(&operand.solid) {
             session.console.detail(&format!("  {cleaning}"));

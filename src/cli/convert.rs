@@ -82,15 +82,18 @@ fn read(request: &Request, writing: &Writing, session: &mut Session<'_>) -> Resu
     for warning in &warnings {
         session.warn(format!("{}: {warning}", request.name()));
     }
-    let mut object = described(&mesh, request);
-    object.extend(report::into_map(json!({
-        "format": format.extension(),
-        "turned": turned,
-        "welded": welded,
-        "warnings": warnings,
-        "seconds": seconds,
-    })));
-    session.note("input", object);
+    // What nobody is told is not computed.
+    if session.is_reported() {
+        let mut object = described(&mesh, request);
+        object.extend(report::into_map(json!({
+            "format": format.extension(),
+            "turned": turned,
+            "welded": welded,
+            "warnings": warnings,
+            "seconds": seconds,
+        })));
+        session.note("input", object);
+    }
 
     let line = format!(
         "{} ({format}): {}{}{} ({})",

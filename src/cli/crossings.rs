@@ -13,7 +13,7 @@ use super::words::counted;
 /// Rounding moves no part of a surface by more than its step, and the check of operands tolerates crossings of a few steps
 /// where all coordinates are numbers of single precision. Two kinds of files may be said to cross themselves all the same: those with an offset,
 /// whose coordinates are none, and those where needles turned over, which may pass through others for more than a step. These
-/// are read back and checked as operands are, in about a microsecond a triangle.
+/// are read back and checked as operands are, in some tenths of a microsecond a triangle.
 pub(crate) fn in_file(path: &Path, rounding: &Rounding, limits: &Limits) -> Result<Option<String>, Error> {
     let turned = rounding.turned_triangles + rounding.flat_triangles;
     if !rounding.closed || !(rounding.has_offset || turned > 0) {

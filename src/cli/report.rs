@@ -1,7 +1,7 @@
 //! What a run says about meshes: one summary line for people, one JSON object for programs.
 
 use serde_json::{Map, Value, json};
-use trisect::{Certificate, Mesh, OperandState, Solid};
+use trisect::{Certificate, Mesh, NearContacts, OperandState, Snapping, Solid};
 
 use super::json::json_of;
 use super::mended;
@@ -14,7 +14,8 @@ use trisect::mesh::Bounds;
 pub(crate) struct Measures {
     vertices: usize,
     triangles: usize,
-    area: f64,
+    /// Absent where nobody is told.
+    area: Option<f64>,
     bounds: Option<Bounds>,
     closed: Option<Closed>,
 }
@@ -34,7 +35,7 @@ impl Measures {
         Self {
             vertices: mesh.positions.len(),
             triangles: mesh.triangles.len(),
-            area: mesh.area(),
+            area: Some(mesh.area()),
             bounds: mesh.bounds(),
             closed: None,
         }
@@ -42,13 +43,25 @@ impl Measures {
 
     /// Measures of a solid.
     pub(crate) fn of_solid(solid: &Solid) -> Self {
+        Self { area: Some(solid.area()), ..Self::for_line(solid) }
+    }
+
+    /// What [`line`](Self::line) tells of a solid, and what costs nothing beside it.
+    pub(crate) fn for_line(solid: &Solid) -> Self {
         let closed = Closed {
             manifold: solid.is_manifold(),
             shells: solid.components(),
             genus: solid.genus(),
             volume: solid.volume(),
         };
-        Self { closed: Some(closed), ..Self::of_mesh(solid.mesh()) }
+        let mesh = solid.mesh();
+        Self {
+            vertices: mesh.positions.len(),
+            triangles: mesh.triangles.len(),
+            area: None,
+            bounds: solid.bounds(),
+            closed: Some(closed),
+        }
     }
 
     /// The part of a summary line after the name.
@@ -78,7 +91,7 @@ impl Measures {
             rows.push(("bounds", format!("{} to {}", three(bounds.low), three(bounds.high))));
             rows.push(("size", three(bounds.size())));
         }
-        rows.push(("area", short(self.area)));
+        rows.extend(self.area.map(|area| ("area", short(area))));
         if let Some(Closed { manifold, shells, genus, volume }) = self.closed {
             rows.push(("volume", short(volume)));
             rows.push(("closed", if manifold { "yes, manifold" } else { "yes, not manifold" }.into()));
@@ -200,9 +213,28 @@ pub(crate) fn certificate(certificate: &Certificate) -> Value {
     object.into()
 }
 
+/// What snapping moved and split, in words.
+pub(crate) fn snapping(snapping: &Snapping) -> String {
+    format!(
+        "snapped by up to {}: {} moved, {} and {} split, nothing further than {}",
+        short(snapping.distance),
+        if snapping.moved == 1 { "1 vertex".into() } else { format!("{} vertices", snapping.moved) },
+        counted(snapping.split_edges as usize, "edge"),
+        counted(snapping.split_faces as usize, "face"),
+        short(snapping.farthest),
+    )
+}
+
+/// The power of ten that is well above some distances, and above what rounding does to coordinates there.
+fn distance_to_snap(near: &NearContacts) -> f64 {
+    let farthest = near.places.iter().map(|found| found.distance).fold(0.0, f64::max);
+    let largest = near.places.iter().flat_map(|found| found.place).fold(0.0f64, |most, x| most.max(x.abs()));
+    let least = (10.0 * farthest).max(64.0 * f64::EPSILON * largest);
+    10f64.powi(least.log10().ceil() as i32)
+}
+
 /// What there is to say about films and gaps too thin for single precision.
-pub(crate) fn nearly_flush(certificate: &Certificate) -> Option<String> {
-    let near = &certificate.nearly_flush;
+pub(crate) fn nearly_flush(near: &NearContacts) -> Option<String> {
     let places: Vec<String> = near
         .places
         .iter()
@@ -215,10 +247,12 @@ pub(crate) fn nearly_flush(certificate: &Certificate) -> Option<String> {
     (near.count > 0).then(|| {
         format!(
             "{} nearly flush with a face of another operand, apart by {}{}: films or gaps that thin are \
-             lost in single precision (STL, GLB); give coordinates that are flush, or let the tool reach further",
+             lost in single precision (STL, GLB); give coordinates that are flush, let the tool reach further, or make \
+             them flush with --snap {:e}",
             if near.count == 1 { "1 corner of the result is".into() } else { format!("{} corners of the result are", near.count) },
             places.join(", "),
             if near.count > places.len() { ", ..." } else { "" },
+            distance_to_snap(near),
         )
     })
 }

@@ -47,6 +47,11 @@ impl<'a> Session<'a> {
         self.console.watch(self.limits.control())
     }
 
+    /// Whether anybody reads the report.
+    pub(crate) fn is_reported(&self) -> bool {
+        self.common.json || self.common.report.is_some()
+    }
+
     /// Adds a key to the report.
     pub(crate) fn note(&mut self, key: &str, value: impl Into<Value>) {
         self.report.insert(key.into(), value.into());

@@ -3,7 +3,7 @@
 /// Relative error bound of `orient3d` in `f64`: (7 + 56 u) u with u = 2^-53 (Shewchuk 1997, section 4.3).
 pub(super) const ORIENT3D_BOUND: f64 = (7.0 + 56.0 * HALF_ULP) * HALF_ULP;
 /// Relative error bound of `orient2d` in `f64`: (3 + 16 u) u (Shewchuk 1997, section 4.3).
-const ORIENT2D_BOUND: f64 = (3.0 + 16.0 * HALF_ULP) * HALF_ULP;
+pub(super) const ORIENT2D_BOUND: f64 = (3.0 + 16.0 * HALF_ULP) * HALF_ULP;
 const HALF_ULP: f64 = f64::EPSILON / 2.0;
 /// What a determinant must exceed for its filter to count, in its own unit (a volume or an area): 2^-700. A product of two
 /// differences that underflows loses at most 2^-1075, and at most one further factor multiplies it. That factor is at

@@ -24,9 +24,11 @@ pub(crate) mod perturbed;
 pub(crate) mod planes;
 pub(crate) mod position;
 mod projection;
+mod seen;
 pub(crate) mod unrounded;
 
 pub(crate) use filter::{FILTER_RANGE, PlaneFilter, orient3d_filter};
 pub use orient::{Sign, collinear, orient2d, orient3d};
 pub use perturbed::orient3d_perturbed;
 pub(crate) use projection::Projection;
+pub(crate) use seen::Seen;

@@ -8,7 +8,7 @@ use crate::{Control, Mesh, Solid};
 /// the exact winding number along a ray for other closed ones (pseudonormals of walls inside overlapping bodies point
 /// outwards of one body and into the other), the fast winding number for open ones (a ray may leave through a hole).
 ///
-/// Takes about a microsecond a triangle, for the search for crossings. Where a limit of `control` stops that search, the
+/// Takes some tenths of a microsecond a triangle, for the search for crossings. Where a limit of `control` stops that search, the
 /// ray decides: slower, and right for every closed surface.
 pub(super) fn automatic(mesh: &Mesh, normals: &PseudoNormals, control: &Control) -> SignRule {
     if let Some(rule) = without_search(normals) {

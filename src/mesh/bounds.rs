@@ -23,7 +23,7 @@ impl Bounds {
     /// Contains nothing: the neutral element of [`include`](Self::include) and [`union`](Self::union).
     pub(crate) const NOTHING: Self = Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
 
-    /// The smallest box round both.
+    /// The smallest box round both, one of which may contain nothing.
     pub(crate) fn united(self, other: Self) -> Self {
         Self {
             low: std::array::from_fn(|k| self.low[k].min(other.low[k])),

@@ -7,8 +7,8 @@ use super::mend::{self, Leave};
 use super::orient::Facing;
 use super::patches::Patches;
 use super::places::{Fault, Spots};
-use super::topology::Topology;
-use super::{Bounds, Mesh, Solid, chain, duplicates, measure, weld};
+use super::topology::{self, Shape, Topology};
+use super::{Bounds, Links, Mesh, Solid, chain, duplicates, measure, weld};
 use crate::exact::collinear;
 
 /// Examines any mesh, however broken, and says what is wrong with it. O(n log n).
@@ -113,8 +113,22 @@ fn triangles_one_by_one(spots: &Spots<'_>, diagnosis: &mut Diagnosis) {
 
 /// Faults of the surface as a whole.
 fn surface(spots: &Spots<'_>, cleaned: &Cleaned, diagnosis: &mut Diagnosis) {
-    let Mesh { positions, .. } = spots.mesh;
-    let table = EdgeTable::new(&cleaned.triangles, positions.len());
+    let (triangles, vertices) = (&cleaned.triangles, spots.mesh.positions.len());
+    let source = |triangle: u32| cleaned.source[triangle as usize];
+    // Nearly always every edge has two triangles, and every vertex one fan of them.
+    if cleaned.edge_manifold
+        && let Ok(links) = Links::of(triangles, vertices)
+        && links.pinched == 0
+    {
+        let shape = Shape::new(triangles, vertices, &links);
+        diagnosis.shells = shape.components;
+        diagnosis.euler_characteristic = shape.euler_characteristic;
+        diagnosis.genus = shape.genus;
+        let patches = Patches::of_components(topology::labels(triangles, vertices, &links));
+        diagnosis.inside_out_shells = inside_out_shells(spots, &patches, triangles, source);
+        return;
+    }
+    let table = EdgeTable::new(triangles, vertices);
     for edge in table.iter() {
         let place = || spots.edge(edge, &cleaned.source);
         match edge.valence() {
@@ -129,30 +143,30 @@ fn surface(spots: &Spots<'_>, cleaned: &Cleaned, diagnosis: &mut Diagnosis) {
             }
         }
     }
-    let topology = Topology::of_edges(&table, &cleaned.triangles, positions.len());
+    let topology = Topology::of_edges(&table, triangles, vertices);
     diagnosis.shells = topology.components;
     diagnosis.euler_characteristic = topology.euler_characteristic;
     diagnosis.genus = topology.genus;
     for (vertex, _) in topology.pinched {
         diagnosis.pinched_vertices.add(|| spots.vertices(&[vertex]));
     }
-    diagnosis.inside_out_shells = inside_out_shells(spots, &table, &cleaned.triangles, &cleaned.source);
+    let patches = Patches::new(&table, triangles.len());
+    diagnosis.inside_out_shells = inside_out_shells(spots, &patches, triangles, source);
 }
 
 /// Closed shells that certainly face the wrong way, each placed at its first triangle.
 fn inside_out_shells(
     spots: &Spots<'_>,
-    table: &EdgeTable<'_>,
+    patches: &Patches,
     triangles: &[[u32; 3]],
-    source: &[u32],
+    source: impl Fn(u32) -> u32,
 ) -> Fault {
-    let patches = Patches::new(table, triangles.len());
-    let facing = Facing::new(&spots.mesh.positions, triangles, &patches);
+    let facing = Facing::new(&spots.mesh.positions, triangles, patches);
     let mut fault = Fault::default();
     for patch in 0..patches.closed.len() {
         if facing.wrong[patch] && !facing.unclear[patch] && !patches.is_mixed(patch) {
             let first = patches.triangles.get(patch)[0];
-            fault.add(|| spots.triangles(&[source[first as usize]]));
+            fault.add(|| spots.triangles(&[source(first)]));
         }
     }
     fault
@@ -177,14 +191,20 @@ impl Solid {
     /// ```
     #[must_use]
     pub fn inside_out_shells(&self) -> Fault {
-        let mesh = self.mesh();
-        if self.components() < 2 {
-            // The total volume is not negative.
-            return Fault::default();
-        }
-        let table = EdgeTable::new(&mesh.triangles, mesh.positions.len());
-        let own: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
-        inside_out_shells(&Spots { mesh }, &table, &mesh.triangles, &own)
+        self.inside_out().clone()
+    }
+
+    /// The same, computed once.
+    pub(super) fn inside_out(&self) -> &Fault {
+        let compute = || {
+            let mesh = self.mesh();
+            if self.components() < 2 {
+                // The total volume is not negative.
+                return Fault::default();
+            }
+            inside_out_shells(&Spots { mesh }, &self.patches(), &mesh.triangles, |triangle| triangle)
+        };
+        self.inside_out.get_or_init(compute)
     }
 }
 

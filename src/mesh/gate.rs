@@ -7,7 +7,7 @@ use super::clean::{self, Cleaned, Weld};
 use super::diagnose::diagnose_tried;
 use super::measure::signed_volume;
 use super::mend::{self, Leave, Mending};
-use super::{Bounds, Cleaning, Mesh, MeshError, Solid, UnionFind, attributes, chain, orient, shells};
+use super::{Bounds, Cleaning, Links, Mesh, MeshError, Solid, attributes, chain, orient, shells};
 use crate::parallel::join;
 
 /// What a mesh may be taken through to become a [`Solid`]. As made by [`new`](Self::new) it does what
@@ -215,28 +215,34 @@ impl TryFrom<Mesh> for Solid {
 /// The solid of a mesh that is closed by its indices. Otherwise the mesh, and what is wrong with it if it is closed so but
 /// no solid.
 fn closed_by_indices(mesh: Mesh) -> Result<Solid, Box<(Mesh, Option<MeshError>)>> {
-    let (examined, (bounds, volume)) = join(
+    let (links, (bounds, volume)) = join(
         mesh.triangles.len(),
-        || chain::examine(&mesh.triangles, mesh.positions.len()),
+        || Links::of(&mesh.triangles, mesh.positions.len()),
         || {
             let bounds = finite_bounds(&mesh.positions);
             let volume = bounds.map(|bounds| signed_volume(&mesh.positions, &mesh.triangles, &bounds));
             (bounds, volume)
         },
     );
-    let as_it_is = examined.is_ok_and(|examined| {
-        examined.closed && !examined.unreferenced && !examined.two_triangle_vertex && examined.edge_manifold
-    });
-    if !(as_it_is && bounds.is_some()) {
+    let as_it_is =
+        |links: &Links| links.edge_manifold && links.unreferenced == 0 && !links.two_triangle_vertex;
+    let Some(links) = links.ok().filter(|links| as_it_is(links) && bounds.is_some()) else {
         return Err(Box::new((mesh, None)));
-    }
+    };
     match volume {
         Some(volume) if volume.sign == Ordering::Less => {
             Err(Box::new((mesh, Some(MeshError::InsideOut { volume: volume.value }))))
         }
         volume => {
             let volume = volume.map_or_else(OnceLock::new, |volume| OnceLock::from(volume.value));
-            Ok(Solid { mesh, bounds, edge_manifold: OnceLock::from(true), volume, ..Solid::default() })
+            Ok(Solid {
+                mesh,
+                bounds,
+                edge_manifold: OnceLock::from(true),
+                links: OnceLock::from(links),
+                volume,
+                ..Solid::default()
+            })
         }
     }
 }
@@ -303,17 +309,11 @@ fn assemble(
 
 /// The solid without further copies of its shells.
 fn single_shells(solid: Solid) -> Solid {
-    let mesh = &solid.mesh;
-    let mut pieces = UnionFind::new(mesh.positions.len());
-    mesh.triangles.iter().for_each(|&[a, b, c]| {
-        pieces.join(a, b);
-        pieces.join(b, c);
-    });
-    let first = mesh.triangles.first().map_or(0, |triangle| pieces.root(triangle[0]));
-    if mesh.triangles.iter().all(|triangle| pieces.root(triangle[0]) == first) && solid.is_edge_manifold() {
+    if solid.is_edge_manifold() && solid.components() < 2 {
         return solid;
     }
-    let copies = shells::copies(mesh);
+    let mesh = &solid.mesh;
+    let copies = shells::copies(mesh, &solid.patches());
     if copies.is_empty() {
         return solid;
     }

@@ -10,13 +10,16 @@ mod buckets;
 mod buffers;
 mod chain;
 mod clean;
+mod components;
 mod diagnose;
 mod diagnosis;
 mod duplicates;
 mod edges;
 mod error;
+mod fans;
 mod gate;
 mod groups;
+mod links;
 mod manifold;
 mod material;
 mod measure;
@@ -44,6 +47,8 @@ mod weld;
 pub(crate) use attributes::moved as move_attributes;
 pub use attributes::{Attribute, AttributeKind};
 pub(crate) use attributes::{CornerPlace, Descent, Run, carry, continues, reach};
+use links::Links;
+
 pub(crate) use bit_set::BitSet;
 pub use bounds::Bounds;
 pub(crate) use buckets::Buckets;
@@ -51,6 +56,7 @@ pub use buffers::VertexBuffers;
 pub use diagnose::diagnose;
 pub use diagnosis::Diagnosis;
 pub use error::{AttributeFault, GroupFault, MeshError, TransformFault};
+pub(crate) use fans::plain_fans;
 pub use gate::{Gate, Refusal, Welding};
 pub use groups::{FaceGroup, FaceGroups};
 pub(crate) use manifold::{HalfEdges, Surface, make_manifold};
@@ -59,6 +65,7 @@ pub use material::{
 };
 pub(crate) use measure::enclosed_volume;
 pub use mend::Mending;
+pub(crate) use mend::fan_around_splits;
 pub use places::{Fault, Place};
 #[cfg(feature = "formats")]
 pub(crate) use polygons::Faces;
@@ -71,7 +78,9 @@ pub(crate) use weighted_union_find::WeightedUnionFind;
 
 /// Whether every directed edge is met by its opposite equally often; false for indices out of range.
 pub(crate) fn is_closed(mesh: &Mesh) -> bool {
-    chain::examine(&mesh.triangles, mesh.positions.len()).is_ok_and(|chain| chain.closed)
+    let (triangles, vertices) = (&mesh.triangles, mesh.positions.len());
+    Links::of(triangles, vertices).is_ok_and(|links| links.edge_manifold)
+        || chain::examine(triangles, vertices).is_ok_and(|chain| chain.closed)
 }
 
 /// What is wrong with the attributes of a mesh, if anything.

@@ -72,6 +72,14 @@ impl Patches {
         Self { of_triangle, triangles, reverse, closed }
     }
 
+    /// Of triangles whose every edge has exactly two in opposite directions, given the component each triangle is in. O(n).
+    pub(super) fn of_components((count, of_triangle): (usize, Vec<u32>)) -> Self {
+        let labelled = of_triangle.iter().zip(0..).map(|(&patch, triangle)| (patch, triangle));
+        let triangles = Buckets::new(count, labelled);
+        let reverse = vec![false; of_triangle.len()];
+        Self { of_triangle, triangles, reverse, closed: vec![true; count] }
+    }
+
     /// Whether any triangle of `patch` is to be reversed.
     pub(super) fn is_mixed(&self, patch: usize) -> bool {
         self.triangles.get(patch).iter().any(|&triangle| self.reverse[triangle as usize])

@@ -3,15 +3,12 @@
 use rustc_hash::FxHashMap;
 
 use super::Mesh;
-use super::edges::EdgeTable;
 use super::patches::Patches;
 use super::weld::position_bits;
 
 /// The triangles of each closed patch that has the same triangles as an earlier one, oriented alike.
-pub(super) fn copies(mesh: &Mesh) -> Vec<Vec<u32>> {
-    let table = EdgeTable::new(&mesh.triangles, mesh.positions.len());
-    let patches = Patches::new(&table, mesh.triangles.len());
-    let originals = originals(&mesh.positions, &mesh.triangles, &patches, true);
+pub(super) fn copies(mesh: &Mesh, patches: &Patches) -> Vec<Vec<u32>> {
+    let originals = originals(&mesh.positions, &mesh.triangles, patches, true);
     let copies = (0..).zip(originals).filter(|(patch, original)| patch != original);
     copies.map(|(patch, _)| patches.triangles.get(patch as usize).to_vec()).collect()
 }
@@ -77,6 +74,7 @@ fn hash(key: &Key) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::edges::EdgeTable;
     use super::*;
     use crate::primitives;
 

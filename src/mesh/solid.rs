@@ -2,9 +2,11 @@
 
 use std::sync::OnceLock;
 
-use super::measure::signed_volume;
-use super::topology::Topology;
-use super::{Attribute, Bounds, FaceGroups, Mending, Mesh, Polygons, SelfCrossings, chain};
+use super::edges::EdgeTable;
+use super::measure::{area, signed_volume};
+use super::patches::Patches;
+use super::topology::{self, Shape};
+use super::{Attribute, Bounds, FaceGroups, Fault, Links, Mending, Mesh, Polygons, SelfCrossings};
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
 /// often as it occurs. Every vertex belongs to a triangle, no triangle has a repeated corner, and the enclosed
@@ -53,11 +55,15 @@ pub struct Solid {
     /// What was mended; `None` for nothing.
     pub(super) mending: Option<Box<Mending>>,
     pub(super) volume: OnceLock<f64>,
+    pub(super) area: OnceLock<f64>,
+    /// How the triangles around each vertex hang together.
+    pub(super) links: OnceLock<Links>,
+    pub(super) shape: OnceLock<Shape>,
     pub(super) self_crossings: OnceLock<SelfCrossings>,
     /// Whether an operation made it so that it crosses itself no deeper than rounding.
     pub(super) made_clean: bool,
-    /// Whether all shells face the right way.
-    pub(super) well_nested: OnceLock<bool>,
+    /// Shells that face the wrong way.
+    pub(super) inside_out: OnceLock<Fault>,
 }
 
 /// What was left out or joined to make a [`Solid`] of a mesh.
@@ -87,7 +93,7 @@ impl Solid {
     pub(crate) fn from_closed_unchecked(mesh: Mesh) -> Self {
         #[cfg(debug_assertions)]
         {
-            let chain = chain::examine(&mesh.triangles, mesh.positions.len());
+            let chain = super::chain::examine(&mesh.triangles, mesh.positions.len());
             debug_assert!(
                 chain.is_ok_and(|chain| chain.closed && !chain.unreferenced),
                 "not closed: {chain:?}"
@@ -131,10 +137,12 @@ impl Solid {
         *self.volume.get_or_init(compute)
     }
 
-    /// The area of the surface, in squared units of the coordinates.
+    /// The area of the surface, in squared units of the coordinates; computed once.
     #[must_use]
     pub fn area(&self) -> f64 {
-        self.mesh.area()
+        let (mesh, bounds) = (&self.mesh, self.bounds.as_ref());
+        let compute = || bounds.map_or(0.0, |bounds| area(&mesh.positions, &mesh.triangles, bounds));
+        *self.area.get_or_init(compute)
     }
 
     /// What is known of the surface's crossings with itself, if it has been asked for (see
@@ -156,7 +164,7 @@ impl Solid {
 
     /// Whether no shell faces the wrong way: outwards inside another, or inwards by itself. Computed once; O(n).
     pub(crate) fn is_well_nested(&self) -> bool {
-        self.made_clean || *self.well_nested.get_or_init(|| self.inside_out_shells().is_none())
+        self.made_clean || self.inside_out().is_none()
     }
 
     /// Notes that an operation made this so that it crosses itself no deeper than rounding.
@@ -208,44 +216,68 @@ impl Solid {
     /// Whether every edge has exactly two triangles. Known without any work for a solid made of a mesh.
     #[must_use]
     pub fn is_edge_manifold(&self) -> bool {
-        let examine = || chain::examine(&self.mesh.triangles, self.mesh.positions.len());
-        *self.edge_manifold.get_or_init(|| examine().is_ok_and(|chain| chain.edge_manifold))
+        *self.edge_manifold.get_or_init(|| self.links().edge_manifold)
     }
 
     /// Whether the surface is a 2-manifold: every edge has two triangles, and the triangles around every vertex form
-    /// one fan. O(n).
+    /// one fan. Known without any work for a solid made of a mesh; otherwise O(n), once.
     #[must_use]
     pub fn is_manifold(&self) -> bool {
-        self.is_edge_manifold() && self.topology().pinched.is_empty()
+        self.is_edge_manifold() && self.links().pinched == 0
     }
 
-    /// How many pieces the surface falls into, connected by edges. (A body with a cavity has two.) O(n).
+    /// Whether every directed edge is met by its opposite equally often, found out anew for what no gate has looked at.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.is_edge_manifold() || super::is_closed(&self.mesh)
+    }
+
+    /// How many pieces the surface falls into, connected by edges. (A body with a cavity has two.) O(n), once.
     #[must_use]
     pub fn components(&self) -> usize {
-        self.topology().components
+        self.shape().components
     }
 
     /// For every triangle the component it is in, counted from 0 in the order of their first triangles. O(n).
     #[must_use]
     pub fn component_labels(&self) -> Vec<u32> {
-        self.topology().component_of
+        self.labelled_components().1
     }
 
-    /// Vertices minus edges plus triangles. O(n).
+    /// Vertices minus edges plus triangles. O(n), once.
     #[must_use]
     pub fn euler_characteristic(&self) -> i64 {
-        self.topology().euler_characteristic
+        self.shape().euler_characteristic
     }
 
     /// The genus, summed over the components; a vertex where several fans meet counts once for each. `None` if
-    /// some edge has more than two triangles. O(n).
+    /// some edge has more than two triangles. O(n), once.
     #[must_use]
     pub fn genus(&self) -> Option<usize> {
-        self.topology().genus
+        self.shape().genus
     }
 
-    fn topology(&self) -> Topology {
-        Topology::new(&self.mesh.triangles, self.mesh.positions.len())
+    fn links(&self) -> &Links {
+        // A solid's corners are all in range.
+        let compute = || Links::of(&self.mesh.triangles, self.mesh.positions.len()).unwrap_or(Links::UNKNOWN);
+        self.links.get_or_init(compute)
+    }
+
+    fn shape(&self) -> &Shape {
+        let compute = || Shape::new(&self.mesh.triangles, self.mesh.positions.len(), self.links());
+        self.shape.get_or_init(compute)
+    }
+
+    fn labelled_components(&self) -> (usize, Vec<u32>) {
+        topology::labels(&self.mesh.triangles, self.mesh.positions.len(), self.links())
+    }
+
+    /// Its patches: the components, where no edge has more than two triangles.
+    pub(super) fn patches(&self) -> Patches {
+        if self.is_edge_manifold() {
+            return Patches::of_components(self.labelled_components());
+        }
+        let (triangles, vertices) = (&self.mesh.triangles, self.mesh.positions.len());
+        Patches::new(&EdgeTable::new(triangles, vertices), triangles.len())
     }
 }
 

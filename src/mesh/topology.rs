@@ -1,6 +1,8 @@
 //! How triangles hang together: components, fans, Euler characteristic, genus.
 
+use super::components::Components;
 use super::edges::EdgeTable;
+use super::links::Links;
 use super::union_find::UnionFind;
 
 /// The shape of a set of triangles, regardless of where its vertices are.
@@ -18,6 +20,44 @@ pub(super) struct Topology {
     /// The genus summed over the pieces, pinched vertices taken apart; `None` unless every edge has exactly two
     /// triangles in opposite directions.
     pub(super) genus: Option<usize>,
+}
+
+/// What of it is asked for most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Shape {
+    /// As [`Topology::components`].
+    pub(super) components: usize,
+    /// As [`Topology::euler_characteristic`].
+    pub(super) euler_characteristic: i64,
+    /// As [`Topology::genus`].
+    pub(super) genus: Option<usize>,
+}
+
+impl Shape {
+    /// Of triangles with the links `links`, whose corners are in range and differ. O(n).
+    ///
+    /// Where every vertex has one fan, what hangs together by vertices does so by edges; and the edges are counted by the triangles.
+    pub(super) fn new(triangles: &[[u32; 3]], vertices: usize, links: &Links) -> Self {
+        if !links.edge_manifold || links.pinched > 0 {
+            let Topology { components, euler_characteristic, genus, .. } = Topology::new(triangles, vertices);
+            return Self { components, euler_characteristic, genus };
+        }
+        let components = Components::new(triangles, vertices).count() - links.unreferenced;
+        // Vertices - 3/2 triangles + triangles.
+        let euler_characteristic = links.fans as i64 - triangles.len() as i64 / 2;
+        // Every component is a closed orientable surface.
+        let genus = (components as i64 - euler_characteristic / 2).max(0) as usize;
+        Self { components, euler_characteristic, genus: Some(genus) }
+    }
+}
+
+/// For every triangle the component it is in, counted from 0 in the order of their first triangles; and how many there are.
+pub(super) fn labels(triangles: &[[u32; 3]], vertices: usize, links: &Links) -> (usize, Vec<u32>) {
+    if links.edge_manifold && links.pinched == 0 {
+        return Components::new(triangles, vertices).labels(triangles);
+    }
+    let topology = Topology::new(triangles, vertices);
+    (topology.components, topology.component_of)
 }
 
 impl Topology {

@@ -1,7 +1,7 @@
 //! Constrained Delaunay triangulation: of large polygons, of regions, and between edges by winding number. Everything that
 //! is set up for `spade` is set up here.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use spade::handles::{DirectedEdgeHandle, FixedVertexHandle};
 use spade::{CdtEdge, ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
@@ -101,6 +101,71 @@ pub(crate) fn fill_region(
     let is_inside = is_inside.ok_or(Conflict::Crossing(0))?;
     let inside = triangulation.inner_faces().filter(|face| is_inside[face.fix().index()]);
     Ok(inside.map(|face| face.vertices().map(|vertex| vertex.data().index)).collect())
+}
+
+/// One triangulation of the plane between edges, from which the triangles of any polygon of such edges can be taken.
+pub(crate) struct Overlay {
+    triangulation: Delaunay,
+    handles: Vec<FixedVertexHandle>,
+    /// Whether the points are where they were.
+    are_exact: bool,
+}
+
+impl Overlay {
+    /// A triangulation with all points as vertices and with all edges that cross no earlier one. `None` where points are in one
+    /// place. O(n log n).
+    pub(crate) fn new(points: &[[f64; 2]], edges: &[[u32; 2]]) -> Option<Self> {
+        // The vertices first, as above.
+        let (vertices, are_exact) = vertices_in_range(points, 0..points.len() as u32);
+        let mut triangulation = Delaunay::bulk_load(vertices).ok()?;
+        if triangulation.num_vertices() != points.len() {
+            return None;
+        }
+        let mut found: Vec<Option<FixedVertexHandle>> = vec![None; points.len()];
+        triangulation.vertices().for_each(|vertex| found[vertex.data().index as usize] = Some(vertex.fix()));
+        let handles: Vec<FixedVertexHandle> = found.into_iter().collect::<Option<_>>()?;
+        for [u, v] in edges.iter().filter(|[u, v]| u != v) {
+            triangulation.try_add_constraint(handles[*u as usize], handles[*v as usize]);
+        }
+        Some(Self { triangulation, handles, are_exact })
+    }
+
+    /// The triangles inside a simple polygon, each counter-clockwise as the polygon is. `None` unless all its sides are edges.
+    pub(crate) fn inside(&self, points: &[[f64; 2]], outline: &[u32]) -> Option<Vec<[u32; 3]>> {
+        let n = outline.len();
+        let mut sides = FxHashSet::default();
+        let mut stack = Vec::new();
+        for k in 0..n {
+            let [from, to] = [outline[k], outline[(k + 1) % n]].map(|v| self.handles[v as usize]);
+            let edge = self.triangulation.get_edge_from_neighbors(from, to)?;
+            if !edge.is_constraint_edge() {
+                return None;
+            }
+            sides.insert(edge.as_undirected().fix());
+            stack.push(edge.face().as_inner()?.fix());
+        }
+        let mut seen = FxHashSet::default();
+        let mut found = Vec::new();
+        while let Some(face) = stack.pop() {
+            if !seen.insert(face) {
+                continue;
+            }
+            let face = self.triangulation.face(face);
+            found.push(face.vertices().map(|vertex| vertex.data().index));
+            for edge in face.adjacent_edges() {
+                if !sides.contains(&edge.as_undirected().fix()) {
+                    stack.push(edge.rev().face().as_inner()?.fix());
+                }
+            }
+        }
+        // The order of a set is by chance; theirs is not.
+        found.sort_unstable();
+        let is_sound = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|corner| points[corner as usize]);
+            self.are_exact || orient2d(a, b, c) == Sign::Positive
+        };
+        found.iter().all(is_sound).then_some(found)
+    }
 }
 
 /// The first of `count` vertices that a triangulation does not have.

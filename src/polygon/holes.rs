@@ -24,7 +24,8 @@ impl Polygon {
 /// Groups loops into polygons: counter-clockwise loops are outlines, each clockwise one goes to the smallest outline around
 /// it. A clockwise loop in no outline stands alone.
 pub(super) fn group(points: &[[f64; 2]], loops: Vec<Vec<u32>>) -> Vec<Polygon> {
-    let areas: Vec<f64> = loops.iter().map(|ring| area(points, ring)).collect();
+    let factor = factor_for_areas(points, &loops);
+    let areas: Vec<f64> = loops.iter().map(|ring| area(points, factor, ring)).collect();
     let mut polygons: Vec<Polygon> = Vec::new();
     let mut outline_area: Vec<f64> = Vec::new();
     let mut holes = Vec::new();
@@ -49,14 +50,32 @@ pub(super) fn group(points: &[[f64; 2]], loops: Vec<Vec<u32>>) -> Vec<Polygon> {
     polygons
 }
 
-fn area(points: &[[f64; 2]], ring: &[u32]) -> f64 {
-    let origin = points[ring[0] as usize];
+/// The doubled area of a loop, all coordinates multiplied by a power of two.
+fn area(points: &[[f64; 2]], factor: f64, ring: &[u32]) -> f64 {
+    let point = |i: usize| points[ring[i] as usize].map(|x| x * factor);
+    let origin = point(0);
     let mut sum = 0.0;
     for i in 1..ring.len() {
-        let (p, q) = (points[ring[i - 1] as usize], points[ring[i] as usize]);
+        let (p, q) = (point(i - 1), point(i));
         sum += (p[0] - origin[0]) * (q[1] - origin[1]) - (p[1] - origin[1]) * (q[0] - origin[0]);
     }
     sum
+}
+
+/// A power of two that keeps products of coordinates of the loops finite, and those of loops smaller by up to 1e300 from
+/// vanishing; 1 for ordinary coordinates.
+fn factor_for_areas(points: &[[f64; 2]], loops: &[Vec<u32>]) -> f64 {
+    /// Exponents of two of the largest coordinate from which products of two stay finite, and to which it is brought.
+    const MOST: i32 = 500;
+    const LEAST: i32 = -100;
+    let coordinates = loops.iter().flatten().flat_map(|&v| points[v as usize]);
+    let largest = coordinates.fold(0.0f64, |largest, x| largest.max(x.abs()));
+    let exponent = (largest.to_bits() >> 52) as i32 - 1023;
+    if (LEAST..=MOST).contains(&exponent) || largest == 0.0 {
+        return 1.0;
+    }
+    // Within the powers of two that are numbers of full precision.
+    2f64.powi((MOST - exponent).clamp(-1022, 1023))
 }
 
 /// Whether a loop lies inside an outline: the first of its vertices that is not on the outline does.

@@ -15,7 +15,7 @@ mod winding;
 
 use delaunay::Bridges;
 
-pub(crate) use delaunay::{Conflict, fill_region};
+pub(crate) use delaunay::{Conflict, Overlay, fill_region};
 pub(crate) use face::{FaceTriangulator, Tiling};
 pub(crate) use winding::{Edge, Found, by_winding, cross_properly};
 
@@ -240,6 +240,27 @@ mod tests {
         let points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [-1.0, 0.0], [-1.0, -1.0]];
         let edges = [[0, 1], [1, 2], [2, 0], [0, 3], [3, 4], [4, 0]];
         check(&points, &edges, 1.0, 2);
+    }
+
+    #[test]
+    fn holes_in_something_huge_are_holes() {
+        for size in [1e140, 1e160, 1e300] {
+            let points = [
+                [-size, -size],
+                [size, -size],
+                [0.0, size],
+                [-1.0, -1.0],
+                [1.0, -1.0],
+                [1.0, 1.0],
+                [-1.0, 1.0],
+            ];
+            let mut edges = ring(0, 3);
+            edges.extend(ring(3, 4).iter().map(|e| [e[1], e[0]]));
+            let mut triangles = Vec::new();
+            let shape = Triangulator::default().triangulate(&points, &edges, &mut triangles);
+            assert_complete(&edges, &triangles);
+            assert_eq!((shape, triangles.len()), (Shape::Sound, 7), "{size:e}");
+        }
     }
 
     #[test]

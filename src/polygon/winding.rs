@@ -45,7 +45,8 @@ pub(crate) fn by_winding(
         .flat_map(|v| points[v as usize])
         .fold(0.0f64, |most, x| most.max(x.abs()));
     let mut slivers = Vec::new();
-    let edges = split_at_vertices(points, &summed(edges), largest, &mut slivers);
+    let edges = join_places(points, &summed(edges), &mut slivers);
+    let edges = split_at_vertices(points, &summed(&edges), largest, &mut slivers);
     let mut edges = summed(&edges);
     for _ in 0..ROUNDS {
         let counted: Vec<CountedEdge> = edges.iter().map(|edge| (edge.ends, edge.count)).collect();
@@ -88,6 +89,44 @@ fn summed(edges: &[Edge]) -> Vec<Edge> {
         })
         .filter(|edge| edge.count != 0 || edge.kept)
         .collect()
+}
+
+/// Replaces vertices by the first in their place, and adds the triangles without area that, together with the new edges, bound the
+/// same. (Points that differ in space may be in one place in the plane.)
+fn join_places(points: &[[f64; 2]], edges: &[Edge], slivers: &mut Vec<CountedTriangle>) -> Vec<Edge> {
+    // 1. The first vertex in each place.
+    let place = |v: u32| points[v as usize].map(|x| (x + 0.0).to_bits());
+    let mut vertices: Vec<u32> = edges.iter().flat_map(|edge| edge.ends).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let mut first: FxHashMap<[u64; 2], u32> = FxHashMap::default();
+    let first_of: Vec<u32> = vertices.iter().map(|&v| *first.entry(place(v)).or_insert(v)).collect();
+    if first_of == vertices {
+        return edges.to_vec();
+    }
+    let first_of = |v: u32| vertices.binary_search(&v).map_or(v, |i| first_of[i]);
+    // 2. The edge from u to v is that from u to w, in the place of v, that from w to v, and the boundary of the triangle between
+    //    them. What leads from w to v cancels in the end, since v is entered as often as it is left.
+    let mut joined = Vec::with_capacity(edges.len());
+    for edge in edges {
+        let mut ends = edge.ends;
+        let mut count = edge.count;
+        for _ in 0..2 {
+            let [u, v] = ends;
+            let w = first_of(v);
+            if w != v {
+                joined.push(Edge { ends: [w, v], count, ..*edge });
+                if u != w {
+                    slivers.push(([u, v, w], count));
+                }
+            }
+            (ends, count) = ([w, u], -count);
+        }
+        if ends[0] != ends[1] {
+            joined.push(Edge { ends, count, ..*edge });
+        }
+    }
+    joined
 }
 
 /// Replaces an edge by a chain through vertices on it, and adds the triangles without area that, together with the chain,
@@ -216,4 +255,45 @@ fn split_at_crossings(
 pub(crate) fn cross_properly([p, q, a, b]: [[f64; 2]; 4]) -> bool {
     let opposite = |x: Sign, y: Sign| x != Sign::Zero && y != Sign::Zero && x != y;
     opposite(orient2d(p, q, a), orient2d(p, q, b)) && opposite(orient2d(a, b, p), orient2d(a, b, q))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    /// The sum of edges, by ascending ends.
+    fn chain(edges: impl Iterator<Item = ([u32; 2], i32)>) -> BTreeMap<[u32; 2], i32> {
+        let mut sum = BTreeMap::new();
+        for ([u, v], count) in edges {
+            *sum.entry([u.min(v), u.max(v)]).or_insert(0) += if u < v { count } else { -count };
+        }
+        sum.retain(|_, count| *count != 0);
+        sum
+    }
+
+    #[test]
+    fn points_in_one_place_are_one_vertex() {
+        // A square, and another over it that is turned the other way and has its own copy of one corner or of all; with a point of
+        // two copies on a side.
+        let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+        for copied in 1..=4 {
+            let mut points = [square, square].concat();
+            points.extend([[2.0, 0.0], [2.0, 0.0]]);
+            let other = |k: u32| if k < copied { k + 4 } else { k };
+            let edge = |ends: [u32; 2], count| Edge { ends, count, line: 0, kept: false };
+            let mut edges: Vec<Edge> = (1..4).map(|k| edge([k, (k + 1) % 4], 1)).collect();
+            edges.extend([[0, 8], [8, 1]].map(|ends| edge(ends, 1)));
+            edges.extend((1..4).map(|k| edge([other(k), other((k + 1) % 4)], -1)));
+            edges.extend([[other(0), 9], [9, other(1)]].map(|ends| edge(ends, -1)));
+            let found = by_winding(&mut points, &edges, |_, _, _| None).expect("nothing crosses");
+            assert!(found.triangles.is_empty(), "{copied}: {found:?}");
+            let around = found
+                .slivers
+                .iter()
+                .flat_map(|&([a, b, c], count)| [([a, b], count), ([b, c], count), ([c, a], count)]);
+            assert_eq!(chain(around), chain(edges.iter().map(|edge| (edge.ends, edge.count))), "{copied}");
+        }
+    }
 }

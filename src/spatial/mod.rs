@@ -19,6 +19,7 @@ mod disc;
 mod fast_winding;
 mod films;
 mod frame;
+mod marks;
 mod morton;
 mod occupancy;
 mod pack;
@@ -35,7 +36,7 @@ pub use fast_winding::FastWinding;
 pub use triangle::{Feature, closest_on_segment, closest_on_triangle};
 pub use triangle_tree::TriangleTree;
 
-pub(crate) use box_pairs::{self_overlapping_pairs, visit_pairs};
+pub(crate) use box_pairs::{self_overlapping_pairs, self_overlapping_pairs_apart, visit_pairs};
 pub(crate) use box_tree::BoxTree;
 pub(crate) use build::binary_tree;
 pub(crate) use films::{Film, lost_films};

@@ -57,10 +57,13 @@ impl Pack {
     /// The pairs of lanes whose boxes meet: lanes i of this pack and j of the other as bit 4 i + j.
     #[inline(always)]
     pub(super) fn meeting_pack(&self, other: &Self) -> u32 {
+        // In registers throughout: a box put together in memory and read back as a whole would be waited for.
+        let [lows, highs] = [&other.low, &other.high].map(|corner| corner.map(Vec4::from_array));
         let of_lane = |i: usize| {
-            let [low, high] =
-                [&self.low, &self.high].map(|corner| [corner[0][i], corner[1][i], corner[2][i]]);
-            other.meeting(low, high) << (LANES * i)
+            let axis = |k: usize| {
+                lows[k].cmple(Vec4::splat(self.high[k][i])) & Vec4::splat(self.low[k][i]).cmple(highs[k])
+            };
+            (axis(0) & axis(1) & axis(2)).bitmask() << (LANES * i)
         };
         of_lane(0) | of_lane(1) | of_lane(2) | of_lane(3)
     }

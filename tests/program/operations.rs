@@ -307,6 +307,28 @@ fn a_dry_run_reads_and_checks_but_writes_nothing() {
 }
 
 #[test]
+fn what_is_a_hair_short_goes_through_when_snapped() {
+    let folder = Folder::new();
+    folder.write("plate.obj", &cube([0.0; 3], [4.0, 4.0, 1.0]));
+    folder.write("short.obj", &cube([1.0, 1.0, 1e-8], [3.0, 3.0, 1.0 - 1e-8]));
+    // Films are left, and the warning says what takes them away.
+    folder.run("difference plate.obj short.obj -o c.obj").exits(0).says("--snap 1e-7").says("2 shells");
+    let ran = folder.run("difference plate.obj short.obj -o c.obj --snap 1e-7 --json").exits(0);
+    let ran = ran.says("snapped by up to 1e-7: 8 vertices moved");
+    let report: Value = serde_json::from_str(&ran.out).unwrap();
+    let certificate = &report["result"]["certificate"];
+    assert_eq!((&certificate["genus"], &certificate["components"]), (&json!(1), &json!(1)));
+    assert_eq!(certificate["snapping"]["unfinished"], false);
+    assert_eq!(volume(&folder.read("c.obj")), 12.0);
+    for wrong in ["0", "-1", "nan", "short"] {
+        folder
+            .run(&format!("difference plate.obj short.obj -o c.obj --snap {wrong}"))
+            .exits(1)
+            .says("--snap");
+    }
+}
+
+#[test]
 fn operands_are_described_one_by_one() {
     let folder = workshop();
     let line = "union a.obj --translate 0,0,2 inside.obj --scale 2 --orient --dry-run --json -v";

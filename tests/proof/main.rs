@@ -20,4 +20,5 @@ mod recorded;
 mod regressions;
 mod same_bits;
 mod scales;
+mod snapping;
 mod trial;

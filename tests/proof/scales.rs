@@ -216,3 +216,28 @@ fn single_precision_and_far_away() {
     }
     assert_right(cases);
 }
+
+#[test]
+fn a_corner_of_something_huge_passes_through_a_hole() {
+    // All three faces at the corner cut a torus, and one of them all around its hole; the far corners are so far that the squares of
+    // heights beside them vanish, and those of areas overflow.
+    let torus = primitives::torus(0.6, 0.2, 12, 10).expect("a torus");
+    let mut cases = Vec::new();
+    for size in [1e12, 1e100, 1e160, 1e189, 1e280] {
+        let mut rng = ChaCha8Rng::seed_from_u64(7);
+        for k in 0..3 {
+            let matrix = rotation(&mut rng);
+            let corner = Mesh::new(
+                vec![
+                    [0.11, -0.4, 0.35],
+                    [-0.5 * size, 3.2 * size, -2.6 * size],
+                    [-0.2 * size, -1.0 * size, -2.9 * size],
+                    [-4.0 * size, 2.0 * size, -2.8 * size],
+                ],
+                vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+            );
+            cases.push((format!("{size:e} {k}"), corner, rotated(&torus, &matrix), false));
+        }
+    }
+    assert_right(cases);
+}

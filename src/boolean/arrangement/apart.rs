@@ -50,6 +50,31 @@ fn has_separating_side(triangle: &[[f64; 3]; 3], other: &[[f64; 3]; 3]) -> bool 
         })
 }
 
+/// Whether two triangles certainly have no point in common: as [`are_apart`], and where they touch the same line from its two sides,
+/// as faces in one plane do, at different places of it.
+pub(super) fn are_disjoint(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> bool {
+    has_side_that_keeps_off(a, b) || has_side_that_keeps_off(b, a)
+}
+
+/// Whether all of `other` lies beyond a side of a triangle, or on its line beyond its ends, seen along the axis that the triangle looks
+/// along most.
+fn has_side_that_keeps_off(triangle: &[[f64; 3]; 3], other: &[[f64; 3]; 3]) -> bool {
+    let seen = Projection::of(triangle);
+    let (t, o) = (triangle.map(|p| seen.project(&p)), other.map(|p| seen.project(&p)));
+    // One that is seen as a line reaches beyond the ends of its sides.
+    orient2d(t[0], t[1], t[2]) == Sign::Positive
+        && (0..3).any(|k| {
+            let (p, q) = (t[k], t[(k + 1) % 3]);
+            let sides = o.map(|x| orient2d(p, q, x));
+            let axis = usize::from(p[0] == q[0]);
+            let (low, high) = (p[axis].min(q[axis]), p[axis].max(q[axis]));
+            let on_line =
+                || o.iter().zip(sides).filter(|(_, side)| *side == Sign::Zero).map(|(x, _)| x[axis]);
+            sides.iter().all(|&side| side != Sign::Positive)
+                && (on_line().all(|x| x < low) || on_line().all(|x| x > high))
+        })
+}
+
 /// Whether two triangles with the corner `i` of `a` and `j` of `b` in common, and no other, have nothing else in common; false
 /// where no side at that corner separates them.
 fn meet_in_corner_alone(a: &[Corner; 3], i: usize, b: &[Corner; 3], j: usize) -> bool {
@@ -77,4 +102,32 @@ fn has_separating_side_at_corner(triangle: &[[f64; 3]; 3], other: &[[f64; 3]; 3]
 /// Whether two points of a line through v lie on different sides of v.
 fn are_opposite(v: [f64; 2], x: [f64; 2], y: [f64; 2]) -> bool {
     (0..2).any(|k| (x[k] > v[k] && y[k] < v[k]) || (x[k] < v[k] && y[k] > v[k]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_of_one_plane_on_two_sides_of_a_line_keep_off() {
+        let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let below = |x: f64, width: f64| [[x, 0.0, 0.0], [x + 0.5 * width, -1.0, 0.0], [x + width, 0.0, 0.0]];
+        // On the line of a side: beyond its end, from its end on, along it.
+        for (other, expected) in [
+            (below(1.5, 1.0), true),
+            (below(-2.0, 1.0), true),
+            (below(1.0, 1.0), false),
+            (below(-1.0, 1.0), false),
+            (below(0.25, 0.5), false),
+            (below(-1.0, 3.0), false),
+        ] {
+            assert_eq!(are_disjoint(&triangle, &other), expected, "{other:?}");
+            assert_eq!(are_disjoint(&other, &triangle), expected, "{other:?}");
+        }
+        // Over one another, and one that is seen as a line.
+        let over = triangle.map(|[x, y, _]| [x, y, 1.0]);
+        assert!(!are_disjoint(&triangle, &over));
+        let wall = [[1.5, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 0.0, 1.0]];
+        assert!(are_disjoint(&triangle, &wall));
+    }
 }

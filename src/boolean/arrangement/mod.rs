@@ -17,6 +17,7 @@ pub(super) mod cut_faces;
 pub(super) mod face_walk;
 pub(super) mod identify;
 pub(super) mod location;
+mod neighbours;
 pub(super) mod plane_faces;
 pub(super) mod points;
 mod self_crossings;

@@ -6,7 +6,11 @@
 //! whose winding number is neither 0 nor 1; else it is what rounding does to every computed mesh, and the multiplicities
 //! of the boolean carry it.
 
+use glam::Vec3A;
+use obvhs::aabb::Aabb;
+
 use super::apart::{are_plainly_apart, common_corners};
+use super::neighbours::Neighbours;
 use super::self_pairs::self_pairs;
 use crate::boolean::complex::ids::VertexId;
 use crate::boolean::complex::planes;
@@ -17,7 +21,7 @@ use crate::exact::at_hand::{largest_coordinate, size_at_hand};
 use crate::mesh::{Bounds, SelfCrossing, SelfCrossings};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame};
-use crate::{Control, Error, Solid};
+use crate::{Control, Error, Mesh, Solid};
 
 /// Units in the last place of the coordinates at hand that a rounding-level crossing may be deep. Each of two rounded
 /// surfaces is off by less than one in every direction.
@@ -33,7 +37,7 @@ const PLACES: usize = 5;
 impl Solid {
     /// Pairs of triangles of this solid that cross each other. Computed once and remembered.
     ///
-    /// Takes about a microsecond per triangle, O(n log n) for fans of any size too. Touching (in a vertex, along an edge, face
+    /// Takes some tenths of a microsecond a triangle, O(n log n) for fans of any size too. Touching (in a vertex, along an edge, face
     /// to face) is not crossing. The tolerance below which a crossing counts as rounding is told in the result: 8 units in the
     /// last place of the coordinates there (of the largest of all, where those are within a sixteenth of it); where all
     /// coordinates are single-precision numbers (STL, glTF), units of single precision.
@@ -53,20 +57,24 @@ impl Solid {
 fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     let mesh = solid.mesh();
     let Some(bounds) = solid.bounds() else { return Ok(SelfCrossings::default()) };
-    let largest = mesh.positions.iter().flatten().fold(0.0f64, |largest, x| largest.max(x.abs()));
+    let largest = bounds.largest();
+    // 1. Pairs that are near one another and not plainly apart: none, nearly always.
+    let frame = Frame::of(bounds.low, bounds.high);
+    let (tree, neighbours) = runner.both(|| tree_of(mesh, &frame), || Neighbours::new(mesh, largest));
+    let may_meet = |pair: [u32; 2]| neighbours.may_meet(pair);
+    let pairs = self_pairs(mesh, &tree, &frame, runner, &neighbours, may_meet)?;
+    let part = tolerance_of_one(&mesh.positions);
+    let mut result = SelfCrossings { tolerance: part * largest, ..SelfCrossings::default() };
+    if pairs.is_empty() {
+        return Ok(result);
+    }
+    // 2. Those that cross or touch.
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
     let complex = Complex::alone(operand, largest);
-    let surface = Surface::new(&complex, &bounds, largest);
-    let pairs = self_pairs(mesh, &surface.tree, &surface.frame, runner, |[s, t]| {
-        let (a, b) = (mesh.triangles[s as usize], mesh.triangles[t as usize]);
-        // Two triangles with a common edge meet in that edge alone, unless they are folded back on each other; on all three
-        // corners they are one triangle twice.
-        a.iter().filter(|v| b.contains(v)).count() != 2 || surface.lie_on_each_other([s, t])
-    })?;
+    let surface = Surface::new(&complex, tree, frame, &bounds, part);
     let found = runner.pieces(pairs.len(), 4096, |range| {
         pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
     })?;
-    let mut result = SelfCrossings { tolerance: surface.part * largest, ..SelfCrossings::default() };
     for found in found.into_iter().flatten() {
         let Found::Crossing(found) = found else {
             result.touching += 1;
@@ -119,13 +127,19 @@ struct Surface<'a> {
     largest: f64,
 }
 
+/// The boxes of all triangles.
+fn tree_of(mesh: &Mesh, frame: &Frame) -> BoxTree {
+    // Each vertex once, not with each of its six triangles.
+    let points: Vec<Vec3A> = mesh.positions.iter().map(|position| frame.point(position)).collect();
+    let box_of = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|v| points[v as usize]);
+        Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
+    };
+    BoxTree::of_boxes(&mesh.triangles.iter().map(box_of).collect::<Vec<_>>())
+}
+
 impl<'a> Surface<'a> {
-    fn new(complex: &'a Complex<'a>, bounds: &Bounds, largest: f64) -> Self {
-        let Operand { positions, triangles } = complex.operands[0];
-        let all: Vec<u32> = (0..triangles.len() as u32).collect();
-        let frame = Frame::of(bounds.low, bounds.high);
-        let tree =
-            BoxTree::new(&all, |t| frame.triangle(triangles[t as usize].map(|v| &positions[v as usize])));
+    fn new(complex: &'a Complex<'a>, tree: BoxTree, frame: Frame, bounds: &Bounds, part: f64) -> Self {
         Self {
             complex,
             predicates: Predicates::new(complex),
@@ -133,8 +147,8 @@ impl<'a> Surface<'a> {
             frame,
             low: bounds.low,
             high: bounds.high,
-            part: tolerance_of_one(positions),
-            largest,
+            part,
+            largest: bounds.largest(),
         }
     }
 
@@ -152,8 +166,7 @@ impl<'a> Surface<'a> {
 
     /// Whether two triangles lie in one plane and overlap.
     fn lie_on_each_other(&self, pair: [u32; 2]) -> bool {
-        let Operand { positions, triangles } = self.complex.operands[0];
-        let [a, b] = pair.map(|t| triangles[t as usize].map(|v| positions[v as usize]));
+        let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t).map(|corner| corner.position));
         planes::lie_on_each_other(&a, &b)
     }
 
@@ -327,10 +340,12 @@ fn meeting(p: &[f64; 3], q: &[f64; 3], plane: &[Corner; 3]) -> [f64; 3] {
 #[cfg(test)]
 pub(super) fn count_by_all_pairs(solid: &Solid) -> (usize, usize) {
     let mesh = solid.mesh();
-    let largest = mesh.positions.iter().flatten().fold(0.0f64, |largest, x| largest.max(x.abs()));
+    let bounds = solid.bounds().expect("not empty");
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
-    let complex = Complex::alone(operand, largest);
-    let surface = Surface::new(&complex, &solid.bounds().expect("not empty"), largest);
+    let complex = Complex::alone(operand, bounds.largest());
+    let frame = Frame::of(bounds.low, bounds.high);
+    let part = tolerance_of_one(&mesh.positions);
+    let surface = Surface::new(&complex, tree_of(mesh, &frame), frame, &bounds, part);
     let count = mesh.triangles.len() as u32;
     let pairs = (0..count).flat_map(|s| (s + 1..count).map(move |t| [s, t]));
     let common = |[s, t]: [u32; 2]| {

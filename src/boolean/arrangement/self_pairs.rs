@@ -11,12 +11,13 @@
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 
+use super::neighbours::Neighbours;
 use crate::boolean::candidates::capsule_tree::{self, CapsuleTree};
 use crate::boolean::candidates::has_needles;
 use crate::boolean::candidates::refined_boxes::Corners;
 use crate::mesh::Buckets;
 use crate::parallel::Runner;
-use crate::spatial::{BoxTree, Frame, self_overlapping_pairs, visit_pairs};
+use crate::spatial::{BoxTree, Frame, self_overlapping_pairs, self_overlapping_pairs_apart, visit_pairs};
 use crate::{Error, Mesh};
 
 /// Triangles around a vertex from which it is a hub: below, a tree for its fan costs more than the pairs, some twelve a triangle.
@@ -25,6 +26,10 @@ const HUB_FROM: u32 = 24;
 const CAPSULES_FROM: usize = 512;
 /// What a unit vector in single precision is off, at most, and something to spare.
 const MARGIN: f32 = 1e-6;
+/// Boxes that meet that of a triangle, on average, from which capsules are worth their price, which is that of some hundred boxes.
+const CROWD: usize = 160;
+/// Triangles that stand for all where it is asked how many boxes meet theirs.
+const SAMPLE: usize = 256;
 /// No hub.
 const NONE: u32 = u32::MAX;
 
@@ -38,6 +43,7 @@ pub(super) fn self_pairs(
     tree: &BoxTree,
     frame: &Frame,
     runner: Runner<'_>,
+    neighbours: &Neighbours<'_>,
     wanted: impl Fn([u32; 2]) -> bool + Sync,
 ) -> Result<Vec<[u32; 2]>, Error> {
     let corners =
@@ -49,18 +55,19 @@ pub(super) fn self_pairs(
     };
     let (fans, free) = fans_of_hubs(mesh);
     // 1. What is in no fan.
-    let mut pairs = if free.len() >= CAPSULES_FROM && has_needles(&free, corners) {
-        let _memory = runner.control.reserve((free.len() * CapsuleTree::BYTES_PER_ITEM) as u64)?;
-        let capsules = CapsuleTree::new(&free, corners);
-        // Both ways round, and every triangle with itself.
-        capsule_tree::visit_pairs(&capsules, &capsules, runner, |met, found| {
-            found.extend(met.iter().copied().filter(|&[s, t]| s < t && wanted([s, t])));
-        })?
-    } else if fans.is_empty() {
-        self_overlapping_pairs(tree, runner, &wanted)?
-    } else {
-        self_overlapping_pairs(&BoxTree::new(&free, box_of), runner, &wanted)?
-    };
+    let mut pairs =
+        if free.len() >= CAPSULES_FROM && has_needles(&free, corners) && are_crowded(tree, &free, box_of) {
+            let _memory = runner.control.reserve((free.len() * CapsuleTree::BYTES_PER_ITEM) as u64)?;
+            let capsules = CapsuleTree::new(&free, corners);
+            // Both ways round, and every triangle with itself.
+            capsule_tree::visit_pairs(&capsules, &capsules, runner, |met, found| {
+                found.extend(met.iter().copied().filter(|&[s, t]| s < t && wanted([s, t])));
+            })?
+        } else if fans.is_empty() {
+            pairs_of_boxes(tree, neighbours, runner, &wanted)?
+        } else {
+            pairs_of_boxes(&BoxTree::new(&free, box_of), neighbours, runner, &wanted)?
+        };
     if fans.is_empty() {
         return Ok(pairs);
     }
@@ -68,8 +75,10 @@ pub(super) fn self_pairs(
     let free = BoxTree::new(&free, box_of);
     let trees: Vec<BoxTree> = fans.iter().map(|fan| BoxTree::new(&fan.triangles, box_of)).collect();
     for (fan, tree) in fans.iter().zip(&trees) {
-        let arcs = BoxTree::new(&fan.triangles, |t| box_of_arc(mesh, fan.hub, t));
-        pairs.extend(self_overlapping_pairs(&arcs, runner, &wanted)?);
+        if !neighbours.is_plain(fan.hub) {
+            let arcs = BoxTree::new(&fan.triangles, |t| box_of_arc(mesh, fan.hub, t));
+            pairs.extend(self_overlapping_pairs(&arcs, runner, &wanted)?);
+        }
         pairs.extend(visit_pairs(tree, &free, runner, keep)?);
     }
     // 3. Between fans.
@@ -83,6 +92,34 @@ pub(super) fn self_pairs(
         pairs.extend(visit_pairs(&trees[x as usize], &trees[y as usize], runner, keep)?);
     }
     Ok(pairs)
+}
+
+/// Whether the boxes of the triangles meet very many others.
+fn are_crowded(tree: &BoxTree, triangles: &[u32], box_of: impl Fn(u32) -> Aabb) -> bool {
+    let sample = triangles.iter().step_by(triangles.len().div_ceil(SAMPLE).max(1));
+    let most = CROWD * sample.len();
+    let mut met = 0;
+    for &triangle in sample {
+        tree.meeting(&box_of(triangle), |_| met += 1);
+        if met > most {
+            return true;
+        }
+    }
+    false
+}
+
+/// Pairs of triangles whose boxes meet, but for neighbours that are plainly side by side.
+fn pairs_of_boxes(
+    tree: &BoxTree,
+    neighbours: &Neighbours<'_>,
+    runner: Runner<'_>,
+    wanted: impl Fn([u32; 2]) -> bool + Sync,
+) -> Result<Vec<[u32; 2]>, Error> {
+    Ok(if neighbours.has_marks() {
+        self_overlapping_pairs_apart(tree, |t| neighbours.marks(t), runner, wanted)?
+    } else {
+        self_overlapping_pairs(tree, runner, wanted)?
+    })
 }
 
 /// The triangles around a hub, less those that belong to another hub.
@@ -171,7 +208,8 @@ mod tests {
         let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
         let tree = BoxTree::new(&all, box_of);
         let control = Control::new();
-        self_pairs(mesh, &tree, &frame, Runner::new(&control, false), wanted).unwrap()
+        let neighbours = Neighbours::new(mesh, bounds.largest());
+        self_pairs(mesh, &tree, &frame, Runner::new(&control, false), &neighbours, wanted).unwrap()
     }
 
     /// A ring: between two circles, above and below.

@@ -21,6 +21,8 @@ use crate::{Error, Solid};
 use expressions::Wanted;
 use policy::Policy;
 
+use super::snapping;
+
 /// Runs an operation over all operands: in one arrangement where one of them crosses or touches itself, else pair by pair.
 pub(crate) fn run(
     policy: Policy,
@@ -38,4 +40,17 @@ pub(crate) fn run(
         }
     }
     in_pairs::run(policy, operation, operands, runner)
+}
+
+/// Runs `run` on the operands, welded to each other where the policy says so.
+fn snapped(
+    policy: Policy,
+    operands: &[&Solid],
+    runner: Runner<'_>,
+    run: impl FnOnce(&[&Solid]) -> Result<Vec<Outcome>, Error>,
+) -> Result<Vec<Outcome>, Error> {
+    let Some(distance) = policy.snap else { return run(operands) };
+    let snapped = snapping::snap(operands, distance, runner)?;
+    let outcomes = run(&snapped.solids.iter().collect::<Vec<_>>())?;
+    Ok(outcomes.into_iter().map(|outcome| snapped.of_given(outcome)).collect())
 }

@@ -2,7 +2,7 @@
 
 use super::expressions::{self, Wanted};
 use super::policy::{Embed, Policy};
-use super::run;
+use super::{run, snapped};
 use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::expression::Expression;
 use crate::boolean::result::cut_faces::CutFaces;
@@ -36,6 +36,7 @@ impl Default for BooleanOptions {
                 assume_clean: false,
                 rule: Rule::Positive,
                 embed: Embed::default(),
+                snap: None,
             },
             rules: Vec::new(),
             cut_faces: CutFaces::default(),
@@ -96,7 +97,7 @@ impl BooleanOptions {
     }
 
     /// Whether operands are taken not to cross or touch themselves, unless they are known to. Default: false; each is looked
-    /// through once (about a microsecond a triangle) and remembers what was found, and results of operations need not be
+    /// through once (some tenths of a microsecond a triangle) and remembers what was found, and results of operations need not be
     /// looked through. Where the assumption is wrong the result is closed all the same, but regions count as often as they are
     /// enclosed.
     #[must_use]
@@ -116,6 +117,30 @@ impl BooleanOptions {
     #[must_use]
     pub fn cut_faces(mut self, faces: CutFaces) -> Self {
         self.cut_faces = faces;
+        self
+    }
+
+    /// Welds the operands to each other before the exact operation: vertices, edges and faces that are no further apart than
+    /// `distance`, in units of the coordinates, are made the same, also within one operand. Openings a little short of the other
+    /// side then go through, and bodies that were flush before they were turned are flush. What that moved is in
+    /// [`Certificate::snapping`](crate::Certificate::snapping). Default: none; nothing is ever snapped unasked.
+    ///
+    /// ```
+    /// use trisect::{BooleanOptions, Operation, Solid, primitives};
+    ///
+    /// // 0.1 + 0.2 is not 0.3.
+    /// let a = Solid::try_from(primitives::cuboid([0.0; 3], [1.0, 1.0, 0.1 + 0.2])?)?;
+    /// let b = Solid::try_from(primitives::cuboid([0.0, 0.0, 0.3], [1.0, 1.0, 1.0])?)?;
+    /// let c = Solid::try_from(primitives::cuboid([0.0, 0.0, 1.0 + 1e-12], [1.0, 1.0, 2.0])?)?;
+    /// let exact = BooleanOptions::new().run(Operation::Union, [&a, &b, &c])?;
+    /// assert_eq!(exact.solid().components(), 2);
+    /// let snapped = BooleanOptions::new().snap(1e-9).run(Operation::Union, [&a, &b, &c])?;
+    /// assert_eq!((snapped.solid().components(), snapped.solid().mesh().triangles.len()), (1, 12));
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
+    #[must_use]
+    pub fn snap(mut self, distance: f64) -> Self {
+        self.policy.snap = Some(distance);
         self
     }
 
@@ -156,8 +181,11 @@ impl BooleanOptions {
             return Err(Error::InvalidArgument("a boolean needs at least one operand".into()));
         }
         self.check_numbers()?;
-        let outcome = self.on_threads(|runner| run(self.policy, &self.rules, operation, operands, runner))?;
-        Ok(outcome.with_cut_faces(&self.cut_faces))
+        let mut outcomes = self.on_threads(|runner| {
+            let run = |operands: &[&Solid]| run(self.policy, &self.rules, operation, operands, runner);
+            snapped(self.policy, operands, runner, |operands| Ok(vec![run(operands)?]))
+        })?;
+        Ok(outcomes.swap_remove(0).with_cut_faces(&self.cut_faces))
     }
 
     fn check_numbers(&self) -> Result<(), Error> {
@@ -216,7 +244,9 @@ impl BooleanOptions {
         self.control.check()?;
         let wanted = Wanted { expressions, rules: &self.rules, policy: self.policy };
         self.check_numbers()?;
-        let outcomes = self.on_threads(|runner| expressions::run(&wanted, &operands, runner))?;
+        let outcomes = self.on_threads(|runner| {
+            snapped(self.policy, &operands, runner, |operands| expressions::run(&wanted, operands, runner))
+        })?;
         Ok(outcomes.into_iter().map(|outcome| outcome.with_cut_faces(&self.cut_faces)).collect())
     }
 

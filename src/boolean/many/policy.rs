@@ -18,7 +18,7 @@ pub enum Embed {
     /// They are looked for where new triangles are no higher than rounding, and resolved.
     WhereNeeded,
     /// All coordinates are numbers of a grid, and what crosses on it is resolved: the result does not cross itself when it is
-    /// written in a format with such numbers. Always looked for, about a microsecond a triangle.
+    /// written in a format with such numbers. Always looked for, in some tenths of a microsecond a triangle.
     OnGrid(Grid),
 }
 
@@ -35,6 +35,8 @@ pub(crate) struct Policy {
     pub(crate) rule: Rule,
     /// What becomes of crossings that rounding makes.
     pub(crate) embed: Embed,
+    /// The distance within which operands are welded to each other before.
+    pub(crate) snap: Option<f64>,
 }
 
 /// The error of a call without operands.

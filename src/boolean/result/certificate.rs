@@ -3,10 +3,11 @@
 use std::fmt;
 
 use crate::Solid;
-use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::embed::Embedding;
 use crate::boolean::result::near_contacts::NearContacts;
+use crate::boolean::snapping::Snapping;
 use crate::exact::collinear;
+use crate::parallel::map_chunks;
 
 /// What a result is, and what making it met.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,6 +51,8 @@ pub struct Certificate {
     pub walls_left: u64,
     /// What was done about crossings that rounding makes; `None` where nothing gave reason to look for any.
     pub embedding: Option<Embedding>,
+    /// What was moved and split by snapping; `None` where that was not asked for.
+    pub snapping: Option<Snapping>,
     /// For each operand what is known of its crossings with itself.
     pub operands: Vec<OperandState>,
 }
@@ -107,27 +110,29 @@ pub(crate) struct Notes {
     pub(crate) three_face_points: u64,
     pub(crate) walls_left: u64,
     pub(crate) embedding: Option<Embedding>,
+    pub(crate) snapping: Option<Snapping>,
     pub(crate) operands: Vec<OperandState>,
 }
 
+/// Triangles a piece of work.
+const CHUNK: usize = 1 << 14;
+
 impl Certificate {
-    pub(crate) fn new(solid: &Solid, origins: impl Iterator<Item = Origin>, notes: &Notes) -> Self {
+    pub(crate) fn new(solid: &Solid, nearly_flush: NearContacts, notes: &Notes) -> Self {
         let mesh = solid.mesh();
-        let zero_area = mesh
-            .triangles
-            .iter()
-            .filter(|corners| {
-                let [a, b, c] = corners.map(|v| &mesh.positions[v as usize]);
-                collinear(a, b, c)
-            })
-            .count();
+        let is_flat = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|v| &mesh.positions[v as usize]);
+            collinear(a, b, c)
+        };
+        let flat = |chunk: &[[u32; 3]]| chunk.iter().filter(|corners| is_flat(corners)).count();
+        let zero_area = map_chunks(&mesh.triangles, CHUNK, flat).into_iter().sum();
         // Half a unit in the last place for each coordinate.
-        let largest = mesh.positions.iter().flatten().fold(0.0f64, |largest, x| largest.max(x.abs()));
+        let largest = solid.bounds().map_or(0.0, |bounds| bounds.largest());
         let half_ulp = 0.5 * (largest.next_up() - largest);
         Self {
             vertices: mesh.positions.len(),
             triangles: mesh.triangles.len(),
-            closed: crate::mesh::is_closed(mesh),
+            closed: solid.is_closed(),
             manifold: solid.is_manifold(),
             components: solid.components(),
             genus: solid.genus(),
@@ -137,11 +142,12 @@ impl Certificate {
             inverted: notes.inverted,
             largest_rounding: half_ulp * 3.0f64.sqrt(),
             contacts: notes.contacts,
-            nearly_flush: NearContacts::find(mesh, origins),
+            nearly_flush,
             clean_up_stopped: notes.clean_up_stopped,
             three_face_points: notes.three_face_points,
             walls_left: notes.walls_left,
             embedding: notes.embedding,
+            snapping: notes.snapping,
             operands: notes.operands.clone(),
         }
     }

@@ -3,13 +3,15 @@
 //! Exact contact leaves nothing behind. Where faces that were meant to be flush are a little apart, the exact result has a film
 //! of material or a gap between them. It is right, but lost as soon as it is written in single precision, and hardly meant.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use crate::boolean::complex::origin::Origin;
 use crate::exact::at_hand::largest_coordinate;
 use crate::exact::{Projection, Sign, orient2d, orient3d};
 use crate::mesh::Bounds;
-use crate::parallel::Runner;
+use crate::parallel::{Runner, map};
 use crate::spatial::{BoxTree, Frame, visit_pairs};
 use crate::{Control, Mesh};
 
@@ -70,6 +72,29 @@ impl NearContacts {
 /// A vertex, and what it is near to.
 type Found = (u32, NearContact);
 
+/// Triangles a piece of work.
+const CHUNK: usize = 1 << 14;
+
+/// The boxes of what a result has of each operand.
+fn boxes_of_operands(mesh: &Mesh, operands: &[u32], count: usize) -> Vec<Bounds> {
+    // Of very many operands there are few triangles each: then the pieces are longer than the lists of boxes.
+    let chunk = CHUNK.max(8 * count);
+    let triangles = mesh.triangles.len();
+    let pieces = (0..triangles).step_by(chunk).map(|start| start..(start + chunk).min(triangles));
+    let parts = map(pieces.collect(), |range: Range<usize>| {
+        let mut boxes = vec![Bounds::NOTHING; count];
+        for (corners, &operand) in mesh.triangles[range.clone()].iter().zip(&operands[range]) {
+            corners.iter().for_each(|&v| boxes[operand as usize].include(&mesh.positions[v as usize]));
+        }
+        boxes
+    });
+    // (An empty box may be among them.)
+    let unite = |sum: Vec<Bounds>, part: Vec<Bounds>| {
+        sum.into_iter().zip(part).map(|(sum, part)| sum.united(part)).collect()
+    };
+    parts.into_iter().reduce(unite).unwrap_or_else(|| vec![Bounds::NOTHING; count])
+}
+
 /// The triangles of a result that may be near one of another operand.
 struct Region<'a> {
     mesh: &'a Mesh,
@@ -86,10 +111,7 @@ impl<'a> Region<'a> {
     fn of(mesh: &'a Mesh, operands: &'a [u32]) -> Option<Self> {
         // 1. The boxes of what is left of the operands.
         let count = 1 + *operands.iter().max()? as usize;
-        let mut boxes = vec![Bounds::NOTHING; count];
-        for (corners, &operand) in mesh.triangles.iter().zip(operands) {
-            corners.iter().for_each(|&v| boxes[operand as usize].include(&mesh.positions[v as usize]));
-        }
+        let boxes = boxes_of_operands(mesh, operands, count);
         // 2. Where two of them meet.
         let meet = |x: &Bounds, y: &Bounds, reach: f64| {
             (0..3).all(|k| x.low[k] - reach <= y.high[k] && y.low[k] - reach <= x.high[k])
@@ -119,25 +141,25 @@ impl<'a> Region<'a> {
         Some(Self { mesh, operands, frame, reach, triangles })
     }
 
-    fn pairs(&self) -> Result<Vec<Found>, crate::control::Limit> {
+    fn pairs(mut self) -> Result<Vec<Found>, crate::control::Limit> {
         let control = Control::default();
         let runner = Runner::new(&control, true);
+        let lists = std::mem::take(&mut self.triangles);
+        let filled: Vec<Vec<u32>> = lists.into_iter().filter(|list| !list.is_empty()).collect();
         // Boxes are rounded to single precision, and grown by all that is near.
         let margin = (self.reach * self.frame.scale()) as f32 + 4.0 * f32::EPSILON;
-        let tree = |triangles: &[u32]| {
-            BoxTree::new(triangles, |t| {
-                let mut of_triangle = self.frame.triangle(self.corners(t).each_ref());
-                of_triangle.min -= margin;
-                of_triangle.max += margin;
-                of_triangle
-            })
+        let box_of = |t: u32| {
+            let mut of_triangle = self.frame.triangle(self.corners(t).each_ref());
+            of_triangle.min -= margin;
+            of_triangle.max += margin;
+            of_triangle
         };
+        let tree = |triangles: &[u32]| BoxTree::new(triangles, box_of);
         let examine = |pairs: &[[u32; 2]], found: &mut Vec<Found>| {
             pairs.iter().for_each(|&pair| self.examine(pair, found));
         };
-        let filled: Vec<&Vec<u32>> = self.triangles.iter().filter(|list| !list.is_empty()).collect();
         if filled.len() > FEW_OPERANDS {
-            let all = tree(&filled.into_iter().flatten().copied().collect::<Vec<u32>>());
+            let all = tree(&filled.concat());
             return visit_pairs(&all, &all, runner, examine);
         }
         let trees: Vec<BoxTree> = filled.iter().map(|list| tree(list)).collect();

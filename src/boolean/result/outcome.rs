@@ -6,10 +6,13 @@ use rustc_hash::FxHashMap;
 
 use crate::Solid;
 use crate::boolean::complex::origin::Origin;
+use crate::boolean::general::embed::Embedding;
 use crate::boolean::result::attributes::{CornerOrigin, corner_origin};
-use crate::boolean::result::certificate::{Certificate, Notes};
+use crate::boolean::result::certificate::{Certificate, Notes, OperandState};
 use crate::boolean::result::cut_faces::CutFaces;
+use crate::boolean::result::near_contacts::NearContacts;
 use crate::boolean::result::origins::Origins;
+use crate::boolean::snapping::Snapping;
 
 /// The result of a boolean: a closed solid, where its triangles came from, and a certificate.
 #[derive(Clone, Debug)]
@@ -21,12 +24,21 @@ pub struct Outcome {
     /// The same one by one, once asked for.
     list: OnceLock<Vec<Origin>>,
     notes: Notes,
+    nearly_flush: OnceLock<NearContacts>,
     certificate: OnceLock<Certificate>,
 }
 
 impl Outcome {
     pub(crate) fn new(solid: Solid, origins: Origins, unit: f64, notes: Notes) -> Self {
-        Self { solid, origins, unit, list: OnceLock::new(), notes, certificate: OnceLock::new() }
+        Self {
+            solid,
+            origins,
+            unit,
+            list: OnceLock::new(),
+            notes,
+            nearly_flush: OnceLock::new(),
+            certificate: OnceLock::new(),
+        }
     }
 
     /// The same with other faces where tools have cut.
@@ -36,6 +48,12 @@ impl Outcome {
             self.solid.change_faces(|mesh| faces.apply(mesh, &origins));
         }
         self
+    }
+
+    /// The same with other origins, one for each that there is, and what was snapped before.
+    pub(crate) fn of_snapped(self, origin: impl Fn(Origin) -> Origin, snapping: Snapping) -> Self {
+        let origins = self.origins.iter().map(origin).collect();
+        Self::new(self.solid, origins, self.unit, Notes { snapping: Some(snapping), ..self.notes })
     }
 
     /// The result; an empty one is a success.
@@ -92,7 +110,33 @@ impl Outcome {
     /// different operands are near one another.
     #[must_use]
     pub fn certificate(&self) -> &Certificate {
-        self.certificate.get_or_init(|| Certificate::new(&self.solid, self.origins.iter(), &self.notes))
+        self.certificate
+            .get_or_init(|| Certificate::new(&self.solid, self.nearly_flush().clone(), &self.notes))
+    }
+
+    /// [`Certificate::nearly_flush`] alone. Computed once, when first asked for; O(n), and O(k log k) for the k triangles where
+    /// parts of different operands are near one another.
+    #[must_use]
+    pub fn nearly_flush(&self) -> &NearContacts {
+        self.nearly_flush.get_or_init(|| NearContacts::find(self.solid.mesh(), self.origins.iter()))
+    }
+
+    /// [`Certificate::operands`] alone: known without any work.
+    #[must_use]
+    pub fn operand_states(&self) -> &[OperandState] {
+        &self.notes.operands
+    }
+
+    /// [`Certificate::embedding`] alone: known without any work.
+    #[must_use]
+    pub fn embedding(&self) -> Option<&Embedding> {
+        self.notes.embedding.as_ref()
+    }
+
+    /// What was moved and split by snapping; `None` where that was not asked for.
+    #[must_use]
+    pub fn snapping(&self) -> Option<&Snapping> {
+        self.notes.snapping.as_ref()
     }
 
     /// The curves in which surfaces of different operands meet, as chains of vertices of the result; a closed curve ends

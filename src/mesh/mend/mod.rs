@@ -20,6 +20,7 @@ mod sew;
 mod splits;
 
 pub use report::Mending;
+pub(crate) use splits::fan_around_splits;
 
 use super::places::{Fault, Spots};
 use super::{Bounds, Mesh, chain, duplicates, measure, weld};

@@ -203,7 +203,7 @@ fn apply(surface: &mut Surface<'_>, joins: &FxHashMap<u32, u32>, splits: &FxHash
             }
             continue;
         }
-        for piece in splits::cut(corners, [&on[0], &on[1], &on[2]]) {
+        for piece in splits::fan_around_splits(corners, [&on[0], &on[1], &on[2]]) {
             triangles.push(piece);
             source.push(index);
         }

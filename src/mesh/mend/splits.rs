@@ -55,7 +55,7 @@ fn along([a, b]: [&[f64; 3]; 2], place: &[f64; 3], reach: f64) -> Option<f64> {
 /// The triangle cut up so that its sides run over further vertices: `on[k]` those between corner k and the next, in their
 /// order. A vertex that is the opposite corner (of a triangle without area) makes pieces with a repeated corner, which are
 /// left out: the boundary of the pieces is always the sides with their vertices.
-pub(super) fn cut(triangle: [u32; 3], on: [&[u32]; 3]) -> Vec<[u32; 3]> {
+pub(crate) fn fan_around_splits(triangle: [u32; 3], on: [&[u32]; 3]) -> Vec<[u32; 3]> {
     let Some(side) = (0..3).find(|&side| !on[side].is_empty()) else { return vec![triangle] };
     let [a, b, c] = [0, 1, 2].map(|k| triangle[(side + k) % 3]);
     let [first, second, third] = [0, 1, 2].map(|k| on[(side + k) % 3]);
@@ -85,7 +85,7 @@ mod tests {
             // Different vertices on every side.
             let [first, second, third] = [(lists[i], 0), (lists[j], 10), (lists[k], 20)]
                 .map(|(list, by)| list.iter().map(|v| v + by).collect::<Vec<u32>>());
-            let pieces = cut([0, 1, 2], [&first, &second, &third]);
+            let pieces = fan_around_splits([0, 1, 2], [&first, &second, &third]);
             assert_eq!(pieces.len(), first.len() + second.len() + third.len() + 1);
             let outline = [&[0], &first[..], &[1], &second, &[2], &third, &[0]].concat();
             let mut expected: Vec<(u32, u32)> = outline.windows(2).map(|pair| (pair[0], pair[1])).collect();
@@ -99,8 +99,8 @@ mod tests {
 
     #[test]
     fn a_triangle_without_area_vanishes() {
-        assert_eq!(cut([0, 1, 2], [&[2], &[], &[]]), [[0u32; 3]; 0]);
-        assert_eq!(cut([0, 1, 2], [&[3, 2], &[], &[]]), [[3, 2, 0]]);
+        assert_eq!(fan_around_splits([0, 1, 2], [&[2], &[], &[]]), [[0u32; 3]; 0]);
+        assert_eq!(fan_around_splits([0, 1, 2], [&[3, 2], &[], &[]]), [[3, 2, 0]]);
     }
 
     #[test]

@@ -1,0 +1,325 @@
+//! The links of vertices: how the triangles around each hang together.
+//!
+//! A triangle (v, a, b) is the edge a -> b of the link of v. Where every link is made of simple cycles, every edge of the surface has
+//! exactly two triangles, in opposite directions, so that it is closed; and each cycle is a fan. So one look around every vertex
+//! settles at once whether a surface is closed, whether its edges are manifold, and where it is pinched.
+//!
+//! (A sum of hashes would tell in one pass without any memory that a surface is closed. It cannot tell whether an edge has two
+//! triangles or four: to know of n directed edges that all differ takes memory for n of them, by any method.)
+//!
+//! The edges are filed under their vertices by a counting sort, every thread for vertices of its own; then no thread waits for
+//! another. Memory: 24 bytes a triangle and 4 a vertex, given back at the end.
+
+use std::ops::Range;
+
+use crate::parallel::{map, piece_count, ranges};
+
+/// Vertices from which a thread of its own is worth it: some tenths of a millisecond.
+const VERTICES_PER_THREAD: usize = 1 << 14;
+
+/// What the links of the vertices of a set of triangles are like.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Links {
+    /// Some triangle has a repeated corner; then nothing else has been looked at.
+    pub(super) repeated_corners: bool,
+    /// The links are simple cycles: the surface is closed, and every edge has exactly two triangles. If not, what follows is not
+    /// known.
+    pub(super) edge_manifold: bool,
+    /// How many vertices belong to no triangle.
+    pub(super) unreferenced: usize,
+    /// Some vertex belongs to just two triangles: these are opposite copies of each other.
+    pub(super) two_triangle_vertex: bool,
+    /// How many vertices have several fans.
+    pub(super) pinched: usize,
+    /// How many fans there are.
+    pub(super) fans: usize,
+}
+
+impl Links {
+    const NONE: Self = Self {
+        repeated_corners: false,
+        edge_manifold: true,
+        unreferenced: 0,
+        two_triangle_vertex: false,
+        pinched: 0,
+        fans: 0,
+    };
+    /// What is known of a surface that nobody has looked at.
+    pub(super) const UNKNOWN: Self = Self { edge_manifold: false, ..Self::NONE };
+
+    /// Looks around each of `vertices` vertices of `triangles`. O(n).
+    ///
+    /// # Errors
+    /// The first triangle that names a vertex out of range. There are no more than 2^31 vertices and 2^32/3 triangles.
+    pub(super) fn of(triangles: &[[u32; 3]], vertices: usize) -> Result<Self, usize> {
+        // A thread that looks only at some of the vertices reads all triangles: more pieces than threads cost more than they even
+        // out.
+        let shares = ranges(vertices, piece_count(vertices, VERTICES_PER_THREAD).div_ceil(4));
+        let found = map(shares, |range| Self::of_range(triangles, vertices, range));
+        let mut links = Self::NONE;
+        for part in found {
+            let Some(part) = part else {
+                let is_out = |triangle: &[u32; 3]| triangle.iter().any(|&v| v as usize >= vertices);
+                return Err(triangles.iter().position(is_out).unwrap_or_default());
+            };
+            links.repeated_corners |= part.repeated_corners;
+            links.edge_manifold &= part.edge_manifold;
+            links.unreferenced += part.unreferenced;
+            links.two_triangle_vertex |= part.two_triangle_vertex;
+            links.pinched += part.pinched;
+            links.fans += part.fans;
+        }
+        Ok(links)
+    }
+
+    /// The same for some of the vertices; `None` where a triangle names one that is not there.
+    fn of_range(triangles: &[[u32; 3]], vertices: usize, range: Range<usize>) -> Option<Self> {
+        let counts = Counts::of(triangles, range);
+        if !triangles.is_empty() && counts.highest as usize >= vertices {
+            return None;
+        }
+        if counts.repeated_corners {
+            return Some(Self { repeated_corners: true, edge_manifold: false, ..Self::NONE });
+        }
+        let lists = counts.file(triangles);
+        let mut links = Self::NONE;
+        for link in lists.each() {
+            match cycles(link) {
+                Some(0) => links.unreferenced += 1,
+                Some(fans) => {
+                    links.two_triangle_vertex |= link.len() == 2;
+                    links.pinched += usize::from(fans > 1);
+                    links.fans += fans;
+                }
+                None => return Some(Self { edge_manifold: false, ..links }),
+            }
+        }
+        Some(links)
+    }
+}
+
+/// How many triangles each of some vertices has, and what is seen on the way.
+struct Counts {
+    first: u32,
+    /// Of each vertex; last of all others, which share that place. (So nothing branches: which it is, is as good as random.)
+    counts: Vec<u32>,
+    /// The highest vertex of all.
+    highest: u32,
+    repeated_corners: bool,
+}
+
+impl Counts {
+    fn of(triangles: &[[u32; 3]], range: Range<usize>) -> Self {
+        let (first, count) = (range.start as u32, range.len());
+        let place = |vertex: u32| (vertex.wrapping_sub(first) as usize).min(count);
+        let mut counts = vec![0u32; count + 1];
+        let (mut highest, mut repeated_corners) = (0, false);
+        for &[a, b, c] in triangles {
+            highest = highest.max(a).max(b).max(c);
+            repeated_corners |= (a == b) | (b == c) | (c == a);
+            [a, b, c].into_iter().for_each(|v| counts[place(v)] += 1);
+        }
+        Self { first, counts, highest, repeated_corners }
+    }
+
+    /// Files the edges of the links under their vertices.
+    fn file(self, triangles: &[[u32; 3]]) -> LinkLists {
+        let Self { first, counts: mut ends, .. } = self;
+        let count = ends.len() - 1;
+        let place = |vertex: u32| (vertex.wrapping_sub(first) as usize).min(count);
+        // Each start runs to the end of its list; what is filed under no vertex is written over, again and again.
+        let mut total = 0;
+        for end in &mut ends {
+            total += std::mem::replace(end, total);
+        }
+        let mut edges = vec![0u64; ends[count] as usize + 1];
+        for &[a, b, c] in triangles {
+            for (vertex, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
+                let place = place(vertex);
+                let end = &mut ends[place];
+                edges[*end as usize] = u64::from(to) << 32 | u64::from(from);
+                *end += u32::from(place != count);
+            }
+        }
+        LinkLists { ends, edges }
+    }
+}
+
+/// The links of some vertices.
+pub(super) struct LinkLists {
+    /// Where the list of each vertex ends; one more.
+    ends: Vec<u32>,
+    /// The edges, list after list: where each starts in the lower half, and where it ends in the upper one.
+    edges: Vec<u64>,
+}
+
+impl LinkLists {
+    /// Of the vertices in a range; all that the triangles name must be there.
+    pub(super) fn of(triangles: &[[u32; 3]], range: Range<usize>) -> Self {
+        Counts::of(triangles, range).file(triangles)
+    }
+
+    /// The edges of the link of each vertex.
+    pub(super) fn each(&self) -> impl Iterator<Item = &[u64]> {
+        let mut start = 0;
+        self.ends[..self.ends.len() - 1].iter().map(move |&end| {
+            let list = &self.edges[start..end as usize];
+            start = end as usize;
+            list
+        })
+    }
+}
+
+/// How many cycles the edges of a link form; `None` where they are not simple cycles without a common vertex.
+#[inline]
+fn cycles(edges: &[u64]) -> Option<usize> {
+    match edges.len() {
+        0 => Some(0),
+        1..=8 => cycles_of_few::<8>(edges),
+        9..=16 => cycles_of_few::<16>(edges),
+        17..=32 => cycles_of_few::<32>(edges),
+        _ => cycles_of_many(edges),
+    }
+}
+
+/// The same for `N` edges at most, 32 at most: all are compared with all, side by side.
+#[inline]
+fn cycles_of_few<const N: usize>(edges: &[u64]) -> Option<usize> {
+    // 1. Which edges go on where each ends, as bits. (No vertex has the number that stands for none.)
+    let mut starts = [u32::MAX; N];
+    starts.iter_mut().zip(edges).for_each(|(start, &edge)| *start = edge as u32);
+    let mut next = [0u32; N];
+    let (mut met, mut is_one) = (0u32, true);
+    for (next, &edge) in next.iter_mut().zip(edges) {
+        let end = (edge >> 32) as u32;
+        for (k, &start) in starts.iter().enumerate() {
+            *next |= u32::from(start == end) << k;
+        }
+        met |= *next;
+        is_one &= next.is_power_of_two();
+    }
+    // 2. One goes on after each, and each goes on after one: none starts where another does.
+    let all = u32::MAX >> (32 - edges.len());
+    if !(is_one && met == all) {
+        return None;
+    }
+    // 3. Round and round.
+    let (mut left, mut cycles) = (all, 0);
+    while left != 0 {
+        let first = left & left.wrapping_neg();
+        let mut at = first;
+        loop {
+            left &= !at;
+            at = next[at.trailing_zeros() as usize % N];
+            if at == first {
+                break;
+            }
+        }
+        cycles += 1;
+    }
+    Some(cycles)
+}
+
+/// The same for any number of edges, sorted.
+#[inline(never)]
+fn cycles_of_many(edges: &[u64]) -> Option<usize> {
+    let mut edges = edges.to_vec();
+    edges.sort_unstable_by_key(|&edge| edge as u32);
+    if edges.windows(2).any(|pair| pair[0] as u32 == pair[1] as u32) {
+        return None;
+    }
+    let mut is_seen = vec![false; edges.len()];
+    let mut cycles = 0;
+    for first in 0..edges.len() {
+        if is_seen[first] {
+            continue;
+        }
+        let mut at = first;
+        // Each has one that goes on after it; where two have the same, the round does not come back to its first.
+        while !std::mem::replace(&mut is_seen[at], true) {
+            let end = (edges[at] >> 32) as u32;
+            at = edges.binary_search_by_key(&end, |&edge| edge as u32).ok()?;
+        }
+        if at != first {
+            return None;
+        }
+        cycles += 1;
+    }
+    Some(cycles)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+
+    use super::super::chain;
+    use super::super::edges::EdgeTable;
+    use super::super::topology::Topology;
+    use super::*;
+
+    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+
+    #[test]
+    fn a_tetrahedron_has_a_fan_at_every_vertex() {
+        let links = Links::of(&TETRAHEDRON, 4).unwrap();
+        assert_eq!(links, Links { fans: 4, ..Links::NONE });
+        assert_eq!(Links::of(&TETRAHEDRON, 6).unwrap().unreferenced, 2);
+        assert_eq!(Links::of(&TETRAHEDRON, 3), Err(1));
+        assert!(!Links::of(&TETRAHEDRON[1..], 4).unwrap().edge_manifold);
+        assert!(Links::of(&[[0, 0, 1]], 2).unwrap().repeated_corners);
+        assert_eq!(Links::of(&[], 0), Ok(Links::NONE));
+        assert!(Links::of(&[[0, 1, 2], [0, 2, 1]], 3).unwrap().two_triangle_vertex);
+    }
+
+    #[test]
+    fn hubs_of_any_size() {
+        for ring in [3, 7, 8, 9, 15, 16, 17, 31, 32, 33, 1_000, 70_000] {
+            // Two fans round hubs 0 and 1 over one ring, and the same again at the same hubs.
+            let mut triangles = Vec::new();
+            for copy in 0..2 {
+                let at = |i: u32| 2 + copy * ring + i % ring;
+                triangles.extend((0..ring).flat_map(|i| [[0, at(i), at(i + 1)], [1, at(i + 1), at(i)]]));
+            }
+            let vertices = 2 + 2 * ring as usize;
+            let links = Links::of(&triangles, vertices).unwrap();
+            assert!(links.edge_manifold);
+            assert_eq!((links.pinched, links.fans), (2, 4 + 2 * ring as usize), "{ring}");
+            triangles.pop();
+            assert!(!Links::of(&triangles, vertices).unwrap().edge_manifold);
+        }
+    }
+
+    #[test]
+    fn links_agree_with_the_table_of_edges() {
+        let mut random = ChaCha8Rng::seed_from_u64(16);
+        let mut closed = 0;
+        for round in 0..4_000 {
+            // Tetrahedra over few vertices: closed, and nearly always they share edges or vertices somewhere.
+            let vertices = random.random_range(4..40u32);
+            let mut triangles = Vec::new();
+            for _ in 0..random.random_range(1..8) {
+                let corners: [u32; 4] = std::array::from_fn(|_| random.random_range(0..vertices));
+                if (0..4).all(|i| (0..i).all(|j| corners[i] != corners[j])) {
+                    triangles.extend(TETRAHEDRON.map(|triangle| triangle.map(|k| corners[k as usize])));
+                }
+            }
+            if round % 4 == 0 && !triangles.is_empty() {
+                let place = random.random_range(0..triangles.len());
+                triangles[place].swap(0, 1);
+            }
+            let links = Links::of(&triangles, vertices as usize).unwrap();
+            let chain = chain::examine(&triangles, vertices as usize).unwrap();
+            assert_eq!(links.edge_manifold, chain.closed && chain.edge_manifold, "{triangles:?}");
+            if links.edge_manifold {
+                closed += 1;
+                assert_eq!(links.unreferenced > 0, chain.unreferenced);
+                assert_eq!(links.two_triangle_vertex, chain.two_triangle_vertex);
+                let table = EdgeTable::new(&triangles, vertices as usize);
+                let topology = Topology::of_edges(&table, &triangles, vertices as usize);
+                assert_eq!(links.pinched, topology.pinched.len(), "{triangles:?}");
+            }
+        }
+        assert!(closed > 500, "{closed}");
+    }
+}
