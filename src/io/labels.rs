@@ -63,6 +63,18 @@ pub(super) fn of_triangles(
     found
 }
 
+/// Whether two values are the same but for rounding to single precision: those of two faces at an edge may have been computed on
+/// different ways.
+pub(super) fn agree(a: Option<&[f64]>, b: Option<&[f64]>) -> bool {
+    const STEP: f64 = f32::EPSILON as f64;
+    match (a, b) {
+        (Some(a), Some(b)) => {
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() <= STEP * a.abs().max(b.abs()).max(1.0))
+        }
+        (a, b) => a.is_none() == b.is_none(),
+    }
+}
+
 /// A coordinate counted from the lower edge of a picture, given from the upper one: the shortest decimal that reading turns into
 /// the same number again, so that what was read is written as it was.
 pub(super) fn from_below(v: f64) -> f64 {

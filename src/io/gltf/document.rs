@@ -219,7 +219,6 @@ pub(super) struct Buffer<'a> {
 /// What is kept of a material that the crate's type refuses, for a value of another kind or one that is null.
 #[derive(Debug, Default, Deserialize)]
 pub(super) struct PlainMaterial {
-    pub(super) name: Option<String>,
     #[serde(rename = "pbrMetallicRoughness")]
     pub(super) surface: Option<PlainSurface>,
 }

@@ -1,11 +1,10 @@
 //! A scene in which one node gets another mesh, and all else stays as it is.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use glam::DAffine3;
 use serde_json::{Map, Value, json};
 
 use super::super::notes::Notes;
@@ -20,7 +19,7 @@ use super::document::Document;
 use super::extensions;
 use super::joints;
 use super::materials::Materials;
-use super::scene;
+use super::place::{Place, find, in_node};
 use super::write::{Fragment, Known, write_container};
 use crate::{Error, Material, Mesh};
 
@@ -35,6 +34,12 @@ pub struct KeptScene {
 }
 
 impl KeptScene {
+    /// The scene of a file's bytes; files that it names are not found.
+    #[cfg(test)]
+    pub(super) fn of_bytes(bytes: Vec<u8>, format: Format, node: &str) -> Self {
+        Self { bytes: bytes.into(), format, folder: PathBuf::from("no such folder"), node: node.to_owned() }
+    }
+
     /// The scene of a file, and the node in it: by its name, or "PARENT/NAME".
     ///
     /// # Errors
@@ -53,14 +58,6 @@ impl KeptScene {
         let folder = folder.unwrap_or(Path::new(".")).to_path_buf();
         Ok(Self { bytes: bytes.into(), format, folder, node: node.into() })
     }
-}
-
-/// The node that gets the mesh.
-struct Place {
-    node: usize,
-    /// What stands under it: its meshes are in the new one.
-    below: Vec<usize>,
-    world: DAffine3,
 }
 
 /// Writes the scene with the mesh, given in the coordinates of the scene, at its node.
@@ -117,84 +114,6 @@ pub(in crate::io) fn write(
     }
     written.warnings.splice(0..0, warnings);
     Ok(written)
-}
-
-/// The node of a name.
-fn find(reader: &Reader<'_>, name: &str) -> Result<Place, Error> {
-    let nodes = &reader.document.nodes;
-    let mut parents = vec![None; nodes.len()];
-    for (index, node) in nodes.iter().enumerate() {
-        for &child in node.0.iter().flat_map(|node| node.children.iter()) {
-            if let Some(parent) = parents.get_mut(child as usize) {
-                *parent = Some(index);
-            }
-        }
-    }
-    let own_name = |index: usize| nodes[index].0.as_ref()?.name.as_deref();
-    let is_meant = |index: usize| {
-        let mut at = Some(index);
-        own_name(index) == Some(name)
-            || name.split('/').rev().all(|part| {
-                let Some(here) = at else { return false };
-                at = parents[here];
-                own_name(here) == Some(part)
-            })
-    };
-    let meant: Vec<usize> = (0..nodes.len()).filter(|&index| is_meant(index)).collect();
-    let node = match meant[..] {
-        [node] => node,
-        [] => {
-            let near = (0..nodes.len()).filter_map(own_name).take(5).map(str::to_owned).collect();
-            let format = reader.format;
-            return Err(FormatError::NoSuchPart { format, name: name.to_owned(), empty: false, near }.into());
-        }
-        _ => {
-            let count = meant.len();
-            return Err(Error::InvalidArgument(format!(
-                "{count} nodes are called {name:?}, and one is needed to keep its scene; name it as PARENT/NAME"
-            )));
-        }
-    };
-    // The transforms from the root down; a chain longer than the list of nodes runs in a circle.
-    let (mut world, mut at, mut steps) = (DAffine3::IDENTITY, Some(node), 0);
-    while let Some(here) = at.filter(|_| steps <= nodes.len()) {
-        if let Some(fields) = nodes[here].0.as_deref()
-            && let Some(transform) = scene::transform(reader, fields, &format!("/nodes/{here}"))?
-        {
-            world = if world == DAffine3::IDENTITY { transform } else { transform * world };
-        }
-        (at, steps) = (parents[here], steps + 1);
-    }
-    let mut below = Vec::new();
-    let mut seen: HashSet<usize> = HashSet::from([node]);
-    let mut open = vec![node];
-    while let Some(here) = open.pop() {
-        for &child in nodes[here].0.iter().flat_map(|node| node.children.iter()) {
-            let child = child as usize;
-            if child < nodes.len() && seen.insert(child) {
-                below.push(child);
-                open.push(child);
-            }
-        }
-    }
-    Ok(Place { node, below, world })
-}
-
-/// A mesh of the scene in the coordinates of a node.
-fn in_node(mesh: &Mesh, world: &DAffine3) -> Result<Mesh, Error> {
-    if *world == DAffine3::IDENTITY {
-        return Ok(mesh.clone());
-    }
-    let inverse = world.inverse();
-    let m = inverse.matrix3.to_cols_array();
-    let t = inverse.translation;
-    let rows = [m[0], m[3], m[6], t.x, m[1], m[4], m[7], t.y, m[2], m[5], m[8], t.z];
-    if rows.iter().any(|number| !number.is_finite()) {
-        return Err(Error::InvalidArgument(
-            "the node is flattened by its transform, no mesh can be put there".into(),
-        ));
-    }
-    Ok(mesh.clone().transformed(&rows)?)
 }
 
 /// The document as it changes, and the one buffer that it gets.
@@ -319,31 +238,11 @@ impl Scene {
                 }
             }
         }
-        // 2. The mesh, in the place of the old one if no other node shows that.
+        // 2. The mesh.
         if self.list("nodes").len() <= place.node {
             return;
         }
-        let old = self.list("nodes")[place.node].get("mesh").and_then(Value::as_u64);
-        let users =
-            self.list("nodes").iter().filter(|node| node.get("mesh").and_then(Value::as_u64) == old).count();
-        let new = additions.mesh.map(|mut mesh| {
-            let meshes = self.list("meshes");
-            let own = old.filter(|&old| users == 1 && (old as usize) < meshes.len());
-            let name = old.and_then(|old| meshes.get(old as usize)?.get("name").cloned());
-            if let Some(name) = name {
-                set(&mut mesh, "name", name);
-            }
-            match own {
-                Some(own) => {
-                    meshes[own as usize] = mesh;
-                    own
-                }
-                None => {
-                    meshes.push(mesh);
-                    meshes.len() as u64 - 1
-                }
-            }
-        });
+        let new = additions.mesh.map(|mesh| self.put_mesh(place.node, mesh));
         // 3. The node, and those below.
         let clear = |node: &mut Value, keys: &[&str]| {
             if let Some(node) = node.as_object_mut() {
@@ -367,6 +266,29 @@ impl Scene {
             }
         }
         self.drop_weights(place);
+    }
+
+    /// Puts a mesh into the list, in the place of the one of the node if no other node shows that; and gives its number.
+    fn put_mesh(&mut self, node: usize, mut mesh: Value) -> u64 {
+        let old = self.list("nodes")[node].get("mesh").and_then(Value::as_u64);
+        let users =
+            self.list("nodes").iter().filter(|node| node.get("mesh").and_then(Value::as_u64) == old).count();
+        let meshes = self.list("meshes");
+        let own = old.filter(|&old| users == 1 && (old as usize) < meshes.len());
+        let name = old.and_then(|old| meshes.get(old as usize)?.get("name").cloned());
+        if let Some(name) = name {
+            set(&mut mesh, "name", name);
+        }
+        match own {
+            Some(own) => {
+                meshes[own as usize] = mesh;
+                own
+            }
+            None => {
+                meshes.push(mesh);
+                meshes.len() as u64 - 1
+            }
+        }
     }
 
     /// Takes out what moves morph targets that are no more.

@@ -12,8 +12,9 @@ use super::super::notes::Notes;
 use super::Reader;
 use super::budget::Budget;
 use super::buffers::Buffers;
-use super::document::PlainMaterial;
+use super::document::{Named, PlainMaterial};
 use super::json::{for_each_source, for_each_texture};
+use super::write::plain_object;
 use crate::mesh::{Image, Material, MaterialLanguage, MaterialText, Texture, TextureUse, Wrap};
 use crate::{Error, mesh};
 
@@ -117,11 +118,16 @@ impl<'a> Materials<'a> {
         let base_color_texture =
             surface.and_then(|surface| texture_use(surface.get("baseColorTexture")?, &textures));
         let name = json.get("name").and_then(Value::as_str).unwrap_or_default().to_string();
-        let text = Value::Object(json).to_string();
+        let json = Value::Object(json);
+        let is_plain = json == plain_object(&name, base_color.unwrap_or([1.0; 4]));
+        let text = json.to_string();
         budget.charge(text.len() as u64)?;
         let mut material = Material::plain(name, base_color.unwrap_or([1.0; 4]));
         material.base_color_texture = base_color_texture;
-        material.text = Some(Arc::new(MaterialText { language: MaterialLanguage::Gltf, text, textures }));
+        // What a name and a colour say by themselves need not be kept.
+        if !is_plain {
+            material.text = Some(Arc::new(MaterialText { language: MaterialLanguage::Gltf, text, textures }));
+        }
         Ok(material)
     }
 
@@ -287,9 +293,10 @@ fn object(text: &str) -> Result<Map<String, Value>, String> {
 
 /// The name and colour of a material that is kept no further.
 fn plain(text: &str) -> Material {
+    let named: Named = serde_json::from_str(text).unwrap_or_default();
     let plain: PlainMaterial = serde_json::from_str(text).unwrap_or_default();
     let color = plain.surface.and_then(|surface| surface.base_color).unwrap_or([1.0; 4]);
-    Material::plain(plain.name.unwrap_or_default(), color)
+    Material::plain(named.name.unwrap_or_default(), color)
 }
 
 /// Leaves out what is said of textures that are not among `places`.

@@ -17,8 +17,10 @@ mod keep;
 mod manifold;
 mod materials;
 mod morph;
+mod place;
 mod primitive;
 mod scene;
+mod triangles;
 mod write;
 
 pub use keep::KeptScene;
@@ -161,5 +163,7 @@ impl<'a> Reader<'a> {
 
 #[cfg(test)]
 mod attribute_tests;
+#[cfg(test)]
+mod keep_tests;
 #[cfg(test)]
 mod tests;

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::super::WriteOptions;
 use super::super::color::encoded_decimal;
-use super::super::labels::from_below;
+use super::super::labels::{agree, from_below};
 use super::super::text::{NumberWriter, write_blocks};
 use crate::mesh::Attribute;
 use crate::{Error, Mesh};
@@ -79,7 +79,7 @@ impl<'a> Labels<'a> {
             let known = &mut index_at[vertex as usize];
             if *known == Attribute::NONE {
                 *known = index;
-            } else if index != *known && attribute.value(index) != attribute.value(*known) {
+            } else if index != Attribute::NONE && !agree(attribute.value(index), attribute.value(*known)) {
                 torn[vertex as usize] = true;
             }
         }

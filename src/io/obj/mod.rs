@@ -12,6 +12,7 @@ mod locate;
 mod mtl;
 mod parse;
 mod pictures;
+mod smoothing;
 mod write;
 
 pub(super) use mtl::library;
@@ -19,7 +20,7 @@ pub(super) use write::write;
 
 use super::faces::{index_error, too_large};
 use super::finish::check_finite;
-use super::labels::NO_INDEX;
+use super::labels::{ChunkCorners, NO_INDEX, of_triangles};
 use super::notes::Notes;
 use super::scan::line_place;
 use super::{Format, ReadOptions, malformed};
@@ -27,7 +28,8 @@ use crate::mesh::Polygons;
 use crate::parallel;
 use crate::{Error, Mesh};
 use groups::Groups;
-use parse::{Chunk, Fault, Smoothing};
+use parse::{Change, Chunk, Fault};
+use smoothing::Smoothing;
 
 /// Chunks smaller than this are not worth a thread.
 const SMALLEST_CHUNK: usize = 1 << 20;
@@ -63,27 +65,10 @@ fn read_in_chunks(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
         return Err(index_error(Format::Obj, place, index, vertices));
     }
 
-    let counts = chunks.iter().map(|chunk| chunk.positions.len()).collect::<Vec<_>>();
-    let colors =
-        corners::join_colors(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.colors)).zip(counts));
-    let texture = join(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.texture)).collect());
-    let normals = join(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.normals)).collect());
-    let label_counts = [texture.len(), normals.len()];
     let smoothing = smoothing(&chunks);
-    let positions = join(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.positions)).collect());
-    let resolved = parallel::map(chunks, |chunk| -> Result<_, Error> {
-        let mut notes = Notes::default();
-        let places: Vec<_> = chunk.changes.iter().map(|change| change.at).collect();
-        let has_polygons = chunk.faces.has_polygons();
-        let mut faces = (has_polygons || !chunk.labels.corners.is_empty()).then(Vec::new);
-        let (triangles, offsets) =
-            chunk.faces.into_triangles(&positions, &places, &mut notes, &options.control, &mut faces)?;
-        let faces = faces.unwrap_or_default();
-        let corners = super::labels::of_triangles(&triangles, &faces, &chunk.labels, label_counts);
-        notes.add("texture coordinates or normal that a face names are not there", corners.beyond);
-        let polygons = if has_polygons { Polygons::of_faces(&faces) } else { Polygons::default() };
-        Ok((triangles, offsets, chunk.changes, chunk.libraries, notes, corners, polygons))
-    });
+    let Lists { positions, colors, texture, normals } = Lists::taken(&mut chunks);
+    let label_counts = [texture.len(), normals.len()];
+    let resolved = parallel::map(chunks, |chunk| resolve(chunk, &positions, label_counts, options));
 
     let mut groups = Groups::default();
     let mut parts = Vec::with_capacity(resolved.len());
@@ -91,7 +76,15 @@ fn read_in_chunks(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
     let mut polygons = Polygons::default();
     let mut before = 0;
     for part in resolved {
-        let (triangles, offsets, changes, libraries, part_notes, corners, of_chunk) = part?;
+        let Resolved {
+            triangles,
+            offsets,
+            changes,
+            libraries,
+            notes: part_notes,
+            corners,
+            polygons: of_chunk,
+        } = part?;
         for (change, offset) in changes.iter().zip(offsets) {
             groups.change(change, before + offset);
         }
@@ -123,6 +116,60 @@ fn read_in_chunks(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
     }
     check_finite(&mut mesh, Format::Obj, &mut notes, |vertex| locate::vertex(bytes, vertex))?;
     Ok((mesh, notes.into_warnings(|offset| line_place(bytes, offset))))
+}
+
+/// The lists of vertices and what faces name beside them, those of all chunks one after the other.
+struct Lists {
+    positions: Vec<[f64; 3]>,
+    colors: Vec<[f64; 3]>,
+    texture: Vec<[f64; 2]>,
+    normals: Vec<[f64; 3]>,
+}
+
+impl Lists {
+    fn taken(chunks: &mut [Chunk<'_>]) -> Self {
+        let counts: Vec<usize> = chunks.iter().map(|chunk| chunk.positions.len()).collect();
+        let colors = chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.colors));
+        Self {
+            colors: corners::join_colors(colors.zip(counts)),
+            texture: join(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.texture)).collect()),
+            normals: join(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.normals)).collect()),
+            positions: join(chunks.iter_mut().map(|chunk| std::mem::take(&mut chunk.positions)).collect()),
+        }
+    }
+}
+
+/// The triangles of a chunk, with what belongs to them.
+struct Resolved<'a> {
+    triangles: Vec<[u32; 3]>,
+    /// For each change of the group how many triangles come before it.
+    offsets: Vec<usize>,
+    changes: Vec<Change<'a>>,
+    libraries: Vec<&'a [u8]>,
+    notes: Notes,
+    corners: ChunkCorners,
+    polygons: Polygons,
+}
+
+/// Makes triangles of the faces of a chunk.
+fn resolve<'a>(
+    chunk: Chunk<'a>,
+    positions: &[[f64; 3]],
+    label_counts: [usize; 2],
+    options: &ReadOptions,
+) -> Result<Resolved<'a>, Error> {
+    let mut notes = Notes::default();
+    let places: Vec<_> = chunk.changes.iter().map(|change| change.at).collect();
+    let has_polygons = chunk.faces.has_polygons();
+    let mut faces = (has_polygons || !chunk.labels.corners.is_empty()).then(Vec::new);
+    let (triangles, offsets) =
+        chunk.faces.into_triangles(positions, &places, &mut notes, &options.control, &mut faces)?;
+    let faces = faces.unwrap_or_default();
+    let corners = of_triangles(&triangles, &faces, &chunk.labels, label_counts);
+    notes.add("texture coordinates or normal that a face names are not there", corners.beyond);
+    let polygons = if has_polygons { Polygons::of_faces(&faces) } else { Polygons::default() };
+    let (changes, libraries) = (chunk.changes, chunk.libraries);
+    Ok(Resolved { triangles, offsets, changes, libraries, notes, corners, polygons })
 }
 
 /// The smoothing groups of all chunks.

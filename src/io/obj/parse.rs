@@ -7,6 +7,7 @@ use super::super::labels::{Labels, NO_INDEX};
 use super::super::notes::Notes;
 use super::super::scan::{Scanner, line_place, quote};
 use super::super::{Format, malformed};
+use super::smoothing::Smoothing;
 use crate::Error;
 use crate::control::{Control, Limit};
 
@@ -31,29 +32,6 @@ pub(super) struct Chunk<'a> {
 
 /// What stands for no colour.
 pub(super) const NO_COLOR: [f64; 3] = [f64::NAN; 3];
-
-/// The smoothing groups of a chunk: whether there are several.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Smoothing<'a> {
-    #[default]
-    None,
-    One(&'a [u8]),
-    Several,
-}
-
-impl<'a> Smoothing<'a> {
-    /// One more; "off" and 0 are none.
-    pub(super) fn add(&mut self, name: &'a [u8]) {
-        if matches!(name, b"off" | b"0" | b"") {
-            return;
-        }
-        *self = match *self {
-            Self::None => Self::One(name),
-            Self::One(known) if known == name => Self::One(known),
-            _ => Self::Several,
-        };
-    }
-}
 
 /// A change of the group or material of the faces that follow.
 #[derive(Clone, Copy, Debug)]

@@ -61,7 +61,9 @@ impl<'a> MaterialMaker<'a> {
             textures.push(Arc::new(Texture { text: map.file.to_string(), images: vec![image] }));
         }
         let text = said.text.clone();
-        if !text.is_empty() {
+        // What a colour says by itself need not be kept.
+        let is_colour = |line: &str| matches!(line.split_whitespace().next(), Some("Kd" | "d" | "Tr") | None);
+        if !text.lines().all(is_colour) {
             material.text = Some(Arc::new(MaterialText { language: MaterialLanguage::Mtl, text, textures }));
         }
         Ok(material)
@@ -109,4 +111,42 @@ fn texture_use(image: Arc<Image>, how: &MapOptions) -> TextureUse {
     let transform: TextureMatrix = [[width, 0.0, x], [0.0, height, 1.0 - height - y]];
     let wrap = if how.clamp { Wrap::Clamp } else { Wrap::Repeat };
     TextureUse { image, coordinates: 0, wrap: [wrap; 2], nearest: false, transform }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn made(text: &str, folder: &str) -> (Material, Vec<String>) {
+        let known = Known { base_color: [1.0; 4], text: text.into() };
+        let materials = Materials::from([("wood".to_string(), Some(Box::new(known)))]);
+        let options = ReadOptions::new().folder(folder);
+        let mut notes = Notes::default();
+        let mut maker = MaterialMaker::new(&materials, &options);
+        let (material, known) = maker.material("wood".into(), &mut notes).unwrap();
+        assert!(known);
+        (material, notes.into_warnings(|_| String::new()))
+    }
+
+    #[test]
+    fn only_pictures_beside_the_file_are_read() {
+        for name in ["../Cargo.toml", "/etc/passwd", "C:\\a.png", "a\0b", "http://a/b.png", ".", "src"] {
+            let (material, warnings) = made(&format!("map_Kd {name}\n"), "src");
+            assert_eq!(warnings.len(), 1, "{name}");
+            assert!(material.base_color_image().is_none(), "{name}");
+            // What it said is kept.
+            assert_eq!(material.text.unwrap().textures[0].text, name.trim());
+        }
+    }
+
+    #[test]
+    fn a_name_with_folders_of_another_computer_means_the_picture_beside() {
+        let (material, warnings) =
+            made("Kd 1 0 0\nmap_Kd -s 2 3 -o 0.5 D:\\art\\Cargo.toml\nbump Cargo.toml\n", ".");
+        assert!(warnings.is_empty(), "{warnings:?}");
+        let texture = material.base_color_texture.unwrap();
+        assert_eq!((&*texture.image.file, texture.image.bytes.is_empty()), ("Cargo.toml", false));
+        assert_eq!(texture.transform, [[2.0, 0.0, 0.5], [0.0, 3.0, -2.0]]);
+        assert_eq!(material.text.unwrap().textures.len(), 2);
+    }
 }

@@ -220,7 +220,7 @@ fn texture_coordinates_normals_and_colours_are_read_and_written() {
     assert!(written.warnings.is_empty(), "{:?}", written.warnings);
     let written = String::from_utf8(bytes).unwrap();
     assert!(written.contains("v 1 0 0 0.5 0.25 0\n") && written.contains("vt 0.1 0.2\n"), "{written}");
-    assert!(written.contains("f 1/1/1 2/2/1 3/3/2\n") && written.contains("f 1 3 2\n"), "{written}");
+    assert!(written.contains("f 1/1/1 2/2/1 3/3/2 4//2\n") && written.contains("f 1 3 2\n"), "{written}");
     let (again, warnings) = read_text(&written);
     assert!(warnings.is_empty(), "{warnings:?}");
     for (attribute, before) in again.attributes.iter().zip(&mesh.attributes) {

@@ -43,6 +43,19 @@ pub(in crate::io) fn write(
     })?;
     labels.write_tables(output, options)?;
 
+    write_faces(mesh, &names, &labels, output, options)?;
+    written.warnings.splice(0..0, labels.lost());
+    Ok(written)
+}
+
+/// Writes the faces, with the statements that change group and material.
+fn write_faces(
+    mesh: &Mesh,
+    names: &MaterialNames<'_>,
+    labels: &Labels<'_>,
+    output: &mut dyn Write,
+    options: &WriteOptions,
+) -> Result<(), Error> {
     let groups = &mesh.groups;
     let group_names: Vec<String> = groups.list.iter().map(|group| line_name(&group.name)).collect();
     // Statements that turn the state of one group into that of another; the state before the first is unnamed.
@@ -81,7 +94,5 @@ pub(in crate::io) fn write(
             }
             text.push(b'\n');
         }
-    })?;
-    written.warnings.splice(0..0, labels.lost());
-    Ok(written)
+    })
 }

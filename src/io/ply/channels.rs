@@ -1,7 +1,7 @@
 //! Attributes as properties of vertices and faces.
 
 use super::super::color::{encoded, encoded_byte, linear};
-use super::super::labels::from_below;
+use super::super::labels::{agree, from_below};
 use super::super::text::NumberWriter;
 use super::super::{Encoding, Precision};
 use crate::Mesh;
@@ -192,7 +192,7 @@ fn of_vertices(mesh: &Mesh, attribute: &Attribute) -> (Vec<u32>, usize) {
         let known = &mut first[vertex as usize];
         if *known == Attribute::NONE {
             *known = index;
-        } else if index != *known && attribute.value(index) != attribute.value(*known) {
+        } else if index != Attribute::NONE && !agree(attribute.value(index), attribute.value(*known)) {
             torn[vertex as usize] = true;
         }
     }

@@ -385,17 +385,3 @@ fn attributes(layout: &Layout<'_>, part: &Part) -> Map<String, Value> {
     }
     attributes
 }
-
-/// A file name as part of a URI.
-pub(super) fn percent_encode(name: &str) -> String {
-    let mut encoded = String::with_capacity(name.len());
-    for byte in name.bytes() {
-        match byte {
-            b'A'..=b'Z' | b'a'..=b'z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' => {
-                encoded.push(byte.into())
-            }
-            _ => encoded.push_str(&format!("%{byte:02X}")),
-        }
-    }
-    encoded
-}

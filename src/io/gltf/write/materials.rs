@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde_json::{Map, Value, json};
 
 use super::super::super::pictures::{PictureFile, file_of};
-use super::super::json::{for_each_extension, for_each_source, for_each_texture};
-use super::document::{Known, percent_encode};
+use super::super::json::{for_each_extension, for_each_source, for_each_texture, percent_encode};
+use super::document::Known;
 use super::mtl;
 use crate::mesh::{Image, Material, MaterialLanguage, MaterialText, Texture, TextureUse, Wrap};
 
@@ -102,7 +102,7 @@ impl<'a> MaterialList<'a> {
 
     /// A material of a name, a colour and perhaps a picture.
     fn plain(&mut self, material: &Material) -> Value {
-        let mut value = material_object(&material.name, material.base_color);
+        let mut value = plain_object(&material.name, material.base_color);
         if let Some(texture) =
             material.base_color_texture.as_ref().and_then(|texture| self.texture_info(texture))
         {
@@ -254,7 +254,8 @@ pub(super) fn channel(value: f32) -> f64 {
     value.to_string().parse::<f64>().unwrap_or(1.0)
 }
 
-fn material_object(name: &str, color: [f32; 4]) -> Value {
+/// A material of a name and a colour.
+pub(in crate::io::gltf) fn plain_object(name: &str, color: [f32; 4]) -> Value {
     let mut material = json!({
         "pbrMetallicRoughness": {
             "baseColorFactor": color.map(channel), "metallicFactor": 0, "roughnessFactor": 1

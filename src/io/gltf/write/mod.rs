@@ -23,9 +23,11 @@ use super::super::pictures::PictureFile;
 use super::super::rounding::{Measure, Written, examined};
 use super::super::text::write_all;
 use super::super::{Format, WriteOptions, write_error};
+use super::json::percent_encode;
 use crate::mesh::is_two_manifold;
 use crate::{Error, Mesh};
 pub(super) use document::{Fragment, Known};
+pub(super) use materials::plain_object;
 
 /// Where a `.gltf` file puts what is not its JSON.
 pub(in crate::io) struct Aside<'a> {
@@ -64,7 +66,7 @@ pub(in crate::io) fn write(
     let bytes = layout.bytes();
     match aside {
         Some(Aside { buffer: (name, buffer), .. }) if format == Format::Gltf => {
-            let uri = document::percent_encode(&name);
+            let uri = percent_encode(&name);
             document.insert("buffers".to_string(), json!([{"byteLength": bytes, "uri": uri}]));
             write_all(output, Value::Object(document).to_string().as_bytes())?;
             layout.write(buffer, options)?;
