@@ -210,9 +210,7 @@ impl Look<'_> {
         // 1. The places on both lines that are nearest to each other.
         let (uu, uv, vv, uw, vw) = (u.dot(u), u.dot(v), v.dot(v), u.dot(w), v.dot(w));
         let determinant = uu * vv - uv * uv;
-        if !(determinant > 0.0) {
-            return None;
-        }
+        // Parallel ones have none: not a number, or out of range.
         let at_e = (uv * vw - vv * uw) / determinant;
         if !(at_e > 0.0 && at_e < 1.0) {
             return None;

@@ -65,7 +65,7 @@ pub(super) fn split(
 fn add_passing(surfaces: &mut Surfaces, found: &mut Found, distance: f64) -> Result<(), Error> {
     check_numbers(surfaces.positions.len() + found.passing.len())?;
     // Every pair of edges once, in order: faces on both sides of an edge have found it.
-    found.passing.sort_by(|x, y| x.edges.cmp(&y.edges));
+    found.passing.sort_by_key(|passing| passing.edges);
     found.passing.dedup_by(|x, y| x.edges == y.edges);
     if found.passing.is_empty() {
         return Ok(());

@@ -186,7 +186,7 @@ impl<'a> Materials<'a> {
         }
         // A picture that is not there keeps a place beyond the list.
         for_each_source(&mut json, &mut |place| {
-            *place = places.get(place).copied().unwrap_or(u64::from(u32::MAX))
+            *place = places.get(place).copied().unwrap_or(u64::from(u32::MAX));
         });
         let text = Value::Object(json).to_string();
         budget.charge(text.len() as u64)?;

@@ -21,6 +21,9 @@ use super::materials::Materials;
 use super::morph::Morph;
 use crate::{Error, FaceGroup, FaceGroups, Mesh};
 
+/// What tells groups apart: their node, their material, and whatever else is a part of the key.
+type Appearance = (Option<u32>, u32, Option<u32>, Option<String>);
+
 /// Gathers the triangles of a scene.
 pub(super) struct Builder<'a> {
     reader: &'a Reader<'a>,
@@ -33,7 +36,7 @@ pub(super) struct Builder<'a> {
     /// The first vertex of an accessor under a transform: primitives share their vertices.
     placed: HashMap<(u32, [u64; 12]), u32>,
     /// The group of a node and a material.
-    known: HashMap<(Option<u32>, u32, Option<u32>, Option<String>), u32>,
+    known: HashMap<Appearance, u32>,
     materials: Materials<'a>,
     /// Nodes shown with a skeleton, and with morph targets.
     pub(super) skinned: usize,

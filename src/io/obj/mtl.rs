@@ -131,6 +131,9 @@ fn picture_of(json: &Value, key: &str, said: &MaterialText) -> Option<Arc<Image>
     said.textures.get(index)?.images.first().cloned()
 }
 
+/// The name and the bits of the colour of a material: nearly always enough to tell it from others.
+type LookingAlike<'a> = (&'a str, [u32; 4]);
+
 /// Names for the materials of a mesh: different for different materials, though their own names may be equal.
 pub(super) struct MaterialNames<'a> {
     pub(super) list: Vec<(String, &'a Material)>,
@@ -140,7 +143,7 @@ pub(super) struct MaterialNames<'a> {
 impl<'a> MaterialNames<'a> {
     pub(super) fn of(mesh: &'a Mesh) -> Self {
         let mut names = Self { list: Vec::new(), of_group: Vec::new() };
-        let mut known: HashMap<(&str, [u32; 4]), Vec<(&Material, String)>> = HashMap::new();
+        let mut known: HashMap<LookingAlike<'_>, Vec<(&Material, String)>> = HashMap::new();
         let mut taken: HashMap<String, usize> = HashMap::new();
         for group in &mesh.groups.list {
             let Some(material) = &group.material else {

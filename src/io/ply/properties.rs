@@ -98,7 +98,7 @@ fn taken(
             "COLOR_0" => add(name.into(), &found, &|k, channel, number| color(k, channel.kind, number)),
             // The file counts from the lower edge of pictures, meshes from the upper one.
             "TEXCOORD_0" => {
-                add(name.into(), &found, &|k, _, number| if k == 1 { 1.0 - number } else { number })
+                add(name.into(), &found, &|k, _, number| if k == 1 { 1.0 - number } else { number });
             }
             _ => add(name.into(), &found, &|_, _, number| number),
         }

@@ -197,7 +197,7 @@ impl<'a> Table<'a> {
     /// The table, or what is in use of it.
     fn values(&self, numbers: Option<&[u32]>) -> Vec<f64> {
         let is_used = |row: u32| numbers.is_none_or(|numbers| numbers[row as usize] != Attribute::NONE);
-        let rows_left = numbers.map_or(self.made_from as usize, |numbers| numbers.len());
+        let rows_left = numbers.map_or(self.made_from as usize, <[u32]>::len);
         let mut values = Vec::with_capacity(rows_left * self.components + self.made.len());
         for rows in &self.rows {
             let attribute = &self.plan.of.sources[rows.source].attributes[rows.attribute];
