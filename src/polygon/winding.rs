@@ -282,7 +282,7 @@ mod tests {
             let mut points = [square, square].concat();
             points.extend([[2.0, 0.0], [2.0, 0.0]]);
             let other = |k: u32| if k < copied { k + 4 } else { k };
-            let edge = |ends: [u32; 2], count| Edge { ends, count, line: 0 };
+            let edge = |ends: [u32; 2], count| Edge { ends, count, line: 0, kept: false };
             let mut edges: Vec<Edge> = (1..4).map(|k| edge([k, (k + 1) % 4], 1)).collect();
             edges.extend([[0, 8], [8, 1]].map(|ends| edge(ends, 1)));
             edges.extend((1..4).map(|k| edge([other(k), other((k + 1) % 4)], -1)));
