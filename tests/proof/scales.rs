@@ -231,7 +231,7 @@ fn a_corner_of_something_huge_passes_through_a_hole() {
                 vec![
                     [0.11, -0.4, 0.35],
                     [-0.5 * size, 3.2 * size, -2.6 * size],
-                    [-0.2 * size, -1.0 * size, -2.9 * size],
+                    [-0.2 * size, -size, -2.9 * size],
                     [-4.0 * size, 2.0 * size, -2.8 * size],
                 ],
                 vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
