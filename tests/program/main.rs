@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod attributes;
 #[cfg(feature = "subdivision")]
 mod cages;
 mod curve;

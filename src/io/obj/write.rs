@@ -7,7 +7,7 @@ use super::super::text::{NumberWriter, line_name, write_all, write_blocks};
 use super::super::{Format, Precision, WriteOptions};
 use super::groups::NO_MATERIAL;
 use super::labels::Labels;
-use super::mtl::MaterialNames;
+use super::mtl::{self, MaterialNames};
 use crate::mesh::Faces;
 use crate::{Error, Mesh};
 
@@ -44,7 +44,9 @@ pub(in crate::io) fn write(
     labels.write_tables(output, options)?;
 
     write_faces(mesh, &names, &labels, output, options)?;
-    written.warnings.splice(0..0, labels.lost());
+    let has_library = options.material_library.is_some();
+    let unsaid = if has_library { mtl::unsaid(mesh) } else { None };
+    written.warnings.splice(0..0, labels.lost().into_iter().chain(unsaid));
     Ok(written)
 }
 

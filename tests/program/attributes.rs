@@ -1,0 +1,531 @@
+//! Attributes, materials, pictures, polygons and scenes, from files into files.
+
+use std::collections::HashSet;
+use std::f64::consts::TAU;
+use std::fs;
+
+use serde_json::{Value, json};
+use trisect::Mesh;
+
+use crate::common::program::{Folder, Ran, cube, inside_out, sphere};
+
+/// A picture to whoever does not decode it.
+const PICTURE: &[u8] = b"\x89PNG\r\n\x1a\nnot to be decoded";
+
+/// A cube of quads with texture coordinates: on each face the two coordinates along it.
+fn crate_obj(low: f64, high: f64, material: &str) -> String {
+    let mut text = format!("mtllib crate.mtl\no crate\nusemtl {material}\n");
+    let at = |corner: usize, axis: usize| corner >> axis & 1;
+    for corner in 0..8 {
+        let [x, y, z] = [0, 1, 2].map(|axis| if at(corner, axis) == 0 { low } else { high });
+        text.push_str(&format!("v {x} {y} {z}\n"));
+    }
+    text.push_str("vt 0 0\nvt 1 0\nvt 0 1\nvt 1 1\n");
+    let quads = [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]];
+    for (side, quad) in quads.into_iter().enumerate() {
+        let along = [[0, 1], [0, 2], [1, 2]][side / 2];
+        let label = |vertex: usize| 1 + at(vertex - 1, along[0]) + 2 * at(vertex - 1, along[1]);
+        let corners = quad.map(|vertex| format!(" {vertex}/{}", label(vertex)));
+        text.push_str(&format!("f{}\n", corners.concat()));
+    }
+    text
+}
+
+/// A textured crate, a tool that takes a corner of it away, and one that is elsewhere.
+fn workshop() -> Folder {
+    let folder = Folder::new();
+    folder.write("crate.obj", crate_obj(0.0, 1.0, "wood"));
+    folder.write(
+        "crate.mtl",
+        "newmtl wood\nKd 0.8 0.6 0.4\nNs 10\nmap_Kd wood.png\n\nnewmtl steel\nKd 0.1 0.2 0.3\n",
+    );
+    folder.write("wood.png", PICTURE);
+    folder.write("tool.obj", cube([0.75; 3], [1.5; 3]));
+    folder.write(
+        "steel.obj",
+        format!(
+            "mtllib crate.mtl\n{}",
+            cube([0.75; 3], [1.5; 3]).replacen("f ", "g bit\nusemtl steel\nf ", 1)
+        ),
+    );
+    folder.write("elsewhere.obj", cube([3.0; 3], [4.0; 3]));
+    folder
+}
+
+fn described(folder: &Folder, file: &str) -> Value {
+    folder.run_args(&["info", file, "--json"]).exits(0).json()["files"][0].clone()
+}
+
+fn loaded(folder: &Folder, file: &str) -> Mesh {
+    Mesh::load(folder.path(file)).expect("a mesh file")
+}
+
+/// The corners of triangles: places and values of an attribute, where all three have one.
+fn valued(mesh: &Mesh, name: &str) -> Vec<([[f64; 3]; 3], [Vec<f64>; 3])> {
+    let Some(attribute) = mesh.attribute(name) else { return Vec::new() };
+    let of_triangle = |(triangle, corners): (usize, &[u32; 3])| {
+        let value = |k: usize| Some(attribute.value(attribute.of_corner[3 * triangle + k])?.to_vec());
+        Some((corners.map(|v| mesh.positions[v as usize]), [value(0)?, value(1)?, value(2)?]))
+    };
+    mesh.triangles.iter().enumerate().filter_map(of_triangle).collect()
+}
+
+/// Asserts that the faces that are left of the crate show what they showed, and how many triangles show something.
+#[track_caller]
+fn assert_crate(mesh: &Mesh, tolerance: f64) -> usize {
+    let triangles = valued(mesh, "TEXCOORD_0");
+    for (corners, values) in &triangles {
+        let is_side = |&axis: &usize| {
+            let level = corners[0][axis];
+            (level == 0.0 || level == 1.0) && corners.iter().all(|corner| corner[axis] == level)
+        };
+        let axis = (0..3).find(is_side).expect("a triangle on a side of the crate");
+        let along = [[1, 2], [0, 2], [0, 1]][axis];
+        for (corner, value) in corners.iter().zip(values) {
+            // Meshes count from the upper edge of pictures.
+            let wanted = [corner[along[0]], 1.0 - corner[along[1]]];
+            let is_near = (0..2).all(|k| (value[k] - wanted[k]).abs() <= tolerance);
+            assert!(is_near, "{corner:?} shows {value:?}, not {wanted:?}");
+        }
+    }
+    triangles.len()
+}
+
+/// The materials of a mesh by name, with how many triangles have each.
+fn materials(folder: &Folder, file: &str) -> Vec<(String, u64)> {
+    let mut list: Vec<(String, u64)> = Vec::new();
+    for group in described(folder, file)["groups"].as_array().expect("a list") {
+        let (name, count) = (group["material"].as_str().unwrap_or("none"), group["triangles"].as_u64());
+        match list.iter_mut().find(|known| known.0 == name) {
+            Some(known) => known.1 += count.unwrap_or(0),
+            None => list.push((name.to_owned(), count.unwrap_or(0))),
+        }
+    }
+    list.retain(|(_, count)| *count > 0);
+    list.sort();
+    list
+}
+
+#[test]
+fn a_textured_obj_stays_textured() {
+    let folder = workshop();
+    fs::create_dir(folder.path("sub")).expect("a folder");
+    for (file, tolerance) in
+        [("cut.obj", 1e-12), ("cut.glb", 1e-6), ("cut.gltf", 1e-6), ("sub/cut.obj", 1e-12)]
+    {
+        folder.run(&format!("difference crate.obj tool.obj -o {file}")).exits(0);
+        let said = described(&folder, file);
+        assert_eq!(said["attributes"][0]["name"], "TEXCOORD_0", "{file}: {said}");
+        let wood = said["materials"].as_array().unwrap().iter().find(|material| material["name"] == "wood");
+        assert_eq!(wood.unwrap()["textures"], 1, "{file}: {said}");
+        assert_eq!(
+            (&said["pictures"][0]["mime_type"], &said["pictures"][0]["bytes"]),
+            (&json!("image/png"), &json!(PICTURE.len()))
+        );
+        let mesh = loaded(&folder, file);
+        assert!(assert_crate(&mesh, tolerance) >= 12, "{file}");
+        // The six triangles that the tool has cut show nothing: it has no texture coordinates.
+        assert!(valued(&mesh, "TEXCOORD_0").len() + 6 <= mesh.triangles.len());
+    }
+    // The picture that stood there is named; elsewhere there is a copy.
+    assert!(folder.read("cut.mtl").contains("map_Kd wood.png") && folder.read("cut.mtl").contains("Ns 10"));
+    assert_eq!(fs::read(folder.path("sub/wood.png")).expect("a copy"), PICTURE);
+}
+
+#[test]
+fn a_textured_glb_stays_textured_through_a_chain_of_cuts() {
+    let folder = workshop();
+    folder.run("convert crate.obj body.glb").exits(0);
+    for step in 0..10 {
+        let at = 0.05 + 0.09 * f64::from(step);
+        folder.write("bit.obj", cube([at, 0.9, 0.9], [at + 0.05, 1.5, 1.5]));
+        folder.run("difference body.glb bit.obj -o body.glb").exits(0);
+    }
+    let mesh = loaded(&folder, "body.glb");
+    assert!(assert_crate(&mesh, 1e-6) > 40);
+    let said = described(&folder, "body.glb");
+    assert_eq!(
+        (&said["pictures"][0]["bytes"], &said["closed"]),
+        (&json!(PICTURE.len()), &json!(true)),
+        "{said}"
+    );
+    // A tool that touches nothing changes no value.
+    folder.run("difference body.glb elsewhere.obj -o same.glb").exits(0);
+    assert_eq!(valued(&loaded(&folder, "same.glb"), "TEXCOORD_0"), valued(&mesh, "TEXCOORD_0"));
+}
+
+#[test]
+fn cut_faces_have_the_material_asked_for() {
+    let folder = workshop();
+    let cut = |option: &str| {
+        folder.run(&format!("difference crate.obj steel.obj -o cut.obj {option}")).exits(0);
+        materials(&folder, "cut.obj")
+    };
+    let names = |list: &[(String, u64)]| list.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    let usual = cut("");
+    assert_eq!(names(&usual), ["steel", "wood"]);
+    assert_eq!(usual[0].1, 6);
+    assert_eq!(cut("--cut-material keep"), usual);
+    let total = usual[0].1 + usual[1].1;
+    assert_eq!(cut("--cut-material body"), [("wood".to_string(), total)]);
+    let new = cut("--cut-material plaster");
+    assert_eq!((names(&new), new[0].1), (vec!["plaster".to_string(), "wood".to_string()], 6));
+    assert!(folder.read("cut.mtl").contains("newmtl plaster"));
+    // A name that an operand has means that material.
+    folder.run("difference crate.obj tool.obj -o cut.glb --cut-material wood").exits(0);
+    assert_eq!(names(&materials(&folder, "cut.glb")), ["wood"]);
+    assert_eq!(described(&folder, "cut.glb")["pictures"].as_array().map(Vec::len), Some(1));
+}
+
+#[test]
+fn cut_faces_get_texture_coordinates() {
+    let folder = workshop();
+    folder.write("lid.obj", cube([-1.0, -1.0, 0.75], [2.0; 3]));
+    // A plane lies on all cut faces of a lid, and askew on those of a corner.
+    for (kind, density, tool, faces) in [
+        ("box:0.5", 0.5, "tool", 6),
+        ("box", 1.0, "tool", 6),
+        ("box:3", 3.0, "lid", 2),
+        ("planar:2", 2.0, "lid", 2),
+    ] {
+        folder.run(&format!("difference crate.obj {tool}.obj -o cut.obj --cut-uv {kind}")).exits(0);
+        let mesh = loaded(&folder, "cut.obj");
+        let all = valued(&mesh, "TEXCOORD_0");
+        assert_eq!(all.len(), mesh.triangles.len(), "{kind}");
+        let is_cut =
+            |corners: &[[f64; 3]; 3]| (0..3).any(|axis| corners.iter().all(|corner| corner[axis] == 0.75));
+        let mut cut = 0;
+        for (corners, values) in all.iter().filter(|(corners, _)| is_cut(corners)) {
+            for (k, l) in [(0, 1), (1, 2), (2, 0)] {
+                let apart: f64 = (0..3).map(|axis| (corners[k][axis] - corners[l][axis]).powi(2)).sum();
+                let shown: f64 = (0..2).map(|axis| (values[k][axis] - values[l][axis]).powi(2)).sum();
+                assert!(
+                    (shown.sqrt() - density * apart.sqrt()).abs() < 1e-12,
+                    "{kind}: {corners:?} {values:?}"
+                );
+            }
+            cut += 1;
+        }
+        assert_eq!(cut, faces, "{kind}");
+    }
+}
+
+/// The normal of a triangle.
+fn normal([a, b, c]: &[[f64; 3]; 3]) -> [f64; 3] {
+    let [u, v] = [b, c].map(|end| [0, 1, 2].map(|k| end[k] - a[k]));
+    let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    let length = n.iter().map(|x| x * x).sum::<f64>().sqrt();
+    n.map(|x| x / length)
+}
+
+fn cosine(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[test]
+fn normals_are_as_asked_for() {
+    let folder = workshop();
+    folder.write("ball.off", sphere(12, 1.0, [0.0; 3]));
+    let write = |option: &str| {
+        folder.run(&format!("difference ball.off tool.obj -o out.glb --normals {option}")).exits(0);
+        loaded(&folder, "out.glb")
+    };
+    for option in ["keep", "none"] {
+        assert!(write(option).attribute("NORMAL").is_none(), "{option}");
+    }
+    let flat = write("flat");
+    let all = valued(&flat, "NORMAL");
+    assert_eq!(all.len(), flat.triangles.len());
+    for (corners, values) in &all {
+        let face = normal(corners);
+        assert!(values.iter().all(|value| cosine(value, &face) > 1.0 - 1e-5), "{corners:?}: {values:?}");
+    }
+    for option in ["30", "angle:30"] {
+        let smooth = write(option);
+        let all = valued(&smooth, "NORMAL");
+        assert_eq!(all.len(), smooth.triangles.len(), "{option}");
+        let on_ball = |corner: &[f64; 3]| (cosine(corner, corner) - 1.0).abs() < 1e-6;
+        let mut rounded = 0;
+        for (corners, values) in all.iter().filter(|(corners, _)| corners.iter().all(on_ball)) {
+            for (corner, value) in corners.iter().zip(values) {
+                assert!(cosine(corner, value) > 0.97, "{corner:?}: {value:?}");
+                rounded += usize::from(cosine(&normal(corners), value) < 0.999);
+            }
+        }
+        assert!(rounded > 100, "{option}: {rounded}");
+    }
+    // Kept ones outlive a cut, and go when nobody wants them.
+    folder.run("convert ball.off smooth.ply --normals 30").exits(0);
+    folder.run("difference smooth.ply tool.obj -o kept.ply").exits(0);
+    let kept = loaded(&folder, "kept.ply");
+    for (corners, values) in valued(&kept, "NORMAL") {
+        for (corner, value) in corners.iter().zip(&values) {
+            assert!(
+                cosine(corner, value) > 0.9 && (cosine(value, value) - 1.0).abs() < 1e-6,
+                "{corner:?}: {value:?}"
+            );
+        }
+    }
+    assert!(!valued(&kept, "NORMAL").is_empty());
+    folder.run("convert kept.ply bare.ply --normals none").exits(0);
+    assert!(loaded(&folder, "bare.ply").attributes.is_empty());
+}
+
+#[test]
+fn buffers_and_pictures_stand_beside() {
+    let folder = workshop();
+    fs::create_dir(folder.path("sub")).expect("a folder");
+    folder.run("difference crate.obj tool.obj -o sub/cut.gltf --separate").exits(0);
+    folder.run("difference crate.obj tool.obj -o cut.glb").exits(0);
+    let mut names: Vec<String> = fs::read_dir(folder.path("sub"))
+        .expect("the folder")
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["cut.bin", "cut.gltf", "wood.png"]);
+    let text = folder.read("sub/cut.gltf");
+    assert!(text.contains("\"cut.bin\"") && text.contains("\"wood.png\"") && !text.contains("base64"));
+    assert_eq!(fs::read(folder.path("sub/wood.png")).expect("the picture"), PICTURE);
+    let (apart, whole) = (loaded(&folder, "sub/cut.gltf"), loaded(&folder, "cut.glb"));
+    assert_eq!((apart.positions, apart.triangles), (whole.positions, whole.triangles));
+    assert_eq!(apart.attributes, whole.attributes);
+}
+
+#[test]
+fn seams_are_told_in_the_file() {
+    let folder = workshop();
+    folder.run("difference crate.obj steel.obj -o cut.obj -o cut.glb -o cut.gltf --manifold").exits(0);
+    let text = folder.read("cut.gltf");
+    assert!(text.contains("EXT_mesh_manifold"));
+    let (obj, glb) = (loaded(&folder, "cut.obj"), loaded(&folder, "cut.glb"));
+    let used = |mesh: &Mesh| mesh.indices().iter().collect::<HashSet<_>>().len();
+    assert_eq!((used(&glb), glb.triangles.len()), (used(&obj), obj.triangles.len()));
+    folder.run("convert cut.obj plain.glb").exits(0);
+    assert!(used(&loaded(&folder, "plain.glb")) > used(&obj), "seams are apart without it");
+    let said = described(&folder, "cut.glb");
+    assert_eq!(said["closed"], true, "{said}");
+    assert_eq!(assert_crate(&glb, 1e-6), assert_crate(&obj, 1e-12));
+    assert_eq!(materials(&folder, "cut.glb"), materials(&folder, "cut.obj"));
+    // Two cubes that share an edge have four triangles there.
+    folder.write("a.obj", cube([0.0; 3], [1.0; 3]));
+    folder.write("b.obj", cube([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]));
+    folder.run("convert a.obj plain.gltf --strict").exits(0);
+    assert!(!folder.read("plain.gltf").contains("EXT_mesh_manifold"));
+}
+
+/// A scene: a turned crate below a room, a twin of it, a camera, and what readers do not keep.
+fn scene(folder: &Folder) {
+    folder.run("convert crate.obj scene.gltf").exits(0);
+    let mut document: Value = serde_json::from_str(&folder.read("scene.gltf")).expect("JSON");
+    document["nodes"] = json!([
+        {"name": "room", "children": [1, 2, 3]},
+        {"name": "body", "mesh": 0, "translation": [5, 0, 0], "extras": {"price": 7}},
+        {"name": "twin", "mesh": 0, "translation": [0, 9, 0]},
+        {"name": "eye", "camera": 0, "extras": {"lens": "old"}}
+    ]);
+    document["scenes"] = json!([{"nodes": [0], "extras": {"by": "me"}}]);
+    document["scene"] = json!(0);
+    document["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}]);
+    document["extensionsUsed"] = json!(["KHR_materials_variants"]);
+    document["extensions"] =
+        json!({"KHR_materials_variants": {"variants": [{"name": "day"}, {"name": "night"}]}});
+    folder.write("scene.gltf", document.to_string());
+    folder.write("bit.obj", cube([5.75, 0.75, 0.75], [6.5, 1.5, 1.5]));
+}
+
+#[test]
+fn a_scene_stays_around_the_node_that_is_cut() {
+    let folder = workshop();
+    scene(&folder);
+    for line in
+        ["scene.gltf --node body bit.obj", "scene.gltf#body bit.obj", "scene.gltf --node room/body bit.obj"]
+    {
+        folder.run(&format!("difference {line} -o cut.gltf --scene keep --strict")).exits(0);
+        let document: Value = serde_json::from_str(&folder.read("cut.gltf")).expect("JSON");
+        let names: Vec<&str> =
+            document["nodes"].as_array().unwrap().iter().filter_map(|node| node["name"].as_str()).collect();
+        assert_eq!(names, ["room", "body", "twin", "eye"], "{line}");
+        assert_eq!(
+            (&document["nodes"][1]["extras"]["price"], &document["nodes"][3]["camera"]),
+            (&json!(7), &json!(0))
+        );
+        assert_eq!(document["scenes"][0]["extras"]["by"], "me");
+        let volume =
+            |part: &str| described(&folder, &format!("cut.gltf#{part}"))["volume"].as_f64().expect("closed");
+        assert!((volume("body") - (1.0 - 0.25_f64.powi(3))).abs() < 1e-6, "{line}");
+        assert!((volume("twin") - 1.0).abs() < 1e-6, "{line}");
+        let said = described(&folder, "cut.gltf");
+        assert_eq!(
+            (&said["contents"]["cameras"], said["pictures"].as_array().map(Vec::len)),
+            (&json!(1), Some(1)),
+            "{said}"
+        );
+    }
+    // Alone, the node leaves the rest behind, which is said.
+    let said = folder.run("difference scene.gltf --node body bit.obj -o alone.glb --strict").exits(5);
+    let said = said
+        .says("1 camera not kept")
+        .says("extras of 3 nodes and scenes not kept")
+        .says("2 material variants not kept");
+    assert!(said.err.contains("scene.gltf"), "{said:?}");
+    let said = described(&folder, "scene.gltf");
+    assert_eq!(
+        (&said["contents"]["extras"], &said["contents"]["variants"]),
+        (&json!(3), &json!(2)),
+        "{said}"
+    );
+}
+
+/// A torus of quads as OBJ.
+fn quad_torus(around: usize, tube: usize) -> String {
+    let mut text = String::new();
+    for i in 0..around {
+        for k in 0..tube {
+            let (a, b) = (TAU * i as f64 / around as f64, TAU * k as f64 / tube as f64);
+            let ring = 1.0 + 0.375 * b.cos();
+            text.push_str(&format!("v {} {} {}\n", ring * a.cos(), ring * a.sin(), 0.375 * b.sin()));
+        }
+    }
+    let at = |i: usize, k: usize| 1 + i % around * tube + k % tube;
+    for i in 0..around {
+        for k in 0..tube {
+            text.push_str(&format!(
+                "f {} {} {} {}\n",
+                at(i, k),
+                at(i + 1, k),
+                at(i + 1, k + 1),
+                at(i, k + 1)
+            ));
+        }
+    }
+    text
+}
+
+/// The polygons of more than three corners of an OBJ: the places of their corners, sorted, as bits.
+fn polygons(obj: &str) -> HashSet<Vec<[u64; 3]>> {
+    let points = crate::common::program::vertices(obj);
+    let corner = |word: &str| {
+        let vertex: usize = word.split('/').next().and_then(|word| word.parse().ok()).expect("an index");
+        points[vertex - 1].map(f64::to_bits)
+    };
+    let faces = obj.lines().filter_map(|line| line.strip_prefix("f "));
+    let faces = faces.map(|line| {
+        let mut corners: Vec<[u64; 3]> = line.split_whitespace().map(corner).collect();
+        corners.sort_unstable();
+        corners
+    });
+    faces.filter(|corners| corners.len() > 3).collect()
+}
+
+#[test]
+fn quads_that_nothing_touched_stay_quads() {
+    let folder = Folder::new();
+    let (low, high) = ([0.9, -0.3, -0.15], [1.6, 0.3, 0.15]);
+    folder.write("torus.obj", quad_torus(48, 24));
+    folder.write("bit.obj", cube(low, high));
+    folder.run("difference torus.obj bit.obj -o cut.obj -o cut.ply -o cut.off").exits(0);
+    let (before, after) = (polygons(&folder.read("torus.obj")), polygons(&folder.read("cut.obj")));
+    assert_eq!(before.len(), 1152);
+    // 1. What is left are quads of the torus, and all that are clear of the box are left.
+    assert!(after.iter().all(|quad| before.contains(quad)));
+    let is_clear = |quad: &&Vec<[u64; 3]>| {
+        (0..3).any(|axis| {
+            let along = || quad.iter().map(|corner| f64::from_bits(corner[axis]));
+            along().all(|x| x > high[axis]) || along().all(|x| x < low[axis])
+        })
+    };
+    assert!(before.iter().filter(is_clear).all(|quad| after.contains(quad)));
+    assert_eq!((after.len(), before.iter().filter(is_clear).count()), (1136, 1136));
+    // 2. In the other formats too.
+    for file in ["cut.obj", "cut.ply", "cut.off"] {
+        assert_eq!(loaded(&folder, file).polygons.triangles, vec![2; after.len()], "{file}");
+    }
+    let fours = folder.read("cut.off").lines().filter(|line| line.starts_with("4 ")).count();
+    assert_eq!(fours, after.len());
+}
+
+#[test]
+fn options_say_what_they_take() {
+    let folder = workshop();
+    scene(&folder);
+    for (options, said) in [
+        ("--normals smooth", "keep, flat, none, or an angle from 0 to 180 degrees"),
+        ("--normals 181", "keep, flat, none, or an angle from 0 to 180 degrees"),
+        ("--cut-uv sphere", "planar or box"),
+        ("--cut-uv box:0", "box:0.5"),
+        ("--scene stay", "drop, keep"),
+        ("--scene keep", "--node NAME"),
+    ] {
+        folder.run(&format!("difference crate.obj tool.obj -o out.glb {options}")).exits(1).says(said);
+    }
+    let arguments = ["difference", "crate.obj", "tool.obj", "-o", "out.glb", "--cut-material", ""];
+    folder.run_args(&arguments).exits(1).says("keep, body, or the name of a material");
+    folder.run("difference scene.gltf#body bit.obj -o out.glb --node twin").exits(1).says("leave one out");
+    folder.run("slice crate.obj --levels 0.5 -o out.svg --node body").exits(1);
+    let ran = folder.run("difference scene.gltf bit.obj -o out.glb --scene keep --node bodi");
+    assert!(ran.code != 0 && ran.err.contains("body"), "{ran:?}");
+    assert!(!folder.exists("out.glb"));
+}
+
+#[test]
+fn snapping_keeps_what_faces_have() {
+    let folder = workshop();
+    // Flush but for a hair, on the side x = 1.
+    let low = 1.0 + 1e-10;
+    folder.write("next.obj", cube([low, 0.25, 0.25], [2.0, 0.75, 0.75]));
+    folder.run("union crate.obj next.obj --snap 1e-9 -o one.obj -o one.glb").exits(0);
+    let said = described(&folder, "one.obj");
+    assert_eq!(said["shells"], 1, "{said}");
+    let mesh = loaded(&folder, "one.obj");
+    // 1. Texture coordinates.
+    assert!(assert_crate(&mesh, 1e-9) > 10);
+    // 2. Groups and materials.
+    let crates = materials(&folder, "one.obj");
+    assert_eq!(
+        crates.iter().find(|(name, _)| name == "wood").map(|known| known.1),
+        Some(valued(&mesh, "TEXCOORD_0").len() as u64)
+    );
+    // 3. Quads: the five sides of the crate that the other cube does not touch.
+    assert_eq!(mesh.polygons.triangles, [2; 5]);
+}
+
+#[test]
+fn what_off_and_mtl_do_not_hold_is_told() {
+    let folder = workshop();
+    let off = sphere(6, 1.0, [0.0; 3]);
+    let colored: Vec<String> = off
+        .lines()
+        .enumerate()
+        .map(|(i, line)| match i {
+            0 => "COFF".into(),
+            1 => line.into(),
+            _ => format!("{line} 255 0 0 255"),
+        })
+        .collect();
+    folder.write("plain.off", &off);
+    folder.write("colored.off", colored.join("\n"));
+    folder.run("convert plain.off out.ply --strict").exits(0);
+    let ran: Ran = folder.run("convert colored.off out.ply --strict").exits(5);
+    ran.says("colours of vertices are not read").says("colours of faces are not read");
+    // Turned faces: the words after them are no corners.
+    folder.write("in.obj", inside_out(&cube([0.0; 3], [1.0; 3])));
+    folder.run("convert in.obj out.off --strict").exits(0);
+
+    folder.run("convert crate.obj crate.gltf").exits(0);
+    let mut document: Value = serde_json::from_str(&folder.read("crate.gltf")).expect("JSON");
+    folder.run("convert crate.gltf plain.obj --strict").exits(0);
+    let material = &mut document["materials"][0];
+    material["occlusionTexture"] = json!({"index": 0});
+    material["alphaMode"] = json!("MASK");
+    material["extensions"] = json!({"KHR_materials_clearcoat": {"clearcoatFactor": 1}});
+    material["extras"] = json!({"by": "me"});
+    document["extensionsUsed"] = json!(["KHR_materials_clearcoat"]);
+    folder.write("rich.gltf", document.to_string());
+    folder.run("convert rich.gltf same.glb --strict").exits(0);
+    let ran = folder.run("convert rich.gltf rich.obj --strict").exits(5);
+    ran.says("MTL has no word for")
+        .says("occlusionTexture")
+        .says("KHR_materials_clearcoat")
+        .says("alphaMode")
+        .says("extras");
+}
