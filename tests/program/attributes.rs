@@ -1,19 +1,18 @@
-//! Attributes, materials, pictures, polygons and scenes, from files into files.
+//! Texture coordinates, normals, materials and pictures, from files into files.
 
 use std::collections::HashSet;
-use std::f64::consts::TAU;
 use std::fs;
 
 use serde_json::{Value, json};
 use trisect::Mesh;
 
-use crate::common::program::{Folder, Ran, cube, inside_out, sphere};
+use crate::common::program::{Folder, cube, sphere};
 
 /// A picture to whoever does not decode it.
-const PICTURE: &[u8] = b"\x89PNG\r\n\x1a\nnot to be decoded";
+pub(super) const PICTURE: &[u8] = b"\x89PNG\r\n\x1a\nnot to be decoded";
 
 /// A cube of quads with texture coordinates: on each face the two coordinates along it.
-fn crate_obj(low: f64, high: f64, material: &str) -> String {
+pub(super) fn crate_obj(low: f64, high: f64, material: &str) -> String {
     let mut text = format!("mtllib crate.mtl\no crate\nusemtl {material}\n");
     let at = |corner: usize, axis: usize| corner >> axis & 1;
     for corner in 0..8 {
@@ -32,7 +31,7 @@ fn crate_obj(low: f64, high: f64, material: &str) -> String {
 }
 
 /// A textured crate, a tool that takes a corner of it away, and one that is elsewhere.
-fn workshop() -> Folder {
+pub(super) fn workshop() -> Folder {
     let folder = Folder::new();
     folder.write("crate.obj", crate_obj(0.0, 1.0, "wood"));
     folder.write(
@@ -52,16 +51,16 @@ fn workshop() -> Folder {
     folder
 }
 
-fn described(folder: &Folder, file: &str) -> Value {
+pub(super) fn described(folder: &Folder, file: &str) -> Value {
     folder.run_args(&["info", file, "--json"]).exits(0).json()["files"][0].clone()
 }
 
-fn loaded(folder: &Folder, file: &str) -> Mesh {
+pub(super) fn loaded(folder: &Folder, file: &str) -> Mesh {
     Mesh::load(folder.path(file)).expect("a mesh file")
 }
 
 /// The corners of triangles: places and values of an attribute, where all three have one.
-fn valued(mesh: &Mesh, name: &str) -> Vec<([[f64; 3]; 3], [Vec<f64>; 3])> {
+pub(super) fn valued(mesh: &Mesh, name: &str) -> Vec<([[f64; 3]; 3], [Vec<f64>; 3])> {
     let Some(attribute) = mesh.attribute(name) else { return Vec::new() };
     let of_triangle = |(triangle, corners): (usize, &[u32; 3])| {
         let value = |k: usize| Some(attribute.value(attribute.of_corner[3 * triangle + k])?.to_vec());
@@ -72,7 +71,7 @@ fn valued(mesh: &Mesh, name: &str) -> Vec<([[f64; 3]; 3], [Vec<f64>; 3])> {
 
 /// Asserts that the faces that are left of the crate show what they showed, and how many triangles show something.
 #[track_caller]
-fn assert_crate(mesh: &Mesh, tolerance: f64) -> usize {
+pub(super) fn assert_crate(mesh: &Mesh, tolerance: f64) -> usize {
     let triangles = valued(mesh, "TEXCOORD_0");
     for (corners, values) in &triangles {
         let is_side = |&axis: &usize| {
@@ -92,7 +91,7 @@ fn assert_crate(mesh: &Mesh, tolerance: f64) -> usize {
 }
 
 /// The materials of a mesh by name, with how many triangles have each.
-fn materials(folder: &Folder, file: &str) -> Vec<(String, u64)> {
+pub(super) fn materials(folder: &Folder, file: &str) -> Vec<(String, u64)> {
     let mut list: Vec<(String, u64)> = Vec::new();
     for group in described(folder, file)["groups"].as_array().expect("a list") {
         let (name, count) = (group["material"].as_str().unwrap_or("none"), group["triangles"].as_u64());
@@ -311,221 +310,4 @@ fn seams_are_told_in_the_file() {
     folder.write("b.obj", cube([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]));
     folder.run("convert a.obj plain.gltf --strict").exits(0);
     assert!(!folder.read("plain.gltf").contains("EXT_mesh_manifold"));
-}
-
-/// A scene: a turned crate below a room, a twin of it, a camera, and what readers do not keep.
-fn scene(folder: &Folder) {
-    folder.run("convert crate.obj scene.gltf").exits(0);
-    let mut document: Value = serde_json::from_str(&folder.read("scene.gltf")).expect("JSON");
-    document["nodes"] = json!([
-        {"name": "room", "children": [1, 2, 3]},
-        {"name": "body", "mesh": 0, "translation": [5, 0, 0], "extras": {"price": 7}},
-        {"name": "twin", "mesh": 0, "translation": [0, 9, 0]},
-        {"name": "eye", "camera": 0, "extras": {"lens": "old"}}
-    ]);
-    document["scenes"] = json!([{"nodes": [0], "extras": {"by": "me"}}]);
-    document["scene"] = json!(0);
-    document["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}]);
-    document["extensionsUsed"] = json!(["KHR_materials_variants"]);
-    document["extensions"] =
-        json!({"KHR_materials_variants": {"variants": [{"name": "day"}, {"name": "night"}]}});
-    folder.write("scene.gltf", document.to_string());
-    folder.write("bit.obj", cube([5.75, 0.75, 0.75], [6.5, 1.5, 1.5]));
-}
-
-#[test]
-fn a_scene_stays_around_the_node_that_is_cut() {
-    let folder = workshop();
-    scene(&folder);
-    for line in
-        ["scene.gltf --node body bit.obj", "scene.gltf#body bit.obj", "scene.gltf --node room/body bit.obj"]
-    {
-        folder.run(&format!("difference {line} -o cut.gltf --scene keep --strict")).exits(0);
-        let document: Value = serde_json::from_str(&folder.read("cut.gltf")).expect("JSON");
-        let names: Vec<&str> =
-            document["nodes"].as_array().unwrap().iter().filter_map(|node| node["name"].as_str()).collect();
-        assert_eq!(names, ["room", "body", "twin", "eye"], "{line}");
-        assert_eq!(
-            (&document["nodes"][1]["extras"]["price"], &document["nodes"][3]["camera"]),
-            (&json!(7), &json!(0))
-        );
-        assert_eq!(document["scenes"][0]["extras"]["by"], "me");
-        let volume =
-            |part: &str| described(&folder, &format!("cut.gltf#{part}"))["volume"].as_f64().expect("closed");
-        assert!((volume("body") - (1.0 - 0.25_f64.powi(3))).abs() < 1e-6, "{line}");
-        assert!((volume("twin") - 1.0).abs() < 1e-6, "{line}");
-        let said = described(&folder, "cut.gltf");
-        assert_eq!(
-            (&said["contents"]["cameras"], said["pictures"].as_array().map(Vec::len)),
-            (&json!(1), Some(1)),
-            "{said}"
-        );
-    }
-    // Alone, the node leaves the rest behind, which is said.
-    let said = folder.run("difference scene.gltf --node body bit.obj -o alone.glb --strict").exits(5);
-    let said = said
-        .says("1 camera not kept")
-        .says("extras of 3 nodes and scenes not kept")
-        .says("2 material variants not kept");
-    assert!(said.err.contains("scene.gltf"), "{said:?}");
-    let said = described(&folder, "scene.gltf");
-    assert_eq!(
-        (&said["contents"]["extras"], &said["contents"]["variants"]),
-        (&json!(3), &json!(2)),
-        "{said}"
-    );
-}
-
-/// A torus of quads as OBJ.
-fn quad_torus(around: usize, tube: usize) -> String {
-    let mut text = String::new();
-    for i in 0..around {
-        for k in 0..tube {
-            let (a, b) = (TAU * i as f64 / around as f64, TAU * k as f64 / tube as f64);
-            let ring = 1.0 + 0.375 * b.cos();
-            text.push_str(&format!("v {} {} {}\n", ring * a.cos(), ring * a.sin(), 0.375 * b.sin()));
-        }
-    }
-    let at = |i: usize, k: usize| 1 + i % around * tube + k % tube;
-    for i in 0..around {
-        for k in 0..tube {
-            text.push_str(&format!(
-                "f {} {} {} {}\n",
-                at(i, k),
-                at(i + 1, k),
-                at(i + 1, k + 1),
-                at(i, k + 1)
-            ));
-        }
-    }
-    text
-}
-
-/// The polygons of more than three corners of an OBJ: the places of their corners, sorted, as bits.
-fn polygons(obj: &str) -> HashSet<Vec<[u64; 3]>> {
-    let points = crate::common::program::vertices(obj);
-    let corner = |word: &str| {
-        let vertex: usize = word.split('/').next().and_then(|word| word.parse().ok()).expect("an index");
-        points[vertex - 1].map(f64::to_bits)
-    };
-    let faces = obj.lines().filter_map(|line| line.strip_prefix("f "));
-    let faces = faces.map(|line| {
-        let mut corners: Vec<[u64; 3]> = line.split_whitespace().map(corner).collect();
-        corners.sort_unstable();
-        corners
-    });
-    faces.filter(|corners| corners.len() > 3).collect()
-}
-
-#[test]
-fn quads_that_nothing_touched_stay_quads() {
-    let folder = Folder::new();
-    let (low, high) = ([0.9, -0.3, -0.15], [1.6, 0.3, 0.15]);
-    folder.write("torus.obj", quad_torus(48, 24));
-    folder.write("bit.obj", cube(low, high));
-    folder.run("difference torus.obj bit.obj -o cut.obj -o cut.ply -o cut.off").exits(0);
-    let (before, after) = (polygons(&folder.read("torus.obj")), polygons(&folder.read("cut.obj")));
-    assert_eq!(before.len(), 1152);
-    // 1. What is left are quads of the torus, and all that are clear of the box are left.
-    assert!(after.iter().all(|quad| before.contains(quad)));
-    let is_clear = |quad: &&Vec<[u64; 3]>| {
-        (0..3).any(|axis| {
-            let along = || quad.iter().map(|corner| f64::from_bits(corner[axis]));
-            along().all(|x| x > high[axis]) || along().all(|x| x < low[axis])
-        })
-    };
-    assert!(before.iter().filter(is_clear).all(|quad| after.contains(quad)));
-    assert_eq!((after.len(), before.iter().filter(is_clear).count()), (1136, 1136));
-    // 2. In the other formats too.
-    for file in ["cut.obj", "cut.ply", "cut.off"] {
-        assert_eq!(loaded(&folder, file).polygons.triangles, vec![2; after.len()], "{file}");
-    }
-    let fours = folder.read("cut.off").lines().filter(|line| line.starts_with("4 ")).count();
-    assert_eq!(fours, after.len());
-}
-
-#[test]
-fn options_say_what_they_take() {
-    let folder = workshop();
-    scene(&folder);
-    for (options, said) in [
-        ("--normals smooth", "keep, flat, none, or an angle from 0 to 180 degrees"),
-        ("--normals 181", "keep, flat, none, or an angle from 0 to 180 degrees"),
-        ("--cut-uv sphere", "planar or box"),
-        ("--cut-uv box:0", "box:0.5"),
-        ("--scene stay", "drop, keep"),
-        ("--scene keep", "--node NAME"),
-    ] {
-        folder.run(&format!("difference crate.obj tool.obj -o out.glb {options}")).exits(1).says(said);
-    }
-    let arguments = ["difference", "crate.obj", "tool.obj", "-o", "out.glb", "--cut-material", ""];
-    folder.run_args(&arguments).exits(1).says("keep, body, or the name of a material");
-    folder.run("difference scene.gltf#body bit.obj -o out.glb --node twin").exits(1).says("leave one out");
-    folder.run("slice crate.obj --levels 0.5 -o out.svg --node body").exits(1);
-    let ran = folder.run("difference scene.gltf bit.obj -o out.glb --scene keep --node bodi");
-    assert!(ran.code != 0 && ran.err.contains("body"), "{ran:?}");
-    assert!(!folder.exists("out.glb"));
-}
-
-#[test]
-fn snapping_keeps_what_faces_have() {
-    let folder = workshop();
-    // Flush but for a hair, on the side x = 1.
-    let low = 1.0 + 1e-10;
-    folder.write("next.obj", cube([low, 0.25, 0.25], [2.0, 0.75, 0.75]));
-    folder.run("union crate.obj next.obj --snap 1e-9 -o one.obj -o one.glb").exits(0);
-    let said = described(&folder, "one.obj");
-    assert_eq!(said["shells"], 1, "{said}");
-    let mesh = loaded(&folder, "one.obj");
-    // 1. Texture coordinates.
-    assert!(assert_crate(&mesh, 1e-9) > 10);
-    // 2. Groups and materials.
-    let crates = materials(&folder, "one.obj");
-    assert_eq!(
-        crates.iter().find(|(name, _)| name == "wood").map(|known| known.1),
-        Some(valued(&mesh, "TEXCOORD_0").len() as u64)
-    );
-    // 3. Quads: the five sides of the crate that the other cube does not touch.
-    assert_eq!(mesh.polygons.triangles, [2; 5]);
-}
-
-#[test]
-fn what_off_and_mtl_do_not_hold_is_told() {
-    let folder = workshop();
-    let off = sphere(6, 1.0, [0.0; 3]);
-    let colored: Vec<String> = off
-        .lines()
-        .enumerate()
-        .map(|(i, line)| match i {
-            0 => "COFF".into(),
-            1 => line.into(),
-            _ => format!("{line} 255 0 0 255"),
-        })
-        .collect();
-    folder.write("plain.off", &off);
-    folder.write("colored.off", colored.join("\n"));
-    folder.run("convert plain.off out.ply --strict").exits(0);
-    let ran: Ran = folder.run("convert colored.off out.ply --strict").exits(5);
-    ran.says("colours of vertices are not read").says("colours of faces are not read");
-    // Turned faces: the words after them are no corners.
-    folder.write("in.obj", inside_out(&cube([0.0; 3], [1.0; 3])));
-    folder.run("convert in.obj out.off --strict").exits(0);
-
-    folder.run("convert crate.obj crate.gltf").exits(0);
-    let mut document: Value = serde_json::from_str(&folder.read("crate.gltf")).expect("JSON");
-    folder.run("convert crate.gltf plain.obj --strict").exits(0);
-    let material = &mut document["materials"][0];
-    material["occlusionTexture"] = json!({"index": 0});
-    material["alphaMode"] = json!("MASK");
-    material["extensions"] = json!({"KHR_materials_clearcoat": {"clearcoatFactor": 1}});
-    material["extras"] = json!({"by": "me"});
-    document["extensionsUsed"] = json!(["KHR_materials_clearcoat"]);
-    folder.write("rich.gltf", document.to_string());
-    folder.run("convert rich.gltf same.glb --strict").exits(0);
-    let ran = folder.run("convert rich.gltf rich.obj --strict").exits(5);
-    ran.says("MTL has no word for")
-        .says("occlusionTexture")
-        .says("KHR_materials_clearcoat")
-        .says("alphaMode")
-        .says("extras");
 }

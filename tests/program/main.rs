@@ -12,6 +12,7 @@ mod curve;
 mod cuts;
 mod engine;
 mod eval;
+mod kept;
 mod operations;
 mod parts;
 mod repairs;

@@ -1,6 +1,6 @@
 //! Writing the material library beside an OBJ.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -121,90 +121,6 @@ fn write_surface(said: &MaterialText, pictures: &[PictureFile], text: &mut Strin
         let file = picture_of(&json, key, said).and_then(|image| file_of(pictures, &image));
         if let Some(file) = file {
             let _ = writeln!(text, "{word} {}", line_name(file));
-        }
-    }
-}
-
-/// What of the materials of a mesh a library has no words for, as a sentence.
-pub(super) fn unsaid(mesh: &Mesh) -> Option<String> {
-    let mut keys = BTreeSet::new();
-    let mut seen: Vec<&Arc<MaterialText>> = Vec::new();
-    for said in mesh.groups.list.iter().filter_map(|group| group.material.as_ref()?.text.as_ref()) {
-        if said.language == MaterialLanguage::Gltf && !seen.iter().any(|known| Arc::ptr_eq(known, said)) {
-            seen.push(said);
-            unsaid_of(said, &mut keys);
-        }
-    }
-    let list: Vec<&str> = keys.iter().take(MOST_KEYS).map(String::as_str).collect();
-    let more = if keys.len() > MOST_KEYS { ", ..." } else { "" };
-    (!list.is_empty()).then(|| {
-        format!("parts of materials not written, since MTL has no word for them: {}{more}", list.join(", "))
-    })
-}
-
-/// So many keys are named.
-const MOST_KEYS: usize = 16;
-
-/// Keys of the material for which there are statements, or which say nothing where there are none: a library's faces are seen
-/// from both sides, and are transparent where their opacity says so.
-const SAID: [&str; 6] =
-    ["name", "pbrMetallicRoughness", "emissiveFactor", "normalTexture", "emissiveTexture", "doubleSided"];
-
-/// Adds the keys of a material that [`write_surface`] and [`options`] do not write.
-fn unsaid_of(said: &MaterialText, keys: &mut BTreeSet<String>) {
-    let Ok(Value::Object(json)) = serde_json::from_str::<Value>(&said.text) else { return };
-    let short =
-        |key: &str| key.chars().filter(|character| !character.is_control()).take(80).collect::<String>();
-    // 1. The material's own.
-    for (key, value) in &json {
-        let is_said = SAID.contains(&key.as_str())
-            || key == "alphaMode" && value != "MASK"
-            || key == "alphaCutoff" && json.get("alphaMode").is_none_or(|mode| mode != "MASK")
-            || key == "extensions";
-        if !is_said {
-            keys.insert(short(key));
-        }
-    }
-    let extensions = json.get("extensions").and_then(Value::as_object);
-    keys.extend(extensions.into_iter().flatten().map(|(name, _)| short(name)));
-    // 2. Those of the surface.
-    let surface = json.get("pbrMetallicRoughness").and_then(Value::as_object);
-    for (key, _) in surface.into_iter().flatten() {
-        let is_said = ["baseColorFactor", "baseColorTexture", "metallicFactor", "roughnessFactor"];
-        if !is_said.contains(&key.as_str()) {
-            keys.insert(short(key));
-        }
-    }
-    // 3. Those of textures: how they lie is said of the base colour alone, and not that it is turned.
-    let base = surface.and_then(|surface| surface.get("baseColorTexture"));
-    let named = [
-        ("baseColorTexture", base),
-        ("normalTexture", json.get("normalTexture")),
-        ("emissiveTexture", json.get("emissiveTexture")),
-    ];
-    for (name, texture) in named.into_iter().filter_map(|(name, texture)| Some((name, texture?.as_object()?)))
-    {
-        for (key, value) in texture {
-            let is_usual = key == "index"
-                || key == "texCoord" && value == 0
-                || key == "scale" && value.as_f64() == Some(1.0);
-            match key.as_str() {
-                _ if is_usual => {}
-                "extensions" => {
-                    let extensions = value.as_object().into_iter().flatten();
-                    let is_said = |key: &str, value: &Value| {
-                        name == "baseColorTexture"
-                            && key == "KHR_texture_transform"
-                            && value.get("rotation").and_then(Value::as_f64).unwrap_or(0.0) == 0.0
-                    };
-                    keys.extend(
-                        extensions
-                            .filter(|(key, value)| !is_said(key, value))
-                            .map(|(key, _)| format!("{name}.{}", short(key))),
-                    );
-                }
-                key => drop(keys.insert(format!("{name}.{}", short(key)))),
-            }
         }
     }
 }

@@ -7,7 +7,8 @@ use super::super::text::{NumberWriter, line_name, write_all, write_blocks};
 use super::super::{Format, Precision, WriteOptions};
 use super::groups::NO_MATERIAL;
 use super::labels::Labels;
-use super::mtl::{self, MaterialNames};
+use super::mtl::MaterialNames;
+use super::unsaid::unsaid;
 use crate::mesh::Faces;
 use crate::{Error, Mesh};
 
@@ -44,9 +45,15 @@ pub(in crate::io) fn write(
     labels.write_tables(output, options)?;
 
     write_faces(mesh, &names, &labels, output, options)?;
-    let has_library = options.material_library.is_some();
-    let unsaid = if has_library { mtl::unsaid(mesh) } else { None };
-    written.warnings.splice(0..0, labels.lost().into_iter().chain(unsaid));
+    let of_materials = match options.material_library {
+        Some(_) => unsaid(mesh),
+        None if names.list.is_empty() => None,
+        None => Some(
+            "OBJ is written without a material library: materials are named, colours and pictures not kept"
+                .into(),
+        ),
+    };
+    written.warnings.splice(0..0, labels.lost().into_iter().chain(of_materials));
     Ok(written)
 }
 
