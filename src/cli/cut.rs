@@ -19,6 +19,12 @@ use super::words;
 /// Cuts an input.
 pub(crate) fn run(arguments: &Cut, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
     let mut requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    if arguments.plane.is_empty() {
+        return Err(Fault::usage(
+            "cut needs a plane to cut at (--plane z=12.5); to take files off the first one, see `difference`, and for sections \
+             `section` and `slice`",
+        ));
+    }
     if requests.len() > 1 {
         return Err(Fault::usage("cut takes one input; cut others by runs of their own"));
     }

@@ -28,7 +28,7 @@ pub(crate) struct Cut {
     pub(crate) inputs: Inputs,
     /// The plane: z=12.5 (or x=, y=), a,b,c,d for a x + b y + c z = d, or three points; several cut one after the other
     #[arg(
-        long, value_name = "PLANE", value_parser = values::plane, required = true, allow_hyphen_values = true,
+        long, value_name = "PLANE", value_parser = values::plane, allow_hyphen_values = true,
         help_heading = "Results"
     )]
     pub(crate) plane: Vec<Plane>,

@@ -34,8 +34,8 @@ impl Mesh {
     ///
     /// let mut drum = primitives::cylinder(1.0, 2.0, 64)?;
     /// let normals = drum.crease_normals(30.0);
-    /// // Smooth around, with an edge above and below: two normals at each vertex of the rim, one for each flat end.
-    /// assert_eq!(normals.len(), 64 + 64 + 2);
+    /// // Smooth around, with an edge above and below: two normals at each vertex of both rims.
+    /// assert_eq!(normals.len(), 2 * (64 + 64));
     /// drum.set_attribute(normals);
     /// # Ok::<(), trisect::Error>(())
     /// ```

@@ -312,9 +312,9 @@ fn what_is_a_hair_short_goes_through_when_snapped() {
     folder.write("plate.obj", &cube([0.0; 3], [4.0, 4.0, 1.0]));
     folder.write("short.obj", &cube([1.0, 1.0, 1e-8], [3.0, 3.0, 1.0 - 1e-8]));
     // Films are left, and the warning says what takes them away.
-    folder.run("difference plate.obj short.obj -o c.obj").exits(0).says("--snap 1e-7").says("2 shells");
-    let ran = folder.run("difference plate.obj short.obj -o c.obj --snap 1e-7 --json").exits(0);
-    let ran = ran.says("snapped by up to 1e-7: 8 vertices moved");
+    folder.run("difference plate.obj short.obj -o c.obj").exits(0).says("--snap 1e-6").says("2 shells");
+    let ran = folder.run("difference plate.obj short.obj -o c.obj --snap 1e-6 --json").exits(0);
+    let ran = ran.says("snapped by up to 1e-6: 8 vertices moved");
     let report: Value = serde_json::from_str(&ran.out).unwrap();
     let certificate = &report["result"]["certificate"];
     assert_eq!((&certificate["genus"], &certificate["components"]), (&json!(1), &json!(1)));
@@ -402,7 +402,7 @@ fn help_is_a_verb_and_words_that_mean_verbs_get_a_hint() {
     let folder = workshop();
     assert!(folder.run("help union").exits(0).out.contains("Usage: trisect union"));
     for (word, verb) in
-        [("subtract", "`difference`"), ("cut", "`slice`"), ("merge", "`union`"), ("repair", "`check`")]
+        [("subtract", "`difference`"), ("cut", "`difference`"), ("merge", "`union`"), ("repair", "`check`")]
     {
         let ran = folder.run(&format!("{word} a.obj b.obj")).exits(1).says(verb);
         assert_eq!(ran.err.lines().count(), 1, "{ran:?}");
