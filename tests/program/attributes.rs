@@ -305,9 +305,12 @@ fn seams_are_told_in_the_file() {
     assert_eq!(said["closed"], true, "{said}");
     assert_eq!(assert_crate(&glb, 1e-6), assert_crate(&obj, 1e-12));
     assert_eq!(materials(&folder, "cut.glb"), materials(&folder, "cut.obj"));
-    // Two cubes that share an edge have four triangles there.
+    // Two cubes that share an edge: four triangles meet there, and each cube has the edge to itself.
     folder.write("a.obj", cube([0.0; 3], [1.0; 3]));
     folder.write("b.obj", cube([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]));
+    folder.run("union a.obj b.obj -o edge.glb --manifold --strict").exits(0);
+    assert_eq!(used(&loaded(&folder, "edge.glb")), 16);
+    assert_eq!(described(&folder, "edge.glb")["manifold"], true);
     folder.run("convert a.obj plain.gltf --strict").exits(0);
     assert!(!folder.read("plain.gltf").contains("EXT_mesh_manifold"));
 }

@@ -56,6 +56,9 @@ fn a_scene_stays_around_the_node_that_is_cut() {
             "{said}"
         );
     }
+    // Formats without scenes have the node alone.
+    let ran = folder.run("difference scene.gltf#body bit.obj -o cut.ply --scene keep --strict").exits(5);
+    ran.says("PLY has no scenes");
     // Alone, the node leaves the rest behind, which is said.
     let said = folder.run("difference scene.gltf --node body bit.obj -o alone.glb --strict").exits(5);
     let said = said
