@@ -74,6 +74,34 @@ fn a_scene_stays_around_the_node_that_is_cut() {
     );
 }
 
+#[test]
+fn what_the_mesh_of_a_node_says_goes_to_the_new_one() {
+    let folder = workshop();
+    scene(&folder);
+    let mut document: Value = serde_json::from_str(&folder.read("scene.gltf")).expect("JSON");
+    let mesh = &mut document["meshes"][0];
+    mesh["name"] = json!("box");
+    mesh["extras"] = json!({"mass": 3, "targetNames": ["wide"]});
+    mesh["primitives"][0]["extensions"] =
+        json!({"KHR_materials_variants": {"mappings": [{"variants": [1], "material": 0}]}});
+    folder.write("scene.gltf", document.to_string());
+    let ran = folder.run("difference scene.gltf#body bit.obj -o cut.gltf --scene keep --strict").exits(5);
+    ran.says("the material variants of the node's mesh are not kept");
+    let cut: Value = serde_json::from_str(&folder.read("cut.gltf")).expect("JSON");
+    let place = cut["nodes"][1]["mesh"].as_u64().expect("a mesh") as usize;
+    assert_eq!(
+        (&cut["meshes"][place]["name"], &cut["meshes"][place]["extras"]),
+        (&json!("box"), &json!({"mass": 3}))
+    );
+    // The twin has all that it had.
+    let twin = cut["nodes"][2]["mesh"].as_u64().expect("a mesh") as usize;
+    assert_eq!(
+        cut["meshes"][twin]["primitives"][0]["extensions"],
+        document["meshes"][0]["primitives"][0]["extensions"]
+    );
+    assert_eq!(cut["extensions"], document["extensions"]);
+}
+
 /// A torus of quads as OBJ.
 fn quad_torus(around: usize, tube: usize) -> String {
     let mut text = String::new();

@@ -288,7 +288,7 @@ impl Scene {
         if before.is_some_and(has_variants) {
             self.warnings.push("the material variants of the node's mesh are not kept".into());
         }
-        let meshes = self.lists.entry("meshes").or_default();
+        let meshes = self.list("meshes");
         match own {
             Some(own) => {
                 meshes[own as usize] = mesh;
