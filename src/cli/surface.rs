@@ -94,7 +94,7 @@ pub(crate) fn shaded(mesh: Cow<'_, Mesh>, normals: Normals) -> Cow<'_, Mesh> {
     match normals {
         Normals::Keep => {}
         Normals::None => {
-            mesh.attributes.retain(|attribute| !matches!(&*attribute.name, "NORMAL" | "TANGENT"))
+            mesh.attributes.retain(|attribute| !matches!(&*attribute.name, "NORMAL" | "TANGENT"));
         }
         Normals::Flat => {
             let normals = mesh.flat_normals();

@@ -59,8 +59,11 @@ pub(super) fn loaded(folder: &Folder, file: &str) -> Mesh {
     Mesh::load(folder.path(file)).expect("a mesh file")
 }
 
-/// The corners of triangles: places and values of an attribute, where all three have one.
-pub(super) fn valued(mesh: &Mesh, name: &str) -> Vec<([[f64; 3]; 3], [Vec<f64>; 3])> {
+/// The corners of a triangle: their places, and their values of an attribute.
+type Corners = ([[f64; 3]; 3], [Vec<f64>; 3]);
+
+/// The triangles all of whose corners have a value of an attribute.
+pub(super) fn valued(mesh: &Mesh, name: &str) -> Vec<Corners> {
     let Some(attribute) = mesh.attribute(name) else { return Vec::new() };
     let of_triangle = |(triangle, corners): (usize, &[u32; 3])| {
         let value = |k: usize| Some(attribute.value(attribute.of_corner[3 * triangle + k])?.to_vec());

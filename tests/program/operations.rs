@@ -309,8 +309,8 @@ fn a_dry_run_reads_and_checks_but_writes_nothing() {
 #[test]
 fn what_is_a_hair_short_goes_through_when_snapped() {
     let folder = Folder::new();
-    folder.write("plate.obj", &cube([0.0; 3], [4.0, 4.0, 1.0]));
-    folder.write("short.obj", &cube([1.0, 1.0, 1e-8], [3.0, 3.0, 1.0 - 1e-8]));
+    folder.write("plate.obj", cube([0.0; 3], [4.0, 4.0, 1.0]));
+    folder.write("short.obj", cube([1.0, 1.0, 1e-8], [3.0, 3.0, 1.0 - 1e-8]));
     // Films are left, and the warning says what takes them away.
     folder.run("difference plate.obj short.obj -o c.obj").exits(0).says("--snap 1e-6").says("2 shells");
     let ran = folder.run("difference plate.obj short.obj -o c.obj --snap 1e-6 --json").exits(0);
