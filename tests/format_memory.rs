@@ -127,6 +127,7 @@ fn hostile_files() -> Vec<(&'static str, Format, Vec<u8>)> {
             ),
         ),
         ("glTF nodes", Format::Gltf, gltf("nodes", "{},")),
+        ("glTF nodes with extras", Format::Gltf, gltf("nodes", "{\"extras\":0},")),
         ("glTF shown nodes", Format::Gltf, gltf("nodes", "{\"mesh\":0},")),
         (
             "glTF children",

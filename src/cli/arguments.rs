@@ -183,7 +183,7 @@ pub(crate) struct Combine {
     #[arg(long, help_heading = "Results")]
     pub(crate) embed: bool,
     /// What the faces show that a tool has cut: keep (what the tool has there), body, or the name of a material
-    #[arg(long, value_name = "keep|body|NAME", help_heading = "Results")]
+    #[arg(long, value_name = "keep|body|NAME", value_parser = surface::cut_material, help_heading = "Results")]
     pub(crate) cut_material: Option<String>,
     /// Lay texture coordinates on cut faces: planar or box, with how many to a unit of length (box:0.5)
     #[arg(long, value_name = "KIND[:DENSITY]", value_parser = surface::cut_uv, help_heading = "Results")]

@@ -75,6 +75,8 @@ pub(crate) fn text(mesh: &Mesh, contents: &Contents) -> String {
         ("lights", contents.lights),
         ("skinned", contents.skinned),
         ("morphed", contents.morphed),
+        ("variants", contents.variants),
+        ("extras", contents.extras),
     ] {
         if count > 0 {
             text.push_str(&format!("  {name:10} {count}\n"));

@@ -53,6 +53,14 @@ pub(crate) fn cut_uv(text: &str) -> Result<CutUv, String> {
     }
 }
 
+/// `keep`, `body`, or a name.
+pub(crate) fn cut_material(text: &str) -> Result<String, String> {
+    match text.trim() {
+        "" => Err("expected keep, body, or the name of a material".into()),
+        name => Ok(name.to_owned()),
+    }
+}
+
 /// What the cut faces show. A material's name means one of the operands, or else a new one.
 pub(crate) fn cut_faces<'a>(arguments: &Combine, solids: impl Iterator<Item = &'a Solid>) -> CutFaces {
     let faces = match arguments.cut_material.as_deref() {

@@ -15,6 +15,10 @@ pub struct Contents {
     pub skinned: usize,
     /// How many meshes have morph targets; they are read in the shape that their weights show.
     pub morphed: usize,
+    /// How many nodes, scenes and the like have extras: what programs say of them for themselves.
+    pub extras: usize,
+    /// How many material variants there are; materials are the usual ones.
+    pub variants: usize,
 }
 
 impl Contents {
@@ -45,10 +49,20 @@ impl Contents {
                 "{meshes} with morph targets taken in the shape of the weights, the targets are not kept"
             ));
         }
-        for (count, what) in [(self.cameras, "camera"), (self.lights, "light")] {
+        for (count, what) in
+            [(self.cameras, "camera"), (self.lights, "light"), (self.variants, "material variant")]
+        {
             if count > 0 {
                 sentences.push(format!("{} not kept", counted(count, what)));
             }
+        }
+        if self.extras > 0 {
+            let whose = if self.extras == 1 {
+                "1 node or scene"
+            } else {
+                &format!("{} nodes and scenes", self.extras)
+            };
+            sentences.push(format!("extras of {whose} not kept"));
         }
         sentences
     }
@@ -73,6 +87,8 @@ mod tests {
             animations: (0..9).map(|i| format!("walk{i}")).collect(),
             cameras: 1,
             skinned: 2,
+            extras: 1,
+            variants: 2,
             ..Contents::default()
         };
         let said = contents.not_kept();
@@ -80,5 +96,6 @@ mod tests {
             said[0].starts_with("9 animations not kept: walk0, walk1") && said[0].ends_with("walk7, ...")
         );
         assert!(said[1].starts_with("2 skinned meshes") && said[2] == "1 camera not kept");
+        assert_eq!(said[3..], ["2 material variants not kept", "extras of 1 node or scene not kept"]);
     }
 }

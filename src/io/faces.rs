@@ -158,13 +158,12 @@ impl FaceList {
             let offsets = places.iter().map(|place| place.triangles as usize).collect();
             return Ok((self.triangles, offsets));
         }
-        let mut face = 0;
         // A polygon of n corners gives n - 2 triangles.
         let count = self.triangles.len() + self.corners.len() - 2 * self.polygons.len();
-        let mut triangles = Vec::with_capacity(count);
+        let mut row = Row { triangles: Vec::with_capacity(count), of: of.as_mut(), taken: 0, face: 0 };
         let mut offsets = Vec::with_capacity(places.len());
         let mut triangulator = FaceTriangulator::default();
-        let (mut taken, mut improper) = (0, 0);
+        let mut improper = 0;
         let mut places = places.iter().peekable();
         let end = self.end();
         self.polygons.push(Polygon { after: end.triangles, first: self.corners.len() as u32 });
@@ -172,43 +171,68 @@ impl FaceList {
             if i % 1024 == 0 {
                 control.check()?;
             }
-            let mut copy_until = |end: u32, triangles: &mut Vec<[u32; 3]>| {
-                triangles.extend_from_slice(&self.triangles[taken..end as usize]);
-                if let Some(of) = of.as_mut() {
-                    of.extend(face..face + (end - taken as u32));
-                }
-                face += end - taken as u32;
-                taken = end as usize;
-            };
             while let Some(place) = places.next_if(|place| place.polygons as usize == i) {
-                copy_until(place.triangles, &mut triangles);
-                offsets.push(triangles.len());
+                row.copy_until(&self.triangles, place.triangles);
+                offsets.push(row.triangles.len());
             }
-            copy_until(polygon.after, &mut triangles);
+            row.copy_until(&self.triangles, polygon.after);
             if let Some(following) = self.polygons.get(i + 1) {
                 let corners = &self.corners[polygon.first as usize..following.first as usize];
-                let first = triangles.len();
-                if triangulator.triangulate(positions, corners, &mut triangles) == Tiling::Improper {
-                    improper += 1;
-                }
-                // Only a polygon that names a vertex twice can have such triangles; they are few.
-                let mut kept = first;
-                for k in first..triangles.len() {
-                    if whole(&triangles[k]) {
-                        triangles[kept] = triangles[k];
-                        kept += 1;
-                    }
-                }
-                triangles.truncate(kept);
-                if let Some(of) = of.as_mut() {
-                    of.resize(kept, face);
-                }
-                face += 1;
+                let tiling = row.add_polygon(&mut triangulator, positions, corners);
+                improper += usize::from(tiling == Tiling::Improper);
             }
         }
-        notes.add("triangle with a repeated corner dropped", count - triangles.len());
+        notes.add("triangle with a repeated corner dropped", count - row.triangles.len());
         notes.add("polygon that crosses itself or has no area: its triangles overlap or are flat", improper);
-        Ok((triangles, offsets))
+        Ok((row.triangles, offsets))
+    }
+}
+
+/// Triangles in the order of the faces, as it grows.
+struct Row<'a> {
+    triangles: Vec<[u32; 3]>,
+    /// The face of each, if anyone asks.
+    of: Option<&'a mut Vec<u32>>,
+    /// How many of the faces that are triangles are in it.
+    taken: u32,
+    /// How many faces are in it.
+    face: u32,
+}
+
+impl Row<'_> {
+    /// Adds the faces that are triangles up to one of them.
+    fn copy_until(&mut self, triangles: &[[u32; 3]], end: u32) {
+        self.triangles.extend_from_slice(&triangles[self.taken as usize..end as usize]);
+        let next = self.face + (end - self.taken);
+        if let Some(of) = self.of.as_mut() {
+            of.extend(self.face..next);
+        }
+        (self.face, self.taken) = (next, end);
+    }
+
+    /// Adds the triangles of a polygon.
+    fn add_polygon(
+        &mut self,
+        triangulator: &mut FaceTriangulator,
+        positions: &[[f64; 3]],
+        corners: &[u32],
+    ) -> Tiling {
+        let first = self.triangles.len();
+        let tiling = triangulator.triangulate(positions, corners, &mut self.triangles);
+        // Only a polygon that names a vertex twice can have triangles that are not whole; they are few.
+        let mut kept = first;
+        for k in first..self.triangles.len() {
+            if whole(&self.triangles[k]) {
+                self.triangles[kept] = self.triangles[k];
+                kept += 1;
+            }
+        }
+        self.triangles.truncate(kept);
+        if let Some(of) = self.of.as_mut() {
+            of.resize(kept, self.face);
+        }
+        self.face += 1;
+        tiling
     }
 }
 

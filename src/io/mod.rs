@@ -163,20 +163,24 @@ fn write_to(
     options: &WriteOptions,
 ) -> Result<Written, Error> {
     finish::check_for_writing(mesh)?;
-    match format {
-        Format::Obj => obj::write(mesh, output, options),
+    let mut written = match format {
+        Format::Obj => obj::write(mesh, output, options)?,
         Format::Gltf | Format::Glb => match &options.scene {
-            Some(scene) => gltf::write_kept(mesh, scene, format, output, options),
-            None => gltf::write(mesh, format, output, options, None),
+            Some(scene) => gltf::write_kept(mesh, scene, format, output, options)?,
+            None => gltf::write(mesh, format, output, options, None)?,
         },
         Format::Stl => without_attributes(mesh, format, stl::write(mesh, output, options)?),
-        Format::Ply => ply::write(mesh, output, options),
+        Format::Ply => ply::write(mesh, output, options)?,
         Format::Off => without_attributes(mesh, format, off::write(mesh, output, options)?),
+    };
+    if options.scene.is_some() && !matches!(format, Format::Gltf | Format::Glb) {
+        written.warnings.insert(0, format!("{format} has no scenes: the mesh is written alone"));
     }
+    Ok(written)
 }
 
 /// What is said of a format that has no attributes; STL's users look for neither materials nor pictures, and hear of them here.
-fn without_attributes(mesh: &Mesh, format: Format, mut written: Written) -> Result<Written, Error> {
+fn without_attributes(mesh: &Mesh, format: Format, mut written: Written) -> Written {
     let names: Vec<&str> = mesh.attributes.iter().map(|attribute| &*attribute.name).collect();
     if !names.is_empty() {
         written.warnings.insert(0, format!("{format} has no place for {}: not written", names.join(", ")));
@@ -187,7 +191,7 @@ fn without_attributes(mesh: &Mesh, format: Format, mut written: Written) -> Resu
             .warnings
             .insert(0, "STL is written without materials: colours and pictures are not kept".into());
     }
-    Ok(written)
+    written
 }
 
 /// The error for a damaged file.

@@ -5,12 +5,14 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod attributes;
 #[cfg(feature = "subdivision")]
 mod cages;
 mod curve;
 mod cuts;
 mod engine;
 mod eval;
+mod kept;
 mod operations;
 mod parts;
 mod repairs;

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::mesh::{FaceGroups, attributes_of_pieces};
+use crate::mesh::{FaceGroups, Polygons, attributes_of_pieces};
 use crate::{Error, Mesh, Solid};
 
 /// The most vertices, given and new.
@@ -93,7 +93,7 @@ impl Surfaces {
         kept.map(|(triangle, _)| *triangle).collect()
     }
 
-    /// The operands, with the given triangle of each of theirs, in the groups of these.
+    /// The operands, with the given triangle of each of theirs, in the groups of these, with their attributes and polygons.
     pub(super) fn into_solids(self, operands: &[&Solid]) -> Vec<(Solid, Vec<u32>)> {
         let mut meshes = vec![(Mesh::default(), Vec::new()); operands.len()];
         for triangle in &self.without_walls() {
@@ -113,6 +113,7 @@ impl Surfaces {
                 mesh.positions.push(position);
             }
             mesh.triangles.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
+            mesh.polygons = polygons_of_pieces(&given.mesh().polygons, given.mesh().triangles.len(), sources);
             mesh.attributes = attributes_of_pieces(given.mesh(), &mesh.positions, &mesh.triangles, sources);
             let groups = &given.mesh().groups;
             if !groups.is_empty() {
@@ -124,4 +125,18 @@ impl Surfaces {
         let solid = |(mesh, sources)| (Solid::from_closed_unchecked(mesh), sources);
         meshes.into_iter().map(solid).collect()
     }
+}
+
+/// The polygons of pieces of triangles: a triangle in pieces is part of none, and so its polygon is not whole any more.
+fn polygons_of_pieces(polygons: &Polygons, given: usize, sources: &[u32]) -> Polygons {
+    if polygons.of_triangle.len() != given {
+        return Polygons::default();
+    }
+    let mut pieces = vec![0_u32; given];
+    sources.iter().for_each(|&source| pieces[source as usize] += 1);
+    let polygon = |&source: &u32| match pieces[source as usize] {
+        1 => polygons.of_triangle[source as usize],
+        _ => Polygons::NONE,
+    };
+    Polygons { of_triangle: sources.iter().map(polygon).collect(), triangles: polygons.triangles.clone() }
 }

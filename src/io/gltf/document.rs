@@ -56,6 +56,7 @@ pub(super) struct Document<'a> {
     pub(super) animations: Vec<&'a RawValue>,
     #[serde(default)]
     pub(super) cameras: Count,
+    pub(super) extras: Option<IgnoredAny>,
     pub(super) extensions: Option<DocumentExtensions>,
 }
 
@@ -63,9 +64,10 @@ pub(super) struct Document<'a> {
 pub(super) struct Scene {
     #[serde(default)]
     pub(super) nodes: Box<[u32]>,
+    pub(super) extras: Option<IgnoredAny>,
 }
 
-/// A node; `None` if it shows no mesh and has no children.
+/// A node; `None` if it shows no mesh and has neither children nor extras.
 #[derive(Debug)]
 pub(super) struct Node(pub(super) Option<Box<NodeFields>>);
 
@@ -81,6 +83,7 @@ pub(super) struct NodeFields {
     pub(super) scale: Option<Box<[f64; 3]>>,
     pub(super) skin: Option<u32>,
     pub(super) weights: Option<Box<[f64]>>,
+    pub(super) extras: Option<IgnoredAny>,
     pub(super) extensions: Option<Box<NodeExtensions>>,
 }
 
@@ -106,7 +109,7 @@ pub(super) struct InstancingAttributes {
 impl<'de> Deserialize<'de> for Node {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let fields = NodeFields::deserialize(deserializer)?;
-        let empty = fields.mesh.is_none() && fields.children.is_empty();
+        let empty = fields.mesh.is_none() && fields.children.is_empty() && fields.extras.is_none();
         Ok(Self((!empty).then(|| Box::new(fields))))
     }
 }
@@ -117,6 +120,7 @@ pub(super) struct MeshObject<'a> {
     #[serde(borrow)]
     pub(super) primitives: Box<[Primitive<'a>]>,
     pub(super) weights: Option<Box<[f64]>>,
+    pub(super) extras: Option<IgnoredAny>,
     pub(super) extensions: Option<Box<MeshExtensions>>,
 }
 
@@ -233,12 +237,20 @@ pub(super) struct PlainSurface {
 pub(super) struct DocumentExtensions {
     #[serde(rename = "KHR_lights_punctual")]
     pub(super) lights: Option<Lights>,
+    #[serde(rename = "KHR_materials_variants")]
+    pub(super) variants: Option<Variants>,
 }
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Lights {
     #[serde(default)]
     pub(super) lights: Count,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Variants {
+    #[serde(default)]
+    pub(super) variants: Count,
 }
 
 /// What has a name.

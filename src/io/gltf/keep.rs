@@ -275,10 +275,20 @@ impl Scene {
             self.list("nodes").iter().filter(|node| node.get("mesh").and_then(Value::as_u64) == old).count();
         let meshes = self.list("meshes");
         let own = old.filter(|&old| users == 1 && (old as usize) < meshes.len());
-        let name = old.and_then(|old| meshes.get(old as usize)?.get("name").cloned());
-        if let Some(name) = name {
-            set(&mut mesh, "name", name);
+        let before = old.and_then(|old| meshes.get(old as usize));
+        if let Some(name) = before.and_then(|before| before.get("name")) {
+            set(&mut mesh, "name", name.clone());
         }
+        if let Some(extras) = before.and_then(|before| before.get("extras")) {
+            let mut extras = extras.clone();
+            // The names of morph targets, which are no more.
+            extras.as_object_mut().map(|extras| extras.remove("targetNames"));
+            set(&mut mesh, "extras", extras);
+        }
+        if before.is_some_and(has_variants) {
+            self.warnings.push("the material variants of the node's mesh are not kept".into());
+        }
+        let meshes = self.list("meshes");
         match own {
             Some(own) => {
                 meshes[own as usize] = mesh;
@@ -322,6 +332,16 @@ impl Scene {
             ));
         }
     }
+}
+
+/// Whether a mesh has other materials in other variants of the scene.
+fn has_variants(mesh: &Value) -> bool {
+    let primitives = mesh.get("primitives").and_then(Value::as_array);
+    primitives.into_iter().flatten().any(|primitive| {
+        primitive
+            .get("extensions")
+            .is_some_and(|extensions| extensions.get("KHR_materials_variants").is_some())
+    })
 }
 
 /// Sets a key of an object; what is none stays as it is.

@@ -87,11 +87,18 @@ fn contents(document: &Document<'_>) -> Contents {
         let named: Option<Named> = serde_json::from_str(text.get()).ok();
         named.and_then(|named| named.name).unwrap_or_else(|| index.to_string())
     };
-    let lights = document.extensions.as_ref().and_then(|extensions| extensions.lights.as_ref());
+    let extensions = document.extensions.as_ref();
+    let lights = extensions.and_then(|extensions| extensions.lights.as_ref());
+    let variants = extensions.and_then(|extensions| extensions.variants.as_ref());
+    let of_nodes = document.nodes.iter().filter_map(|node| node.0.as_ref()?.extras.as_ref()).count();
+    let of_scenes = document.scenes.iter().filter(|scene| scene.extras.is_some()).count();
+    let of_meshes = document.meshes.iter().filter(|mesh| mesh.extras.is_some()).count();
     Contents {
         animations: document.animations.iter().enumerate().take(MOST).map(name).collect(),
         cameras: document.cameras.0,
         lights: lights.map_or(0, |lights| lights.lights.0),
+        extras: of_nodes + of_scenes + of_meshes + usize::from(document.extras.is_some()),
+        variants: variants.map_or(0, |variants| variants.variants.0),
         ..Contents::default()
     }
 }

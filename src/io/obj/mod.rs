@@ -13,6 +13,7 @@ mod mtl;
 mod parse;
 mod pictures;
 mod smoothing;
+mod unsaid;
 mod write;
 
 pub(super) use mtl::library;

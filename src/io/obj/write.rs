@@ -8,6 +8,7 @@ use super::super::{Format, Precision, WriteOptions};
 use super::groups::NO_MATERIAL;
 use super::labels::Labels;
 use super::mtl::MaterialNames;
+use super::unsaid::unsaid;
 use crate::mesh::Faces;
 use crate::{Error, Mesh};
 
@@ -44,7 +45,15 @@ pub(in crate::io) fn write(
     labels.write_tables(output, options)?;
 
     write_faces(mesh, &names, &labels, output, options)?;
-    written.warnings.splice(0..0, labels.lost());
+    let of_materials = match options.material_library {
+        Some(_) => unsaid(mesh),
+        None if names.list.is_empty() => None,
+        None => Some(
+            "OBJ is written without a material library: materials are named, colours and pictures not kept"
+                .into(),
+        ),
+    };
+    written.warnings.splice(0..0, labels.lost().into_iter().chain(of_materials));
     Ok(written)
 }
 

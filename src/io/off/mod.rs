@@ -1,4 +1,4 @@
-//! Geomview OFF in text, with the variants that add normals, colours or texture coordinates, which are skipped.
+//! Geomview OFF in text, with the variants that add normals, colours or texture coordinates, which are skipped with a warning.
 
 use std::io::Write;
 
@@ -16,8 +16,11 @@ use crate::{Control, Error, Mesh};
 const CHECK_INTERVAL: usize = 1 << 12;
 
 /// The first word of a file, "OFF" with prefixes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Header {
+    texture: bool,
+    colors: bool,
+    normals: bool,
     homogeneous: bool,
     any_dimension: bool,
 }
@@ -25,12 +28,12 @@ pub(super) struct Header {
 /// The header that a word is, if it is one: `[ST][C][N][4][n]OFF`.
 pub(super) fn header(word: &[u8]) -> Option<Header> {
     let rest = word.strip_suffix(b"OFF")?;
-    let rest = rest.strip_prefix(b"ST").unwrap_or(rest);
-    let rest = rest.strip_prefix(b"C").unwrap_or(rest);
-    let rest = rest.strip_prefix(b"N").unwrap_or(rest);
+    let (texture, rest) = rest.strip_prefix(b"ST").map_or((false, rest), |rest| (true, rest));
+    let (colors, rest) = rest.strip_prefix(b"C").map_or((false, rest), |rest| (true, rest));
+    let (normals, rest) = rest.strip_prefix(b"N").map_or((false, rest), |rest| (true, rest));
     let (homogeneous, rest) = rest.strip_prefix(b"4").map_or((false, rest), |rest| (true, rest));
     let (any_dimension, rest) = rest.strip_prefix(b"n").map_or((false, rest), |rest| (true, rest));
-    rest.is_empty().then_some(Header { homogeneous, any_dimension })
+    rest.is_empty().then_some(Header { texture, colors, normals, homogeneous, any_dimension })
 }
 
 /// Reads the mesh and the warnings.
@@ -39,9 +42,9 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<Str
     if bytes.starts_with(b"\xef\xbb\xbf") {
         reader.scanner.advance(3);
     }
-    reader.header()?;
+    let header = reader.header()?;
     let (vertices, faces) = reader.counts()?;
-    let positions = reader.vertices(vertices, &options.control)?;
+    let positions = reader.vertices(vertices, header, &options.control)?;
     let faces = reader.faces(faces, vertices, &options.control)?;
     let mut notes = reader.notes;
     let mut of = faces.has_polygons().then(Vec::new);
@@ -67,12 +70,12 @@ impl Reader<'_> {
     }
 
     /// The first word, which may be missing.
-    fn header(&mut self) -> Result<(), Error> {
+    fn header(&mut self) -> Result<Header, Error> {
         self.scanner.skip_to_word();
         let word = self.scanner.peek_word();
         let Some(header) = header(word) else {
             return match word.first() {
-                Some(b'0'..=b'9') => Ok(()),
+                Some(b'0'..=b'9') => Ok(Header::default()),
                 _ => Err(self.error(&format!("expected \"OFF\" at the beginning, found {}", quote(word)))),
             };
         };
@@ -93,7 +96,7 @@ impl Reader<'_> {
                 "binary OFF is not read; convert the file to text OFF or to PLY",
             ));
         }
-        Ok(())
+        Ok(header)
     }
 
     /// How many vertices and faces there are; the number of edges that follows is optional and not used.
@@ -130,11 +133,28 @@ impl Reader<'_> {
         Ok((vertices as usize, faces as usize))
     }
 
+    /// Skips the rest of a line, and notes that there was one.
+    fn skip_rest(&mut self, what: &'static str) {
+        self.scanner.skip_blanks();
+        if !self.scanner.at_line_end() && self.scanner.peek() != Some(b'#') {
+            self.notes.at(what, self.scanner.offset());
+        }
+        self.scanner.skip_line();
+    }
+
     fn count(&mut self, what: &str) -> Result<u64, Error> {
         self.scanner.unsigned().map_err(|_| self.scanner.expected(Format::Off, what))
     }
 
-    fn vertices(&mut self, count: usize, control: &Control) -> Result<Vec<[f64; 3]>, Error> {
+    /// The points. What the header announces with them is not read; where it announces nothing, as often with colours, it is
+    /// further values.
+    fn vertices(&mut self, count: usize, header: Header, control: &Control) -> Result<Vec<[f64; 3]>, Error> {
+        let announced = [
+            (header.normals, "normals of vertices are not read"),
+            (header.colors, "colours of vertices are not read"),
+            (header.texture, "texture coordinates of vertices are not read"),
+        ];
+        let is_plain = announced.iter().all(|(is_there, _)| !is_there);
         let mut positions = Vec::with_capacity(count);
         for i in 0..count {
             if i % CHECK_INTERVAL == 0 {
@@ -149,7 +169,14 @@ impl Reader<'_> {
             }
             positions.push(position);
             // A normal, a colour or texture coordinates may follow.
-            self.scanner.skip_line();
+            if is_plain {
+                self.skip_rest("further values of vertices are not read");
+            } else {
+                self.scanner.skip_line();
+            }
+        }
+        for (_, what) in announced.iter().filter(|(is_there, _)| *is_there && count > 0) {
+            self.notes.add(*what, count);
         }
         Ok(positions)
     }
@@ -188,7 +215,7 @@ impl Reader<'_> {
                 return Err(too_large(Format::Off, "faces"));
             }
             // A colour may follow.
-            self.scanner.skip_line();
+            self.skip_rest("colours of faces are not read");
         }
         Ok(faces)
     }

@@ -26,6 +26,22 @@ fn headers_counts_comments_and_colours() {
 }
 
 #[test]
+fn what_is_not_read_is_told() {
+    let body = "3 1 0\n0 0 0 1 2 3\n1 0 0 1 2 3\n0 1 0 1 2 3\n3 0 1 2 255 0 0 # red\n";
+    for (word, said) in [
+        ("NOFF", "normals of vertices are not read (3 in all)"),
+        ("COFF", "colours of vertices are not read (3 in all)"),
+        ("STOFF", "texture coordinates of vertices are not read (3 in all)"),
+        ("OFF", "further values of vertices are not read (3 in all, first at line 3)"),
+    ] {
+        let warnings = read_text(&format!("{word}\n{body}")).unwrap().1;
+        assert_eq!(warnings, [said, "colours of faces are not read (line 6)"]);
+    }
+    let plain = "OFF\n3 1 0\n0 0 0 # a\n1 0 0  \n0 1 0\t\r\n3 0 1 2 # b";
+    assert_eq!(read_text(plain).unwrap().1, [""; 0]);
+}
+
+#[test]
 fn small_faces_are_ignored() {
     let (mesh, warnings) = read_text("OFF\n3 4 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n0\n1 0\n3 0 1 2\n").unwrap();
     assert_eq!(mesh.triangles, [[0, 1, 2]]);

@@ -158,59 +158,24 @@ impl Body {
         control: &Control,
         take: impl Fn(&mut Self, &[u32], usize) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        let strips = matches!(element.role, Role::Strips(_));
-        let mut corners = Vec::new();
+        let mut item = ListItem::new(element, indices);
         let mut channels = Channel::of(element, 0);
-        let places = channel_places(element);
-        let texture_list = element.further.iter().map(|(p, _)| *p);
-        let texture_list =
-            texture_list.into_iter().find(|&p| matches!(element.properties[p], Property::List { .. }));
-        let (mut numbers, mut texture) = (vec![0.0; channels.len()], Vec::new());
         for i in 0..element.count {
             if i % CHECK_INTERVAL == 0 {
                 control.check()?;
             }
             let start = source.offset();
-            for (p, property) in element.properties.iter().enumerate() {
-                let Property::List { count, item } = property else {
-                    match (property, places[p]) {
-                        (Property::Scalar(kind), place) if place != usize::MAX => {
-                            numbers[place] = source.number(*kind)?;
-                        }
-                        _ => skip(property, source)?,
-                    }
-                    continue;
-                };
-                let length = list_length(*count, source)?;
-                if texture_list == Some(p) && length <= LONGEST_TEXTURE {
-                    texture.clear();
-                    for _ in 0..length {
-                        texture.push(source.number(*item)?);
-                    }
-                    continue;
-                }
-                if p != indices {
-                    source.skip(*item, length)?;
-                    continue;
-                }
-                corners.clear();
-                for _ in 0..length {
-                    let index = source.integer(*item)?;
-                    // The end of a strip is -1, kept as the largest index, which no vertex has.
-                    let end = strips && index == -1;
-                    corners.push(if end { u32::MAX } else { vertex_index(index, source)? });
-                }
-            }
+            item.read(element, source)?;
             let face = self.faces.len();
-            take(self, &corners, start)?;
-            if self.faces.len() == face + 1 && !strips {
-                for (channel, &number) in channels.iter_mut().zip(&numbers) {
+            take(self, &item.corners, start)?;
+            if self.faces.len() == face + 1 && !item.strips {
+                for (channel, &number) in channels.iter_mut().zip(&item.numbers) {
                     channel.values.push(number);
                 }
-                self.take_texture(face, &corners, &texture);
+                self.take_texture(face, &item.corners, &item.texture);
             }
         }
-        if !strips {
+        if !item.strips {
             self.of_faces = channels;
         }
         Ok(())
@@ -251,6 +216,79 @@ impl Body {
             }
         }
         if self.faces.has_room() { Ok(()) } else { Err(too_large(Format::Ply, "faces")) }
+    }
+}
+
+/// What is read of a face or of strips, one after the other.
+struct ListItem {
+    strips: bool,
+    /// The property that is the list of vertices, and the one that is that of texture coordinates.
+    indices: usize,
+    texture_list: Option<usize>,
+    /// For each property the number that it is, or the largest place.
+    places: Vec<usize>,
+    corners: Vec<u32>,
+    numbers: Vec<f64>,
+    texture: Vec<f64>,
+}
+
+impl ListItem {
+    fn new(element: &Element, indices: usize) -> Self {
+        let is_list = |p: &usize| matches!(element.properties[*p], Property::List { .. });
+        let places = channel_places(element);
+        let numbers = places.iter().filter(|&&place| place != usize::MAX).count();
+        Self {
+            strips: matches!(element.role, Role::Strips(_)),
+            indices,
+            texture_list: element.further.iter().map(|(p, _)| *p).find(is_list),
+            places,
+            corners: Vec::new(),
+            numbers: vec![0.0; numbers],
+            texture: Vec::new(),
+        }
+    }
+
+    /// Reads the properties of the next one.
+    #[inline(always)]
+    fn read(&mut self, element: &Element, source: &mut impl Source) -> Result<(), Error> {
+        for (p, property) in element.properties.iter().enumerate() {
+            match (property, self.places[p]) {
+                (&Property::List { count, item }, _) => self.read_list(p, count, item, source)?,
+                (Property::Scalar(kind), place) if place != usize::MAX => {
+                    self.numbers[place] = source.number(*kind)?;
+                }
+                _ => skip(property, source)?,
+            }
+        }
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn read_list(
+        &mut self,
+        p: usize,
+        count: Type,
+        item: Type,
+        source: &mut impl Source,
+    ) -> Result<(), Error> {
+        let length = list_length(count, source)?;
+        if self.texture_list == Some(p) && length <= LONGEST_TEXTURE {
+            self.texture.clear();
+            for _ in 0..length {
+                self.texture.push(source.number(item)?);
+            }
+        } else if p == self.indices {
+            self.corners.clear();
+            for _ in 0..length {
+                let index = source.integer(item)?;
+                // The end of a strip is -1, kept as the largest index, which no vertex has.
+                let end = self.strips && index == -1;
+                self.corners.push(if end { u32::MAX } else { vertex_index(index, source)? });
+            }
+        } else {
+            source.skip(item, length)?;
+        }
+        Ok(())
     }
 }
 

@@ -45,67 +45,78 @@ fn taken(
     list: &mut Vec<Attribute>,
     notes: &mut Notes,
 ) {
-    let mut several = |names: &[&str]| -> Option<Vec<Channel>> {
-        let places: Option<Vec<usize>> =
-            names.iter().map(|name| channels.iter().position(|channel| channel.name == *name)).collect();
-        let mut places = places?;
-        let mut found: Vec<Option<Channel>> = (0..names.len()).map(|_| None).collect();
-        let order = places.clone();
-        places.sort_unstable();
-        for place in places.into_iter().rev() {
-            let at = order.iter().position(|&wanted| wanted == place)?;
-            found[at] = Some(channels.remove(place));
-        }
-        found.into_iter().collect()
-    };
-    let mut groups: Vec<(&str, Vec<Channel>)> = Vec::new();
-    groups.extend(several(&["nx", "ny", "nz"]).map(|found| ("NORMAL", found)));
-    let colors = several(&["red", "green", "blue", "alpha"]).or_else(|| several(&["red", "green", "blue"]));
-    groups.extend(colors.map(|found| ("COLOR_0", found)));
-    let texture = TEXTURE.iter().find_map(|names| several(names));
-    groups.extend(texture.map(|found| ("TEXCOORD_0", found)));
+    // 1. Channels that belong together.
+    let normals = several(&mut channels, &["nx", "ny", "nz"]);
+    let colors = several(&mut channels, &["red", "green", "blue", "alpha"])
+        .or_else(|| several(&mut channels, &["red", "green", "blue"]));
+    let texture = TEXTURE.iter().find_map(|names| several(&mut channels, names));
+    // 2. What their numbers mean.
     let mut add = |name: String, channels: &[Channel], value: &dyn Fn(usize, &Channel, f64) -> f64| {
         if list.len() >= most {
             notes.add("property left out, there are too many for the size of the file", 1);
-            return;
-        }
-        if list.iter().any(|attribute| attribute.name == name) {
+        } else if list.iter().any(|attribute| attribute.name == name) {
             notes.add("property of faces with the name of one of vertices left out", 1);
-            return;
-        }
-        let count = channels.first().map_or(0, |channel| channel.values.len());
-        let mut attribute = Attribute::new(name, channels.len());
-        let mut is_whole = vec![true; count];
-        attribute.values.reserve(count * channels.len());
-        for item in 0..count {
-            for (k, channel) in channels.iter().enumerate() {
-                let number = value(k, channel, channel.values[item]);
-                is_whole[item] &= number.is_finite();
-                attribute.values.push(finite(number));
-            }
-        }
-        let index = |&item: &u32| {
-            let is_there = is_whole.get(item as usize).copied().unwrap_or(false);
-            if is_there { item } else { Attribute::NONE }
-        };
-        attribute.of_corner = corners.iter().map(index).collect();
-        if !attribute.is_empty() {
-            list.push(attribute);
+        } else {
+            let attribute = attribute(name, channels, corners, value);
+            list.extend(Some(attribute).filter(|attribute| !attribute.is_empty()));
         }
     };
-    for (name, found) in groups {
-        match name {
-            "COLOR_0" => add(name.into(), &found, &|k, channel, number| color(k, channel.kind, number)),
-            // The file counts from the lower edge of pictures, meshes from the upper one.
-            "TEXCOORD_0" => {
-                add(name.into(), &found, &|k, _, number| if k == 1 { 1.0 - number } else { number });
-            }
-            _ => add(name.into(), &found, &|_, _, number| number),
-        }
+    let as_it_is = |_: usize, _: &Channel, number: f64| number;
+    if let Some(found) = normals {
+        add("NORMAL".into(), &found, &as_it_is);
+    }
+    if let Some(found) = colors {
+        add("COLOR_0".into(), &found, &|k, channel, number| color(k, channel.kind, number));
+    }
+    if let Some(found) = texture {
+        // The file counts from the lower edge of pictures, meshes from the upper one.
+        add("TEXCOORD_0".into(), &found, &|k, _, number| if k == 1 { 1.0 - number } else { number });
     }
     for channel in channels {
-        add(format!("_{}", channel.name), &[channel], &|_, _, number| number);
+        add(format!("_{}", channel.name), &[channel], &as_it_is);
     }
+}
+
+/// Takes out the channels of these names, if all are there.
+fn several(channels: &mut Vec<Channel>, names: &[&str]) -> Option<Vec<Channel>> {
+    let places: Option<Vec<usize>> =
+        names.iter().map(|name| channels.iter().position(|channel| channel.name == *name)).collect();
+    let mut places = places?;
+    let mut found: Vec<Option<Channel>> = (0..names.len()).map(|_| None).collect();
+    let order = places.clone();
+    places.sort_unstable();
+    for place in places.into_iter().rev() {
+        let at = order.iter().position(|&wanted| wanted == place)?;
+        found[at] = Some(channels.remove(place));
+    }
+    found.into_iter().collect()
+}
+
+/// The attribute of channels; `corners` name their items, and `value` says what a number of a channel is. An item with a number that
+/// is not finite is no value.
+fn attribute(
+    name: String,
+    channels: &[Channel],
+    corners: &[u32],
+    value: &dyn Fn(usize, &Channel, f64) -> f64,
+) -> Attribute {
+    let count = channels.first().map_or(0, |channel| channel.values.len());
+    let mut attribute = Attribute::new(name, channels.len());
+    let mut is_whole = vec![true; count];
+    attribute.values.reserve(count * channels.len());
+    for item in 0..count {
+        for (k, channel) in channels.iter().enumerate() {
+            let number = value(k, channel, channel.values[item]);
+            is_whole[item] &= number.is_finite();
+            attribute.values.push(finite(number));
+        }
+    }
+    let index = |&item: &u32| {
+        let is_there = is_whole.get(item as usize).copied().unwrap_or(false);
+        if is_there { item } else { Attribute::NONE }
+    };
+    attribute.of_corner = corners.iter().map(index).collect();
+    attribute
 }
 
 /// A channel of a colour, linear; the fourth one is opacity.
