@@ -66,6 +66,8 @@ fn a_scene_stays_around_the_node_that_is_cut() {
         .says("extras of 3 nodes and scenes not kept")
         .says("2 material variants not kept");
     assert!(said.err.contains("scene.gltf"), "{said:?}");
+    folder.write("model.json", json!({"kind": "mesh", "file": "scene.gltf"}).to_string());
+    folder.run("eval model.json -o alone.glb --strict").exits(5).says("scene.gltf: 1 camera not kept");
     let said = described(&folder, "scene.gltf");
     assert_eq!(
         (&said["contents"]["extras"], &said["contents"]["variants"]),

@@ -220,7 +220,9 @@ impl State<'_> {
         }
         let options = ReadOptions::new().control(self.settings.control.clone());
         let loaded = crate::io::load(path, &options)?;
-        let named = loaded.warnings.into_iter().map(|warning| format!("{}: {warning}", path.display()));
+        let lost = loaded.contents.not_kept();
+        let named =
+            loaded.warnings.into_iter().chain(lost).map(|warning| format!("{}: {warning}", path.display()));
         self.warnings.extend(named);
         Ok(loaded.mesh)
     }
