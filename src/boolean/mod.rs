@@ -56,7 +56,7 @@ pub use result::cut_faces::CutFaces;
 pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;
 pub use rule::Rule;
-pub use snapping::Snapping;
+pub use snapping::report::Snapping;
 
 use crate::{Error, Solid};
 

@@ -21,6 +21,16 @@ pub(crate) use face::{FaceTriangulator, Tiling};
 pub(crate) use region::{Region, fill_wound, polygons};
 pub(crate) use winding::{Edge, Found, by_winding, cross_properly};
 
+/// Area inside a ring, negative where it runs clockwise.
+pub(crate) fn ring_area(ring: &[[f64; 2]]) -> f64 {
+    let Some(&[x, y]) = ring.first() else { return 0.0 };
+    let twice = ring.windows(2).map(|edge| {
+        let ([a, b], [c, d]) = (edge[0], edge[1]);
+        (a - x) * (d - y) - (b - y) * (c - x)
+    });
+    0.5 * twice.sum::<f64>()
+}
+
 /// From this many vertices a constrained Delaunay triangulation (n log n) replaces ear clipping (at least quadratic). On random
 /// star polygons it takes twice as long at 60 vertices and as long at 120; it bounds what a face with many holes can cost.
 const DELAUNAY_FROM: usize = 40;

@@ -1,6 +1,7 @@
 //! What a plane and a solid have in common.
 
 use crate::exact::{Plane, Projection};
+use crate::polygon::ring_area;
 
 /// Where a plane meets a solid: polygons with holes, in coordinates of the plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,7 +86,7 @@ impl Section {
     /// The area, in squared units of the coordinates.
     #[must_use]
     pub fn area(&self) -> f64 {
-        self.rings().map(area).sum()
+        self.rings().map(ring_area).sum()
     }
 
     /// The length of all rings together, in units of the coordinates.
@@ -112,14 +113,4 @@ impl Section {
             }
         }
     }
-}
-
-/// Area inside a ring, negative where it runs clockwise.
-fn area(ring: &[[f64; 2]]) -> f64 {
-    let Some(&[x, y]) = ring.first() else { return 0.0 };
-    let twice = ring.windows(2).map(|edge| {
-        let ([a, b], [c, d]) = (edge[0], edge[1]);
-        (a - x) * (d - y) - (b - y) * (c - x)
-    });
-    0.5 * twice.sum::<f64>()
 }

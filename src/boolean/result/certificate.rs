@@ -5,7 +5,7 @@ use std::fmt;
 use crate::Solid;
 use crate::boolean::general::embed::Embedding;
 use crate::boolean::result::near_contacts::NearContacts;
-use crate::boolean::snapping::Snapping;
+use crate::boolean::snapping::report::Snapping;
 use crate::exact::collinear;
 use crate::parallel::map_chunks;
 

@@ -12,7 +12,7 @@ use crate::boolean::result::certificate::{Certificate, Notes, OperandState};
 use crate::boolean::result::cut_faces::CutFaces;
 use crate::boolean::result::near_contacts::NearContacts;
 use crate::boolean::result::origins::Origins;
-use crate::boolean::snapping::Snapping;
+use crate::boolean::snapping::report::Snapping;
 
 /// The result of a boolean: a closed solid, where its triangles came from, and a certificate.
 #[derive(Clone, Debug)]

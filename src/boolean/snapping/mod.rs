@@ -14,6 +14,7 @@
 
 mod near;
 mod planes;
+pub(crate) mod report;
 mod split;
 mod surfaces;
 mod weld;
@@ -22,33 +23,12 @@ use crate::boolean::complex::origin::Origin;
 use crate::boolean::result::outcome::Outcome;
 use crate::parallel::Runner;
 use crate::{Error, Solid};
+use report::Snapping;
 use surfaces::Surfaces;
 
 /// Rounds of welding and splitting, at most; fewer where more is near than at first, since the distance is
 /// then as large as what it is to snap. The first makes the points, and the third nearly always finds nothing.
 const MOST_ROUNDS: u32 = 8;
-
-/// What welding the operands to each other moved and split.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct Snapping {
-    /// What is no further apart than this was made the same, in units of the coordinates.
-    pub distance: f64,
-    /// Vertices that were moved.
-    pub moved: u64,
-    /// Edges that got vertices.
-    pub split_edges: u64,
-    /// Faces that got vertices or edges inside.
-    pub split_faces: u64,
-    /// How far a vertex was moved, at most. (Where the corners of a part collapse, and are welded in several rounds, that is more than
-    /// the distance.)
-    pub farthest: f64,
-    /// Rounds until nothing was near and apart.
-    pub rounds: u32,
-    /// Whether something near was left as it was, since the rounds were used up.
-    pub unfinished: bool,
-}
 
 /// Operands welded to each other.
 #[derive(Debug)]

@@ -3,6 +3,7 @@
 use serde_json::{Value, json as object};
 
 use super::Layer;
+use crate::polygon::ring_area;
 
 /// The drawing as JSON: `{"layers": [{"name", "height", "area", "polygons": [{"outline": [[x, y], ...], "holes": [...]}]}]}`.
 #[must_use]
@@ -15,19 +16,9 @@ pub fn json(layers: &[Layer<'_>]) -> String {
                 .iter()
                 .map(|shape| object!({ "outline": shape.first(), "holes": shape.get(1..).unwrap_or_default() }))
                 .collect();
-            let area: f64 = layer.rings().map(area).sum();
+            let area: f64 = layer.rings().map(ring_area).sum();
             object!({ "name": layer.name, "height": layer.height, "area": area, "polygons": polygons })
         })
         .collect();
     format!("{}\n", object!({ "layers": layers }))
-}
-
-/// Area inside a ring, negative where it runs clockwise.
-fn area(ring: &[[f64; 2]]) -> f64 {
-    let Some(&[x, y]) = ring.first() else { return 0.0 };
-    let twice = ring.windows(2).map(|edge| {
-        let ([a, b], [c, d]) = (edge[0], edge[1]);
-        (a - x) * (d - y) - (b - y) * (c - x)
-    });
-    0.5 * twice.sum::<f64>()
 }
