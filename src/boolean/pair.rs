@@ -14,11 +14,12 @@ use crate::boolean::complex::classes;
 use crate::boolean::complex::operation::Operation;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::predicates::Perturbed;
+use crate::boolean::complex::rounding::Rounding;
 use crate::boolean::complex::{Complex, Motion, Operand};
+use crate::boolean::cut::piece::has_low;
 use crate::boolean::cut::{cut, plane_sums};
 use crate::boolean::result::assemble::{Assembled, assemble};
 use crate::boolean::result::origins::{Origins, Sequence};
-use crate::boolean::rounding::Rounding;
 use crate::boolean::tidy::{self, Ground, tidy};
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
@@ -191,7 +192,7 @@ fn build(
     let assembled = assemble(body, &pieces, replaced.as_ref(), runner)?;
     let has_inverted = cut.has_inverted;
     let may_cross = settings.find_low
-        && (has_inverted || rounding.has_low(&pieces, |point| body.arrangement.points.position(point)));
+        && (has_inverted || has_low(&pieces, rounding, |point| body.arrangement.points.position(point)));
     Ok(Assembled { has_inverted, may_cross, clean_up_stopped, ..assembled })
 }
 

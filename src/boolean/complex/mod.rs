@@ -13,7 +13,8 @@
 //! - `meeting`: how two triangles meet;
 //! - `rays`: how often a surface winds around a point;
 //! - `planes`: which faces lie in one plane;
-//! - `classes`: which of them may be merged, where attributes have to be kept.
+//! - `classes`: which of them may be merged, where attributes have to be kept;
+//! - `rounding`: which lengths and heights may be the work of rounding.
 
 pub(super) mod classes;
 pub(super) mod directions;
@@ -24,6 +25,7 @@ pub(super) mod origin;
 pub(super) mod planes;
 pub(super) mod predicates;
 pub(super) mod rays;
+pub(super) mod rounding;
 
 use std::sync::OnceLock;
 

@@ -21,7 +21,7 @@ use crate::boolean::classify::body::Body;
 use crate::boolean::classify::multiplicity::Part;
 use crate::boolean::complex::ids::{CutFaceId, FaceId, PointId};
 use crate::boolean::complex::origin::Origin;
-use crate::boolean::rounding::Rounding;
+use crate::boolean::complex::rounding::Rounding;
 use crate::exact::Projection;
 use crate::parallel::Runner;
 use crate::polygon::{Shape, Triangulator};

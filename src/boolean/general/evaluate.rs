@@ -9,12 +9,12 @@ use crate::boolean::arrangement::points::AddedPoint;
 use crate::boolean::complex::ids::{FaceId, PointId};
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::predicates::Perturbed;
-use crate::boolean::cut::piece::Piece;
+use crate::boolean::complex::rounding::Rounding;
+use crate::boolean::cut::piece::{Piece, has_low};
 use crate::boolean::cut::plane_sums::{SheetEdge, SheetFaces, SheetSource};
 use crate::boolean::cut::{Cut, Filler};
 use crate::boolean::result::assemble::Assembled;
 use crate::boolean::result::origins::Origins;
-use crate::boolean::rounding::Rounding;
 use crate::boolean::tidy::{self, Ground, tidy};
 use crate::exact::Projection;
 use crate::mesh::BitSet;
@@ -81,7 +81,7 @@ pub(crate) fn evaluate(
     let arrays = assemble(&shape, &pieces, replaced.as_ref());
     let has_inverted = cut.has_inverted;
     let may_cross =
-        finish.find_low && (has_inverted || rounding.has_low(&pieces, |point| shape.position(point)));
+        finish.find_low && (has_inverted || has_low(&pieces, rounding, |point| shape.position(point)));
     let arrays = Assembled { has_inverted, may_cross, clean_up_stopped, ..arrays };
     Ok(Evaluated { arrays, walls_left: sums.declined })
 }

@@ -15,8 +15,8 @@ pub(super) mod policy;
 pub(super) mod trim;
 
 use crate::boolean::complex::operation::Operation;
+use crate::boolean::expression::rule::Rule;
 use crate::boolean::result::outcome::Outcome;
-use crate::boolean::rule::Rule;
 use crate::parallel::Runner;
 use crate::{Error, Solid};
 use expressions::Wanted;

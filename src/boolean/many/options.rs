@@ -5,9 +5,9 @@ use super::policy::{Embed, Policy};
 use super::{run, snapped};
 use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::expression::Expression;
+use crate::boolean::expression::rule::Rule;
 use crate::boolean::result::cut_faces::CutFaces;
 use crate::boolean::result::outcome::Outcome;
-use crate::boolean::rule::Rule;
 use crate::control::Control;
 use crate::parallel::Runner;
 #[cfg(feature = "parallel")]

@@ -2,8 +2,8 @@
 
 use crate::Error;
 use crate::boolean::complex::operation::Contact;
+use crate::boolean::expression::rule::Rule;
 use crate::boolean::general::embed::Grid;
-use crate::boolean::rule::Rule;
 
 /// What becomes of crossings that rounding makes. Every new point is rounded once, so that parts of a result that are closer to
 /// each other than rounding may cross by as much.

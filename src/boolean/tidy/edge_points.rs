@@ -11,7 +11,7 @@ use super::patch::Patch;
 use super::point_grid::PointGrid;
 use super::snap::complete_points;
 use super::splits::Splits;
-use crate::boolean::rounding::distance_order;
+use crate::boolean::complex::rounding::distance_order;
 use crate::exact::collinear;
 use crate::mesh::{Buckets, HalfEdges};
 use crate::spatial::{BoxTree, Frame};

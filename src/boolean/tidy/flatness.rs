@@ -3,7 +3,7 @@
 
 use super::face::{LocalFace, LocalPoint};
 use super::patch::Patch;
-use crate::boolean::rounding::{IsLow, Rounding, distance_order};
+use crate::boolean::complex::rounding::{IsLow, Rounding, distance_order};
 use crate::exact::collinear;
 
 /// Whether a face has no area, now or before its corners were rounded.

@@ -4,7 +4,7 @@
 use super::face::{LocalFace, LocalPoint};
 use super::flatness::{is_flat, is_lower, middle};
 use super::patch::Patch;
-use crate::boolean::rounding::IsLow;
+use crate::boolean::complex::rounding::IsLow;
 
 /// Flips per triangle that is low at the start. Each flip moves a vertex off a longest side, so few are needed; the bound
 /// ends cycles among triangles that all have no area.

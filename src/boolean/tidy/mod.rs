@@ -27,8 +27,8 @@ mod split_faces;
 mod splits;
 
 use crate::boolean::complex::ids::PointId;
+use crate::boolean::complex::rounding::Rounding;
 use crate::boolean::cut::piece::Piece;
-use crate::boolean::rounding::Rounding;
 use crate::parallel::Runner;
 use crate::{Control, Error};
 use face::LocalPoint;

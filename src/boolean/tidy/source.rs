@@ -8,8 +8,8 @@ use crate::boolean::arrangement::points::Points;
 use crate::boolean::classify::body::Body;
 use crate::boolean::complex::ids::PointId;
 use crate::boolean::complex::origin::Origin;
+use crate::boolean::complex::rounding::Rounding;
 use crate::boolean::general::shape::Shape;
-use crate::boolean::rounding::Rounding;
 use crate::exact::Projection;
 
 /// An uncut triangle that the result keeps.

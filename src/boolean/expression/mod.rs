@@ -1,6 +1,12 @@
 //! Expressions: sets made of operands.
+//!
+//! - `text`: how they are written;
+//! - `rule`: what is inside an operand that crosses itself.
 
-use super::complex::operation::Operation;
+pub(super) mod rule;
+pub(super) mod text;
+
+use crate::boolean::complex::operation::Operation;
 
 /// A set made of operands. An operand may occur any number of times.
 ///

@@ -2,8 +2,6 @@
 
 use glam::DVec3;
 
-use crate::boolean::complex::ids::PointId;
-use crate::boolean::cut::piece::Piece;
 use crate::exact::at_hand::{ROUNDING_ULPS, largest_beside, largest_coordinate, size_at_hand};
 use crate::mesh::scale;
 
@@ -41,14 +39,6 @@ impl Rounding {
         let length = |size: f64| ROUNDING_ULPS * self.unit * size;
         let own = || largest_coordinate(p).max(largest_coordinate(q));
         longest <= length(self.largest) && longest <= length(size_at_hand(self.largest, own()))
-    }
-
-    /// Whether some of the pieces of a result is no higher than rounding.
-    pub(crate) fn has_low<'p>(&self, pieces: &[Piece], position: impl Fn(PointId) -> &'p [f64; 3]) -> bool {
-        pieces.iter().any(|piece| {
-            let [a, b, c] = piece.corners;
-            self.is_low([position(a), position(b), position(c)])
-        })
     }
 
     /// Whether a triangle is no higher over its longest side than rounding.

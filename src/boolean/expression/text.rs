@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use super::expression::Expression;
+use super::Expression;
 
 /// A text that is no expression.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

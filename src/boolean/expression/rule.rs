@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::complex::operation::UnknownName;
+use crate::boolean::complex::operation::UnknownName;
 
 /// What counts as the inside of an operand, by how often its surface winds around a point.
 ///
