@@ -136,7 +136,7 @@ impl Cleaned {
 }
 
 /// Leaves out the vertices no triangle uses and renumbers the rest, in order.
-pub(super) fn compact(positions: &[[f64; 3]], triangles: &mut [[u32; 3]]) -> Vec<[f64; 3]> {
+pub(crate) fn compact(positions: &[[f64; 3]], triangles: &mut [[u32; 3]]) -> Vec<[f64; 3]> {
     const UNUSED: u32 = u32::MAX;
     let mut numbers = vec![UNUSED; positions.len()];
     for &corner in triangles.iter().flatten() {

@@ -13,6 +13,11 @@ pub(super) struct Duplicates {
     pub(super) same: Vec<[u32; 2]>,
 }
 
+/// The pairs of triangles on the same three vertices with opposite orientation; each triangle is in one at most. O(n).
+pub(crate) fn opposite_pairs(triangles: &[[u32; 3]], vertices: usize) -> Vec<[u32; 2]> {
+    find(triangles, vertices).opposite
+}
+
 /// Finds the repeated triangles. O(n), with a short sort per vertex.
 pub(super) fn find(triangles: &[[u32; 3]], vertices: usize) -> Duplicates {
     let by_lowest = triangles.iter().enumerate().map(|(index, &triangle)| {

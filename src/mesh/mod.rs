@@ -58,6 +58,8 @@ pub use buffers::VertexBuffers;
 pub use diagnose::diagnose;
 pub use diagnosis::Diagnosis;
 pub use error::{AttributeFault, GroupFault, MeshError, TransformFault};
+pub(crate) use clean::compact;
+pub(crate) use duplicates::opposite_pairs;
 pub(crate) use fans::plain_fans;
 pub use gate::{Gate, Refusal, Welding};
 pub use groups::{FaceGroup, FaceGroups};
@@ -195,7 +197,7 @@ impl Mesh {
         let cleaned = clean::clean(&self.positions, &self.triangles, how);
         if cleaned.welded > 0 {
             let mut triangles = cleaned.triangles;
-            self.positions = clean::compact(&self.positions, &mut triangles);
+            self.positions = compact(&self.positions, &mut triangles);
             self.triangles = triangles;
             self.groups.select(&cleaned.source);
             self.polygons.select(&cleaned.source);

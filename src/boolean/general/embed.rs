@@ -9,6 +9,7 @@ use super::arrangement::{Crossed, General};
 use super::evaluate::{Finish, evaluate};
 use super::labels::winding;
 use crate::boolean::complex::origin::Origin;
+use crate::mesh::compact;
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
 
@@ -91,8 +92,10 @@ pub(crate) fn embed(
             merge(&mut parts);
         }
         // 2. What crosses.
-        let mesh = Mesh::new(std::mem::take(&mut parts.positions), std::mem::take(&mut parts.triangles));
-        let solid = Solid::from_closed_unchecked(compact(mesh));
+        let positions = std::mem::take(&mut parts.positions);
+        let mut triangles = std::mem::take(&mut parts.triangles);
+        let positions = compact(&positions, &mut triangles);
+        let solid = Solid::from_closed_unchecked(Mesh::new(positions, triangles));
         let crossed = Crossed::new(&[&solid], std::slice::from_ref(&parts.groups), runner)?;
         troubled = crossed.troubled();
         report.left = troubled.len();
@@ -209,19 +212,4 @@ fn merge(parts: &mut Parts) {
     parts.triangles.truncate(kept);
     parts.origins.truncate(kept);
     parts.groups.truncate(kept);
-}
-
-/// The mesh without vertices that no triangle has.
-fn compact(mut mesh: Mesh) -> Mesh {
-    let mut number = vec![u32::MAX; mesh.positions.len()];
-    mesh.triangles.iter().flatten().for_each(|&v| number[v as usize] = 0);
-    let mut positions = Vec::with_capacity(mesh.positions.len());
-    for (number, position) in number.iter_mut().zip(&mesh.positions) {
-        if *number == 0 {
-            *number = positions.len() as u32;
-            positions.push(*position);
-        }
-    }
-    mesh.triangles.iter_mut().flatten().for_each(|v| *v = number[*v as usize]);
-    Mesh::new(positions, mesh.triangles)
 }

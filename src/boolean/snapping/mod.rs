@@ -1,6 +1,6 @@
 //! Snapping: what of the operands is nearer than a distance is made the same before the exact operation.
 //!
-//! Openings a hair short of the other side, voxels of 0.1 at k * 0.1 and faces that were flush before they were turned together
+//! Openings slightly short of the other side, voxels of 0.1 at k * 0.1 and faces that were flush before they were turned together
 //! are apart, or overlap, by rounding: the exact result has films and gaps of that thickness. Where a user says how near is the
 //! same, all operands are welded to each other in rounds, until nothing is left that is near and apart:
 //!
@@ -63,6 +63,7 @@ pub(super) fn snap(operands: &[&Solid], distance: f64, runner: Runner<'_>) -> Re
     }
     let mut surfaces = Surfaces::of(operands)?;
     let given = surfaces.positions.clone();
+    let _copies = runner.control.reserve(surfaces.bytes())?;
     let mut report = Snapping { distance, ..Snapping::default() };
     let mut first = 0;
     loop {
@@ -74,6 +75,7 @@ pub(super) fn snap(operands: &[&Solid], distance: f64, runner: Runner<'_>) -> Re
         if found.is_empty() {
             break;
         }
+        let _lists = runner.control.reserve(found.bytes())?;
         let left = found.on_edges.len() + found.in_faces.len() + found.passing.len();
         if report.rounds == MOST_ROUNDS || report.rounds > 1 && left > first {
             report.unfinished = true;

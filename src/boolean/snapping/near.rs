@@ -56,6 +56,14 @@ impl Found {
         self.on_edges.is_empty() && self.in_faces.is_empty() && self.passing.is_empty()
     }
 
+    /// How much memory its lists take.
+    pub(super) fn bytes(&self) -> u64 {
+        let of_vertices =
+            self.on_edges.len() * size_of::<OnEdge>() + self.in_faces.len() * size_of::<InFace>();
+        let of_pairs = self.passing.len() * size_of::<Passing>() + self.pairs.len() * size_of::<[u32; 2]>();
+        (of_vertices + of_pairs) as u64
+    }
+
     fn append(&mut self, mut other: Self) {
         self.on_edges.append(&mut other.on_edges);
         self.in_faces.append(&mut other.in_faces);
@@ -72,8 +80,10 @@ const PAIRS_AT_ONCE: usize = 4_096;
 /// Only limits.
 pub(super) fn find(surfaces: &Surfaces, distance: f64, runner: Runner<'_>) -> Result<Found, Error> {
     let Some(bounds) = Bounds::of(&surfaces.positions) else { return Ok(Found::default()) };
-    // 1. Pairs of triangles whose boxes, grown by half the distance each, meet.
+    // 1. Pairs of triangles whose boxes, grown by the distance, meet.
     let frame = Frame::of(bounds.low, bounds.high);
+    let bytes_per_triangle = size_of::<Aabb>() + size_of::<Prism>() + BoxTree::BYTES_PER_ITEM;
+    let _tables = runner.control.reserve((surfaces.triangles.len() * bytes_per_triangle) as u64)?;
     let boxes: Vec<Aabb> = (0..surfaces.triangles.len())
         .map(|t| {
             let around = Bounds::of(&surfaces.corners(t)).map_or([[0.0; 3]; 2], |b| [b.low, b.high]);

@@ -1,8 +1,6 @@
 //! All operands under one numbering of vertices and triangles.
 
-use rustc_hash::FxHashMap;
-
-use crate::mesh::{FaceGroups, Polygons, attributes_of_pieces};
+use crate::mesh::{Polygons, attributes_of_pieces, compact, opposite_pairs};
 use crate::{Error, Mesh, Solid};
 
 /// The most vertices, given and new.
@@ -38,6 +36,7 @@ impl Triangle {
 #[derive(Debug, Default)]
 pub(super) struct Surfaces {
     pub(super) positions: Vec<[f64; 3]>,
+    /// Those of the first operand, then those of the second, and so on.
     pub(super) triangles: Vec<Triangle>,
     /// The largest coordinate.
     largest: f64,
@@ -62,6 +61,12 @@ impl Surfaces {
         Ok(all)
     }
 
+    /// How much memory this takes, and the positions once more as they were.
+    pub(super) fn bytes(&self) -> u64 {
+        let vertices = 2 * self.positions.len() * size_of::<[f64; 3]>();
+        (vertices + self.triangles.len() * size_of::<Triangle>()) as u64
+    }
+
     /// More than the error of the distance of a vertex from a plane.
     pub(super) fn rounding(&self) -> f64 {
         /// A plane is off by the rounding of its normal and its level, a distance by that of three products: some ten units.
@@ -74,56 +79,47 @@ impl Surfaces {
         self.triangles[triangle].corners.map(|v| self.positions[v as usize])
     }
 
-    /// The triangles without those that lie back to back in one operand, in pairs: bodies that touch there are one.
-    fn without_walls(&self) -> Vec<Triangle> {
-        let mut seen: FxHashMap<(u32, [u32; 3], bool), Vec<usize>> = FxHashMap::default();
-        let mut is_wall = vec![false; self.triangles.len()];
-        for (t, triangle) in self.triangles.iter().enumerate() {
-            let [a, b, c] = triangle.corners;
-            let mut sorted = triangle.corners;
-            sorted.sort_unstable();
-            // Whether the corners run round as their numbers do.
-            let is_even = [[a, b, c], [b, c, a], [c, a, b]].contains(&sorted);
-            match seen.get_mut(&(triangle.operand, sorted, !is_even)).and_then(Vec::pop) {
-                Some(back) => (is_wall[t], is_wall[back]) = (true, true),
-                None => seen.entry((triangle.operand, sorted, is_even)).or_default().push(t),
-            }
-        }
-        let kept = self.triangles.iter().zip(&is_wall).filter(|(_, is_wall)| !**is_wall);
-        kept.map(|(triangle, _)| *triangle).collect()
+    /// The operands, with the given triangle of each of theirs, in the groups of these, with their attributes and polygons. What of one
+    /// operand lies back to back is left out, in pairs: bodies that touch there are one.
+    pub(super) fn into_solids(self, operands: &[&Solid]) -> Vec<(Solid, Vec<u32>)> {
+        let mut rest = self.triangles.as_slice();
+        let of_operand = |(operand, given): (u32, &&Solid)| {
+            let count = rest.partition_point(|triangle| triangle.operand <= operand);
+            let (own, others) = rest.split_at(count);
+            rest = others;
+            self.solid(own, given.mesh())
+        };
+        (0..).zip(operands).map(of_operand).collect()
     }
 
-    /// The operands, with the given triangle of each of theirs, in the groups of these, with their attributes and polygons.
-    pub(super) fn into_solids(self, operands: &[&Solid]) -> Vec<(Solid, Vec<u32>)> {
-        let mut meshes = vec![(Mesh::default(), Vec::new()); operands.len()];
-        for triangle in &self.without_walls() {
-            let (mesh, sources) = &mut meshes[triangle.operand as usize];
-            mesh.triangles.push(triangle.corners);
-            sources.push(triangle.source);
+    /// The solid of some triangles, with the given triangle of each.
+    fn solid(&self, own: &[Triangle], given: &Mesh) -> (Solid, Vec<u32>) {
+        // 1. Vertices keep their order.
+        let mut vertices: Vec<u32> = own.iter().flat_map(|triangle| triangle.corners).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let number = |v: u32| vertices.partition_point(|&other| other < v) as u32;
+        let triangles: Vec<[u32; 3]> = own.iter().map(|triangle| triangle.corners.map(number)).collect();
+        let positions: Vec<[f64; 3]> = vertices.iter().map(|&v| self.positions[v as usize]).collect();
+        // 2. Without walls.
+        let mut is_wall = vec![false; triangles.len()];
+        for triangle in opposite_pairs(&triangles, positions.len()).into_iter().flatten() {
+            is_wall[triangle as usize] = true;
         }
-        // By vertex, its number in the operand at hand: vertices keep their order.
-        let mut numbers = vec![u32::MAX; self.positions.len()];
-        for ((mesh, sources), given) in meshes.iter_mut().zip(operands) {
-            numbers.fill(u32::MAX);
-            mesh.triangles.iter().flatten().for_each(|&v| numbers[v as usize] = 0);
-            for (number, &position) in
-                numbers.iter_mut().zip(&self.positions).filter(|(number, _)| **number == 0)
-            {
-                *number = mesh.positions.len() as u32;
-                mesh.positions.push(position);
-            }
-            mesh.triangles.iter_mut().flatten().for_each(|v| *v = numbers[*v as usize]);
-            mesh.polygons = polygons_of_pieces(&given.mesh().polygons, given.mesh().triangles.len(), sources);
-            mesh.attributes = attributes_of_pieces(given.mesh(), &mesh.positions, &mesh.triangles, sources);
-            let groups = &given.mesh().groups;
-            if !groups.is_empty() {
-                let of_triangle =
-                    sources.iter().map(|&source: &u32| groups.of_triangle[source as usize]).collect();
-                mesh.groups = FaceGroups { list: groups.list.clone(), of_triangle };
-            }
+        let kept = || (0..own.len()).filter(|&t| !is_wall[t]);
+        let mut triangles: Vec<[u32; 3]> = kept().map(|t| triangles[t]).collect();
+        let sources: Vec<u32> = kept().map(|t| own[t].source).collect();
+        let positions = compact(&positions, &mut triangles);
+        // 3. What the given triangles say.
+        let mut mesh = Mesh::new(positions, triangles);
+        mesh.polygons = polygons_of_pieces(&given.polygons, given.triangles.len(), &sources);
+        mesh.attributes = attributes_of_pieces(given, &mesh.positions, &mesh.triangles, &sources);
+        mesh.groups = given.groups.clone();
+        if !mesh.groups.is_empty() {
+            let group = |&source: &u32| given.groups.of_triangle[source as usize];
+            mesh.groups.of_triangle = sources.iter().map(group).collect();
         }
-        let solid = |(mesh, sources)| (Solid::from_closed_unchecked(mesh), sources);
-        meshes.into_iter().map(solid).collect()
+        (Solid::from_closed_unchecked(mesh), sources)
     }
 }
 
