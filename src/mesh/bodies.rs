@@ -1,8 +1,6 @@
 //! The bodies that a solid consists of: each an outer shell with the cavities in it.
 
-use super::edges::EdgeTable;
-use super::patches::Patches;
-use super::{Buckets, Mesh, MeshError, Solid, attributes, clean, nesting};
+use super::{Buckets, FaceGroups, Mesh, MeshError, Solid, attributes, clean, nesting};
 
 impl Solid {
     /// For every triangle the body it is in, counted from 0 in the order of their first triangles. A body is a shell that faces
@@ -29,8 +27,7 @@ impl Solid {
             return labels;
         }
         // 1. The shells, and which lie in which.
-        let table = EdgeTable::new(&mesh.triangles, mesh.positions.len());
-        let patches = Patches::new(&table, mesh.triangles.len());
+        let patches = self.patches();
         let containers = nesting::containers(&mesh.positions, &mesh.triangles, &patches);
         // 2. Which are cavities. (Shells that share edges are several patches of one component, and stay together.)
         let is_cavity: Vec<bool> = (0..patches.closed.len())
@@ -67,7 +64,8 @@ impl Solid {
             .collect()
     }
 
-    /// The [bodies](Self::body_labels) as solids of their own. Triangles keep their order and their groups. O(n log n).
+    /// The [bodies](Self::body_labels) as solids of their own. Triangles keep their order, groups, attributes and
+    /// polygons. O(n log n).
     #[must_use]
     pub fn bodies(&self) -> Vec<Self> {
         let labels = self.body_labels();
@@ -93,9 +91,10 @@ impl Mesh {
         select(self, triangles)
     }
 
-    /// Whether all corners are in range, all coordinates of corners finite, and the groups fit.
+    /// Whether all corners are in range, all coordinates of corners finite, and attributes and groups fit.
     pub(crate) fn check(&self) -> Result<(), MeshError> {
         clean::check_corners(self)?;
+        attributes::check(&self.attributes, self.triangles.len())?;
         self.groups.fault(self.triangles.len()).map_or(Ok(()), |fault| Err(MeshError::Groups(fault)))
     }
 
@@ -118,28 +117,30 @@ impl Mesh {
 
 /// Some triangles of a mesh, with the vertices they have.
 fn select(mesh: &Mesh, members: &[u32]) -> Mesh {
-    // Where there are few of many, the vertices of the whole are not passed once more for each.
+    // Where there are few of many, nothing of the whole is passed once more for each.
     let mut vertices: Vec<u32> =
         members.iter().flat_map(|&triangle| mesh.triangles[triangle as usize]).collect();
     vertices.sort_unstable();
     vertices.dedup();
     let number = |v: u32| vertices.partition_point(|&other| other < v) as u32;
-    let mut selected = Mesh {
+    let group = |&triangle: &u32| mesh.groups.of_triangle.get(triangle as usize).copied();
+    Mesh {
         positions: vertices.iter().map(|&v| mesh.positions[v as usize]).collect(),
         triangles: members.iter().map(|&triangle| mesh.triangles[triangle as usize].map(number)).collect(),
-        groups: mesh.groups.clone(),
-        attributes: mesh.attributes.clone(),
-        ..Mesh::default()
-    };
-    selected.groups.select(members);
-    attributes::keep(&mut selected.attributes, members);
-    selected
+        groups: FaceGroups {
+            list: mesh.groups.list.clone(),
+            of_triangle: members.iter().filter_map(group).collect(),
+        },
+        attributes: attributes::selected(&mesh.attributes, members),
+        polygons: mesh.polygons.selected(members),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::primitives;
+    use crate::mesh::Attribute;
+    use crate::{BooleanOptions, TrimSide, primitives};
 
     #[test]
     fn cavities_go_with_the_body_around_them() {
@@ -159,6 +160,36 @@ mod tests {
         assert_eq!(volumes, [56.0, 386.0, 1.0]);
         let sum: f64 = volumes.iter().sum();
         assert_eq!(sum, all.volume());
+    }
+
+    #[test]
+    fn bodies_take_what_their_triangles_have_and_no_more() {
+        let cube = |low: f64| {
+            let mut mesh = primitives::cuboid([low; 3], [low + 1.0; 3]).unwrap();
+            mesh.polygons.of_triangle = (0..12).map(|triangle| triangle / 2).collect();
+            mesh.polygons.triangles = vec![2; 6];
+            mesh.attributes = vec![Attribute {
+                name: "_X".into(),
+                components: 1,
+                values: (0..36).map(|corner| low + f64::from(corner)).collect(),
+                of_corner: (0..36).collect(),
+            }];
+            mesh
+        };
+        let cubes = [cube(0.0), cube(100.0), cube(200.0)];
+        let bodies = Solid::try_from(Mesh::merged(&cubes).unwrap()).unwrap().bodies();
+        assert!(bodies.iter().map(Solid::mesh).eq(&cubes));
+    }
+
+    #[test]
+    fn attributes_that_do_not_fit_are_no_danger_to_a_surface() {
+        let mut sheet = primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
+        let of_corner = (0..36).map(|corner| corner % 3).collect();
+        let values = vec![1.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        sheet.attributes = vec![Attribute { name: "NORMAL".into(), components: 2, values, of_corner }];
+        let post = Solid::try_from(primitives::cuboid([0.5; 3], [2.0; 3]).unwrap()).unwrap();
+        let trimmed = BooleanOptions::new().trim(&sheet, &post, TrimSide::Inside);
+        assert!(trimmed.unwrap_err().to_string().contains("NORMAL"));
     }
 
     #[test]

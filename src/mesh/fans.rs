@@ -3,12 +3,9 @@
 use std::ops::Range;
 
 use super::Mesh;
-use super::links::LinkLists;
+use super::links::{LinkLists, shares};
 use crate::exact::{FILTER_RANGE, Seen};
-use crate::parallel::{map, piece_count, ranges};
-
-/// Vertices from which a thread of its own is worth it: some tenths of a millisecond.
-const VERTICES_PER_THREAD: usize = 1 << 14;
+use crate::parallel::map;
 
 /// For each vertex whether its triangles are plainly side by side: seen along some direction all of them run counter-clockwise, and
 /// once around the vertex. Then any two have nothing in common but the vertex, and the edge if they share one, nor do they after the
@@ -21,8 +18,7 @@ pub(crate) fn plain_fans(mesh: &Mesh, largest: f64) -> Vec<bool> {
     if largest > FILTER_RANGE {
         return vec![false; vertices];
     }
-    let shares = ranges(vertices, piece_count(vertices, VERTICES_PER_THREAD).div_ceil(4));
-    map(shares, |range| of_range(mesh, range)).concat()
+    map(shares(vertices), |range| of_range(mesh, range)).concat()
 }
 
 fn of_range(mesh: &Mesh, range: Range<usize>) -> Vec<bool> {

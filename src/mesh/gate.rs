@@ -125,8 +125,17 @@ impl Gate {
         if let Err(error) = self.check(&mesh) {
             return Err(Box::new(Refusal { mesh, error }));
         }
-        let given = if self.orient { mesh.attributes.clone() } else { Vec::new() };
-        let turned = if self.orient { orient::turn(&mut mesh) } else { Vec::new() };
+        let (mut turned, mut given) = (Vec::new(), None);
+        if self.orient {
+            // Only where triangles are turned are there two of the tables: the refusal has those that were given.
+            let attributes = std::mem::take(&mut mesh.attributes);
+            turned = orient::turn(&mut mesh);
+            mesh.attributes = attributes;
+            if !turned.is_empty() {
+                given = Some(mesh.attributes.clone());
+                attributes::reverse_some(&mut mesh.attributes, &turned);
+            }
+        }
         let solid = closed_by_indices(mesh).or_else(|open| {
             let (mesh, error) = *open;
             let solid = match error {
@@ -147,7 +156,7 @@ impl Gate {
                     let corners = &mut refusal.mesh.triangles[triangle as usize];
                     *corners = orient::reversed(*corners);
                 }
-                if self.orient {
+                if let Some(given) = given {
                     refusal.mesh.attributes = given;
                 }
                 Err(refusal)

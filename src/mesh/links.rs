@@ -52,10 +52,7 @@ impl Links {
     /// # Errors
     /// The first triangle that names a vertex out of range. There are no more than 2^31 vertices and 2^32/3 triangles.
     pub(super) fn of(triangles: &[[u32; 3]], vertices: usize) -> Result<Self, usize> {
-        // A thread that looks only at some of the vertices reads all triangles: more pieces than threads cost more than they even
-        // out.
-        let shares = ranges(vertices, piece_count(vertices, VERTICES_PER_THREAD).div_ceil(4));
-        let found = map(shares, |range| Self::of_range(triangles, vertices, range));
+        let found = map(shares(vertices), |range| Self::of_range(triangles, vertices, range));
         let mut links = Self::NONE;
         for part in found {
             let Some(part) = part else {
@@ -96,6 +93,12 @@ impl Links {
         }
         Some(links)
     }
+}
+
+/// The vertices in pieces, one a thread. A thread that looks only at some of the vertices reads all triangles: more pieces than
+/// threads cost more than they even out.
+pub(super) fn shares(vertices: usize) -> Vec<Range<usize>> {
+    ranges(vertices, piece_count(vertices, VERTICES_PER_THREAD).div_ceil(4))
 }
 
 /// How many triangles each of some vertices has, and what is seen on the way.

@@ -55,11 +55,11 @@ pub(crate) use bit_set::BitSet;
 pub use bounds::Bounds;
 pub(crate) use buckets::Buckets;
 pub use buffers::VertexBuffers;
+pub(crate) use clean::compact;
 pub use diagnose::diagnose;
 pub use diagnosis::Diagnosis;
-pub use error::{AttributeFault, GroupFault, MeshError, TransformFault};
-pub(crate) use clean::compact;
 pub(crate) use duplicates::opposite_pairs;
+pub use error::{AttributeFault, GroupFault, MeshError, TransformFault};
 pub(crate) use fans::plain_fans;
 pub use gate::{Gate, Refusal, Welding};
 pub use groups::{FaceGroup, FaceGroups};
@@ -70,6 +70,7 @@ pub use material::{
 pub(crate) use measure::enclosed_volume;
 pub use mend::Mending;
 pub(crate) use mend::fan_around_splits;
+pub(crate) use normals::{area_vector, cross, unit};
 pub use places::{Fault, Place};
 #[cfg(feature = "formats")]
 pub(crate) use polygons::Faces;
@@ -81,10 +82,10 @@ pub(crate) use union_find::UnionFind;
 pub(crate) use weighted_union_find::WeightedUnionFind;
 
 /// Whether every directed edge is met by its opposite equally often; false for indices out of range.
+#[cfg(feature = "formats")]
 pub(crate) fn is_closed(mesh: &Mesh) -> bool {
-    let (triangles, vertices) = (&mesh.triangles, mesh.positions.len());
-    Links::of(triangles, vertices).is_ok_and(|links| links.edge_manifold)
-        || chain::examine(triangles, vertices).is_ok_and(|chain| chain.closed)
+    is_two_manifold(mesh)
+        || chain::examine(&mesh.triangles, mesh.positions.len()).is_ok_and(|chain| chain.closed)
 }
 
 /// What is wrong with the attributes of a mesh, if anything.
@@ -93,14 +94,10 @@ pub(crate) fn check_attributes(mesh: &Mesh) -> Result<(), MeshError> {
     attributes::check(&mesh.attributes, mesh.triangles.len())
 }
 
-/// Whether every directed edge has one triangle, and so has its opposite. O(n).
+/// Whether every directed edge has one triangle, and so has its opposite; false for triangles with a repeated corner. O(n).
 #[cfg(feature = "formats")]
 pub(crate) fn is_two_manifold(mesh: &Mesh) -> bool {
-    let mut edges = rustc_hash::FxHashSet::default();
-    edges.reserve(3 * mesh.triangles.len());
-    let sides = |&[a, b, c]: &[u32; 3]| [(a, b), (b, c), (c, a)];
-    mesh.triangles.iter().flat_map(sides).all(|edge| edges.insert(edge))
-        && edges.iter().all(|&(from, to)| edges.contains(&(to, from)))
+    Links::of(&mesh.triangles, mesh.positions.len()).is_ok_and(|links| links.edge_manifold)
 }
 
 /// A triangle mesh: positions, triangles, and the groups the triangles belong to. Plain data without invariants;

@@ -104,7 +104,7 @@ impl<'a> Shading<'a> {
         let triangle = self.mesh.triangles[t as usize];
         let length = |k: usize| {
             let [p, q] = [k, (k + 1) % 3].map(|k| place(&self.mesh.positions, triangle[k]));
-            length(minus(q, p))
+            length_of(minus(q, p))
         };
         let lengths = [0, 1, 2].map(length);
         let longest = (1..3).fold(0, |best, k| if lengths[k] > lengths[best] { k } else { best });
@@ -200,15 +200,14 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Twice the area of a triangle, along its normal.
-fn area_vector(positions: &[[f64; 3]], triangle: &[u32; 3]) -> [f64; 3] {
-    let [a, b, c] = triangle.map(|vertex| place(positions, vertex));
-    let (u, v) = (minus(b, a), minus(c, a));
-    [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-fn length(v: [f64; 3]) -> f64 {
-    length_of(v)
+/// Twice the area of a triangle, along its normal.
+pub(crate) fn area_vector(positions: &[[f64; 3]], triangle: &[u32; 3]) -> [f64; 3] {
+    let [a, b, c] = triangle.map(|vertex| place(positions, vertex));
+    cross(minus(b, a), minus(c, a))
 }
 
 fn length_of(v: [f64; 3]) -> f64 {
@@ -221,7 +220,7 @@ fn length_of(v: [f64; 3]) -> f64 {
 }
 
 /// The direction of a vector with length 1; zero if it has none.
-fn unit(v: [f64; 3]) -> [f64; 3] {
+pub(crate) fn unit(v: [f64; 3]) -> [f64; 3] {
     let largest = v.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
     if !(largest > 0.0 && largest.is_finite()) {
         return [0.0; 3];

@@ -51,6 +51,23 @@ impl Polygons {
         }
     }
 
+    /// The same as a copy, without the polygons that none of them is part of.
+    pub(super) fn selected(&self, kept: &[u32]) -> Self {
+        let known = |polygon: &u32| (*polygon as usize) < self.triangles.len();
+        let of_kept = |&triangle: &u32| self.of_triangle.get(triangle as usize).copied().filter(known);
+        let mut used: Vec<u32> = kept.iter().filter_map(of_kept).collect();
+        used.sort_unstable();
+        used.dedup();
+        if used.is_empty() {
+            return Self::default();
+        }
+        let number = |polygon: u32| used.partition_point(|&other| other < polygon) as u32;
+        Self {
+            of_triangle: kept.iter().map(|triangle| of_kept(triangle).map_or(Self::NONE, number)).collect(),
+            triangles: used.iter().map(|&polygon| self.triangles[polygon as usize]).collect(),
+        }
+    }
+
     /// Appends the polygons of `added` further triangles to those of `own` triangles.
     pub(crate) fn append(&mut self, own: usize, other: &Self, added: usize) {
         if self.is_empty() && other.is_empty() {

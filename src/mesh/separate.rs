@@ -1,8 +1,7 @@
 //! Solids that touch themselves, taken apart where they do.
 
-use super::attributes;
 use super::manifold::{HalfEdges, Surface, make_manifold};
-use crate::{Mesh, Solid};
+use super::{Mesh, Polygons, Solid, attributes};
 
 /// A whole mesh that is taken apart.
 struct Whole {
@@ -30,8 +29,11 @@ impl Surface for Whole {
         if let Some(&group) = self.mesh.groups.of_triangle.get(of as usize) {
             self.mesh.groups.of_triangle.push(group);
         }
-        if !self.mesh.polygons.is_empty() {
-            self.mesh.polygons.of_triangle.push(super::Polygons::NONE);
+        // What is cut up is part of its polygon no longer.
+        let polygons = &mut self.mesh.polygons.of_triangle;
+        if let Some(polygon) = polygons.get_mut(of as usize) {
+            *polygon = Polygons::NONE;
+            polygons.push(Polygons::NONE);
         }
     }
 
@@ -75,7 +77,11 @@ impl Solid {
     #[must_use]
     pub fn separated(&self) -> (Self, Vec<u32>) {
         let count = self.mesh().triangles.len() as u32;
-        let mut whole = Whole { mesh: self.mesh().clone(), source: (0..count).collect() };
+        let Mesh { positions, triangles, groups, polygons, .. } = self.mesh();
+        let (positions, triangles) = (positions.clone(), triangles.clone());
+        let (groups, polygons) = (groups.clone(), polygons.clone());
+        let mesh = Mesh { positions, triangles, groups, polygons, attributes: Vec::new() };
+        let mut whole = Whole { mesh, source: (0..count).collect() };
         let half_edges = HalfEdges::of(&whole);
         make_manifold(&mut whole, &half_edges);
         whole.mesh.attributes =

@@ -6,7 +6,7 @@ use super::edges::EdgeTable;
 use super::measure::{area, signed_volume};
 use super::patches::Patches;
 use super::topology::{self, Shape};
-use super::{Attribute, Bounds, FaceGroups, Fault, Links, Mending, Mesh, Polygons, SelfCrossings};
+use super::{Attribute, Bounds, FaceGroups, Fault, Links, Mending, Mesh, Polygons, SelfCrossings, chain};
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
 /// often as it occurs. Every vertex belongs to a triangle, no triangle has a repeated corner, and the enclosed
@@ -93,7 +93,7 @@ impl Solid {
     pub(crate) fn from_closed_unchecked(mesh: Mesh) -> Self {
         #[cfg(debug_assertions)]
         {
-            let chain = super::chain::examine(&mesh.triangles, mesh.positions.len());
+            let chain = chain::examine(&mesh.triangles, mesh.positions.len());
             debug_assert!(
                 chain.is_ok_and(|chain| chain.closed && !chain.unreferenced),
                 "not closed: {chain:?}"
@@ -228,7 +228,8 @@ impl Solid {
 
     /// Whether every directed edge is met by its opposite equally often, found out anew for what no gate has looked at.
     pub(crate) fn is_closed(&self) -> bool {
-        self.is_edge_manifold() || super::is_closed(&self.mesh)
+        let examine = || chain::examine(&self.mesh.triangles, self.mesh.positions.len());
+        self.is_edge_manifold() || examine().is_ok_and(|chain| chain.closed)
     }
 
     /// How many pieces the surface falls into, connected by edges. (A body with a cavity has two.) O(n), once.

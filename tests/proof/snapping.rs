@@ -122,6 +122,10 @@ fn an_opening_a_hair_short_goes_through() {
     assert_eq!(snapped.solid().volume(), 12.0);
     let snapping = snapped.certificate().snapping.unwrap();
     assert!(snapping.split_faces > 0 && snapping.farthest <= 1e-6 && snapping.rounds > 0);
+    // What is no larger than the distance vanishes, and that is told.
+    let none = BooleanOptions::new().snap(5.0).run(Operation::Difference, [&plate, &short]).unwrap();
+    let snapping = none.certificate().snapping.unwrap();
+    assert!(none.solid().is_empty() && (snapping.vanished, snapping.collapsed) == (2, 24), "{snapping:?}");
     // Nothing is snapped unasked, and nothing that is further apart.
     let exact_again = BooleanOptions::new().snap(1e-9).run(Operation::Difference, [&plate, &short]).unwrap();
     assert!(exact_again.solid() == exact.solid());

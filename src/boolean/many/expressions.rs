@@ -181,25 +181,27 @@ fn states(general: &General, operands: &[&Solid], runner: Runner<'_>) -> Result<
     };
     general.crossings.segments.iter().for_each(|segment| count(segment.faces, 0));
     general.crossings.touching.iter().for_each(|&faces| count(faces, 1));
+    // Hardly any operand winds around something inwards; one look at the labels tells which.
+    let mut winds_inwards = vec![false; operands.len()];
+    let inwards =
+        general.faces.labels.all().iter().flat_map(|label| label.iter()).filter(|entry| entry.1 < 0);
+    inwards.for_each(|&(operand, _)| winds_inwards[operand as usize] = true);
     let state = |((operand, solid), [crossings, touching]): ((u32, &&Solid), [usize; 2])| {
+        let inwards = winds_inwards[operand as usize];
         Ok(OperandState::Resolved {
             crossings,
             touching,
             winding_volume: solid.volume(),
-            inward_volume: inward_volume(general, operand, runner)?,
+            inward_volume: if inwards { inward_volume(general, operand, runner)? } else { 0.0 },
         })
     };
     (0..).zip(operands).zip(counts).map(state).collect()
 }
 
-/// The volume of what an operand winds around more often inwards than outwards: nothing, nearly always, and that is told by the
-/// labels.
+/// The volume of what an operand winds around more often inwards than outwards.
 fn inward_volume(general: &General, operand: u32, runner: Runner<'_>) -> Result<f64, Error> {
     let labels = general.faces.labels.all();
     let inwards: Vec<bool> = labels.iter().map(|label| winding(label, operand) < 0).collect();
-    if !inwards.contains(&true) {
-        return Ok(0.0);
-    }
     let finish = Finish { remove_vertices: true, unit: f64::EPSILON, find_low: false };
     let arrays = evaluate(general, &inwards, finish, runner)?.arrays;
     Ok(Mesh::new(arrays.positions, arrays.triangles).volume())

@@ -195,7 +195,8 @@ impl Engine<'_> {
         let Combined { arrays: made, contacts } =
             pair::combine(operation, &a.solid, &b.solid, settings, runner)?;
         let sources = [a, b];
-        let groups = if a.groups.is_empty() {
+        // An operand without triangles has none either way.
+        let groups = if a.groups.is_empty() && b.groups.is_empty() {
             Vec::new()
         } else {
             made.origins

@@ -1,18 +1,17 @@
 //! The last step of every result: crossings that rounding made are resolved, and the outcome is put together.
 
-use super::policy::{Embed, Policy};
 use rustc_hash::FxHashMap;
 
-use crate::Error;
-use crate::Solid;
+use super::policy::{Embed, Policy};
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::embed::{Grid, Parts, embed};
 use crate::boolean::result::attributes::carried;
 use crate::boolean::result::certificate::Notes;
 use crate::boolean::result::origins::Origins;
 use crate::boolean::result::outcome::Outcome;
-use crate::mesh::{FaceGroups, Polygons};
+use crate::mesh::{FaceGroups, Mesh, Polygons};
 use crate::parallel::Runner;
+use crate::{Error, Solid};
 
 /// A result, but for crossings that rounding made.
 pub(in crate::boolean) struct Made {
@@ -46,7 +45,8 @@ impl Made {
             self.solid.set_made_clean();
         }
         self.solid.set_groups(self.groups);
-        self.solid.set_polygons(whole_polygons(&self.origins, operands));
+        let meshes: Vec<&Mesh> = operands.iter().map(|solid| solid.mesh()).collect();
+        self.solid.set_polygons(whole_polygons(&self.origins, self.solid.mesh(), &meshes));
         // The attributes last, of the vertices as they are now.
         let unit =
             if policy.embed == Embed::OnGrid(Grid::Single) { f32::EPSILON.into() } else { f64::EPSILON };
@@ -65,52 +65,61 @@ impl Made {
         let mesh = std::mem::take(&mut self.solid).into_mesh();
         let origins: Vec<Origin> = self.origins.iter().collect();
         // Where attributes have to be kept, only what comes from one face is one face.
-        let group_of = has_attributes.then(|| group_of_faces(&origins, &self.groups.of_triangle));
-        let classes = group_of.as_ref().map(|(classes, _)| classes.clone());
-        let parts = Parts {
-            positions: mesh.positions,
-            triangles: mesh.triangles,
-            groups: classes.unwrap_or_else(|| std::mem::take(&mut self.groups.of_triangle)),
-            origins,
+        let groups = std::mem::take(&mut self.groups.of_triangle);
+        let (classes, group_of_class) = if has_attributes {
+            let (classes, groups) = group_of_faces(&origins, &groups);
+            (classes, Some(groups))
+        } else {
+            (groups, None)
         };
+        let parts = Parts { positions: mesh.positions, triangles: mesh.triangles, groups: classes, origins };
         let (parts, report) = embed(parts, grid, policy.remove_vertices, runner)?;
-        self.groups.of_triangle = match group_of {
-            Some((_, groups)) if !groups.is_empty() => {
-                parts.groups.iter().map(|&class| groups[class as usize]).collect()
-            }
-            Some(_) => Vec::new(),
+        self.groups.of_triangle = match group_of_class {
+            Some(groups) if groups.is_empty() => Vec::new(),
+            Some(groups) => parts.groups.iter().map(|&class| groups[class as usize]).collect(),
             None => parts.groups,
         };
         self.origins = parts.origins.into_iter().collect();
-        self.solid = Solid::from_closed_unchecked(crate::Mesh::new(parts.positions, parts.triangles));
+        self.solid = Solid::from_closed_unchecked(Mesh::new(parts.positions, parts.triangles));
         self.notes.embedding = Some(report);
         Ok(())
     }
 }
 
 /// The polygons of the operands, on the triangles of the result that are as the operands have them.
-fn whole_polygons(origins: &Origins, operands: &[&Solid]) -> Polygons {
-    if operands.iter().all(|solid| solid.mesh().polygons.is_empty()) {
+pub(super) fn whole_polygons(origins: &Origins, mesh: &Mesh, operands: &[&Mesh]) -> Polygons {
+    if operands.iter().all(|given| given.polygons.is_empty()) {
         return Polygons::default();
     }
     // Each operand's polygons are counted on from those before.
     let mut all = Polygons::default();
     let mut firsts = Vec::with_capacity(operands.len());
-    for solid in operands {
+    for given in operands {
         firsts.push(all.triangles.len() as u32);
-        all.triangles.extend_from_slice(&solid.mesh().polygons.triangles);
+        all.triangles.extend_from_slice(&given.polygons.triangles);
     }
+    let corners = |mesh: &Mesh, t: usize| mesh.triangles[t].map(|v| mesh.positions[v as usize]);
     for (origin, count, whole) in origins.stretches() {
-        let operand = origin.operand as usize;
-        let of_triangle = operands.get(operand).map_or(&[][..], |solid| &solid.mesh().polygons.of_triangle);
-        let first = origin.triangle as usize;
-        for triangle in first..first + count as usize {
-            let polygon =
-                of_triangle.get(triangle).copied().filter(|&polygon| whole && polygon != Polygons::NONE);
-            all.of_triangle.push(polygon.map_or(Polygons::NONE, |polygon| polygon + firsts[operand]));
+        let given = operands.get(origin.operand as usize);
+        for triangle in (origin.triangle as usize..).take(count as usize) {
+            let own = all.of_triangle.len();
+            let polygon = given.and_then(|given| {
+                let polygon = given.polygons.of_triangle.get(triangle).copied()?;
+                let is_known = (polygon as usize) < given.polygons.triangles.len();
+                let is_whole =
+                    || whole || is_as_given(corners(mesh, own), corners(given, triangle), origin.reversed);
+                (is_known && is_whole()).then(|| firsts[origin.operand as usize] + polygon)
+            });
+            all.of_triangle.push(polygon.unwrap_or(Polygons::NONE));
         }
     }
     all
+}
+
+/// Whether a triangle has the corners of another in their order, or in the other one if it is turned round.
+fn is_as_given(own: [[f64; 3]; 3], [a, b, c]: [[f64; 3]; 3], reversed: bool) -> bool {
+    let given = if reversed { [a, c, b] } else { [a, b, c] };
+    (0..3).any(|turn| (0..3).all(|k| own[k] == given[(turn + k) % 3]))
 }
 
 /// A number for each triangle, equal for those that come from one face, and by number the group of that face (nothing if there
@@ -127,4 +136,58 @@ fn group_of_faces(origins: &[Origin], of_triangle: &[u32]) -> (Vec<u32>, Vec<u32
     };
     let classes = origins.iter().enumerate().map(&mut number).collect();
     (classes, groups)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BooleanOptions, Operation, primitives};
+
+    /// A box of squares.
+    fn squares(low: f64) -> Solid {
+        let mut mesh: Mesh = primitives::cuboid([low; 3], [low + 2.0; 3]).unwrap();
+        mesh.polygons.of_triangle = (0..12).map(|triangle| triangle / 2).collect();
+        mesh.polygons.triangles = vec![2; 6];
+        Solid::try_from(mesh).unwrap()
+    }
+
+    /// How many squares are whole.
+    fn whole(mesh: &Mesh) -> usize {
+        let members =
+            |polygon: u32| mesh.polygons.of_triangle.iter().filter(|&&other| other == polygon).count();
+        (0..)
+            .zip(&mesh.polygons.triangles)
+            .filter(|&(polygon, &count)| members(polygon) == count as usize)
+            .count()
+    }
+
+    #[test]
+    fn polygons_that_nothing_touched_stay_whatever_the_way() {
+        let operands = [0.0, 1.0, 2.0].map(squares);
+        let united = |options: BooleanOptions, count: usize| {
+            let outcome = options.run(Operation::Union, &operands[..count]).unwrap();
+            whole(outcome.solid().mesh())
+        };
+        let options = || BooleanOptions::new().remove_vertices(false);
+        // Each of two boxes that cross keeps three of its squares, and one between two others none.
+        assert_eq!([1, 2, 3].map(|count| united(options(), count)), [6, 6, 6]);
+        assert_eq!(united(options().embed(Embed::OnGrid(Grid::Double)), 2), 6);
+        // Everything in one arrangement.
+        let both = Mesh::merged([operands[0].mesh(), operands[1].mesh()]).unwrap();
+        let resolved = options().resolve(&Solid::try_from(both).unwrap()).unwrap();
+        assert_eq!(whole(resolved.solid().mesh()), 6);
+        // Squares turned inwards.
+        let outcome = options().run(Operation::Difference, &operands[..2]).unwrap();
+        assert_eq!(whole(outcome.solid().mesh()), 3);
+    }
+
+    #[test]
+    fn numbers_of_polygons_that_are_none_are_no_danger() {
+        let mut mesh = squares(0.0).into_mesh();
+        mesh.polygons.of_triangle.fill(u32::MAX - 1);
+        let outcome = BooleanOptions::new()
+            .run(Operation::Union, [&squares(5.0), &Solid::try_from(mesh).unwrap()])
+            .unwrap();
+        assert_eq!(whole(outcome.solid().mesh()), 6);
+    }
 }

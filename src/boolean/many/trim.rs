@@ -1,6 +1,7 @@
 //! Surfaces that need not be closed, trimmed by solids.
 
 use super::expressions::is_simple;
+use super::made::whole_polygons;
 use super::options::BooleanOptions;
 use crate::boolean::classify::multiplicity::Keep;
 use crate::boolean::complex::origin::Origin;
@@ -52,7 +53,8 @@ impl BooleanOptions {
             let resolved =
                 if is_simple(policy, by, runner.control)? { None } else { Some(self.resolve(by)?) };
             let by = resolved.as_ref().map_or(by, |outcome| outcome.solid());
-            let by = if by.is_edge_manifold() { by.clone() } else { by.separated().0 };
+            let separated = (!by.is_edge_manifold()).then(|| by.separated().0);
+            let by = separated.as_ref().unwrap_or(by);
             // Triangles without three corners are nothing, and so are vertices of nothing.
             let kept: Vec<u32> = (0u32..)
                 .zip(&sheet.triangles)
@@ -73,7 +75,7 @@ impl BooleanOptions {
                 TrimSide::Inside => Keep::Inside,
                 TrimSide::Outside => Keep::Outside,
             };
-            let Combined { arrays, .. } = pair::trim(sheet, &by, keep, settings, runner)?;
+            let Combined { arrays, .. } = pair::trim(sheet, by, keep, settings, runner)?;
             let mut mesh = Mesh::new(arrays.positions, arrays.triangles);
             if !sheet.groups.is_empty() {
                 mesh.groups.list.clone_from(&sheet.groups.list);
@@ -99,8 +101,56 @@ impl BooleanOptions {
                 },
                 runner,
             )?;
+            mesh.polygons = whole_polygons(&arrays.origins, &mesh, &[sheet]);
             let given = |origin: Origin| Origin { triangle: kept[origin.triangle as usize], ..origin };
             Ok(Trimmed { mesh, origins: arrays.origins.iter().map(given).collect() })
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::primitives;
+
+    #[test]
+    fn what_was_trimmed_is_trimmed_again() {
+        // Its rim lies on the ball but for rounding, so that edges of it are split.
+        let side = 0..=5u32;
+        let along = |k: u32| 2.0 * f64::from(k) / 5.0 - 1.0;
+        let height = |x: f64, y: f64| 0.2 * (3.0 * x).sin() * (4.0 * y).cos();
+        let positions = side.clone().flat_map(|i| side.clone().map(move |j| [along(i), along(j)]));
+        let positions = positions.map(|[x, y]| [x, y, height(x, y)]).collect();
+        let corners = (0..5).flat_map(|i| (0..5).map(move |j| 6 * i + j));
+        let triangles = corners.flat_map(|a| [[a, a + 6, a + 7], [a, a + 7, a + 1]]).collect();
+        let sheet = Mesh::new(positions, triangles);
+        let ball = Solid::try_from(primitives::geodesic_sphere(0.62, 7).unwrap()).unwrap();
+        let options = BooleanOptions::new();
+        let inside = options.trim(&sheet, &ball, TrimSide::Inside).unwrap().mesh;
+        let again = options.trim(&inside, &ball, TrimSide::Outside).unwrap().mesh;
+        assert!(again.area() < 1e-12 * inside.area(), "{}", again.area());
+    }
+
+    #[test]
+    fn squares_that_a_trim_does_not_touch_stay_squares() {
+        let positions = (0..36u32).map(|i| [f64::from(i / 6), f64::from(i % 6), 0.0]).collect();
+        let corners = (0..5).flat_map(|i| (0..5).map(move |j| 6 * i + j));
+        let triangles: Vec<[u32; 3]> = corners.flat_map(|a| [[a, a + 6, a + 7], [a, a + 7, a + 1]]).collect();
+        let mut sheet = Mesh::new(positions, triangles);
+        sheet.polygons.triangles = vec![2; 25];
+        sheet.polygons.of_triangle = (0..50).map(|t| t / 2).collect();
+        let post =
+            Solid::try_from(primitives::cuboid([0.25; 3], [1.75; 3]).unwrap().translated([0.0, 0.0, -1.0]));
+        let trimmed = BooleanOptions::new().trim(&sheet, &post.unwrap(), TrimSide::Outside).unwrap().mesh;
+        let mut triangles = [0; 25];
+        trimmed
+            .polygons
+            .of_triangle
+            .iter()
+            .filter(|&&of| of != crate::mesh::Polygons::NONE)
+            .for_each(|&of| triangles[of as usize] += 1);
+        // Four squares are cut.
+        assert_eq!(triangles.iter().filter(|&&count| count == 2).count(), 21, "{triangles:?}");
+        assert_eq!(trimmed.polygons.of_triangle.len(), trimmed.triangles.len());
     }
 }

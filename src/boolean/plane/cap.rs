@@ -1,7 +1,7 @@
 //! What closes both halves.
 
 use super::nodes::{Nodes, Point};
-use super::pieces::{seam, without_opposites};
+use super::pieces::{numbered, seam, without_opposites};
 use super::split::{Half, ON, Split};
 use crate::polygon::{self, Region};
 
@@ -32,15 +32,10 @@ pub(super) fn outline(split: &Split<'_>, nodes: &Nodes) -> Vec<[Point; 2]> {
 
 /// The cap over its boundary.
 pub(super) fn cap(split: &Split<'_>, nodes: &Nodes) -> Cap {
-    let edges = outline(split, nodes);
-    let mut points: Vec<Point> = edges.iter().flatten().copied().collect();
-    points.sort_unstable();
-    points.dedup();
+    let (points, edges) = numbered(&outline(split, nodes));
     let projection = split.plane.projection();
     let flat: Vec<[f64; 2]> =
         points.iter().map(|&point| projection.project(&nodes.position(split, point))).collect();
-    let number = |point: &Point| points.partition_point(|other| other < point) as u32;
-    let edges: Vec<[u32; 2]> = edges.iter().map(|edge| edge.each_ref().map(number)).collect();
     let Region { triangles, is_simple, inverted } = polygon::fill_wound(&flat, &edges);
     let triangles =
         triangles.into_iter().map(|corners| corners.map(|number| points[number as usize])).collect();

@@ -4,7 +4,8 @@ use rustc_hash::FxHashMap;
 
 use super::split::{ABOVE, BELOW, Half, ON, Split};
 use crate::Error;
-use crate::exact::{Projection, Sign, orient2d, orient3d};
+use crate::boolean::complex::planes::{lie_in_one_plane, look_same_way};
+use crate::control::Reservation;
 use crate::mesh::UnionFind;
 use crate::parallel::Runner;
 
@@ -32,6 +33,13 @@ pub(super) struct CutFace {
     pub(super) entry: Point,
 }
 
+/// Memory for one cut triangle, in bytes. It has one node of its own: each is between two. Tables with a key are half full.
+const BYTES_PER_FACE: usize = size_of::<CutFace>()
+    + size_of::<Node>()
+    + size_of::<[f64; 3]>()
+    + 3 * size_of::<Point>()
+    + 2 * (size_of::<((u32, u32), u32)>() + size_of::<([u64; 3], Point)>());
+
 /// All nodes, and the cut triangles between them.
 pub(super) struct Nodes {
     pub(super) faces: Vec<CutFace>,
@@ -48,16 +56,18 @@ pub(super) struct Nodes {
     ends: [Vec<u32>; 2],
     /// The number of vertices: that of the first node.
     first: u32,
-    /// Whether some edge has other than two cut faces, or points at the same place became one.
+    /// Whether some edge has other than two cut faces, cut faces meet in vertices, or points at the same place became one.
     pub(super) may_pinch: bool,
+    _memory: Reservation,
 }
 
 impl Nodes {
-    /// Finds, merges and locates all nodes. With `merge`, faces of one plane are cut as one.
+    /// Finds, merges and locates all nodes. Faces of one plane are cut as one where `merge` has one class for them; it has a class
+    /// for each triangle, or none where all are of one.
     ///
     /// # Errors
     /// [`Error::TooLarge`] where vertices and nodes cannot be numbered; limits.
-    pub(super) fn new(split: &Split<'_>, merge: bool, runner: Runner<'_>) -> Result<Self, Error> {
+    pub(super) fn new(split: &Split<'_>, merge: Option<&[u32]>, runner: Runner<'_>) -> Result<Self, Error> {
         let vertices = split.vertex_count();
         // Two for each cut face at most.
         if vertices + 2 * split.cut.len() > u32::MAX as usize / 2 {
@@ -65,12 +75,14 @@ impl Nodes {
                 what: format!("{vertices} vertices cut in {} triangles", split.cut.len()),
             });
         }
+        let memory = runner.control.reserve((split.cut.len() * BYTES_PER_FACE) as u64)?;
         let first = vertices as u32;
         // 1. Nodes, in the order of the triangles that have them.
         let (nodes, faces) = find(split, first);
         // 2. Faces of one plane.
         let mut dropped = vec![false; nodes.len()];
-        let plane_faces = if merge { merge_faces(split, &nodes, &faces, &mut dropped) } else { Vec::new() };
+        let plane_faces =
+            merge.map_or_else(Vec::new, |classes| merge_faces(split, &nodes, &faces, classes, &mut dropped));
         runner.control.check()?;
         // 3. Where they are.
         let positions =
@@ -92,6 +104,7 @@ impl Nodes {
             ends: [Vec::new(), Vec::new()],
             first,
             may_pinch,
+            _memory: memory,
         };
         // 4. Which are one.
         found.identify(split, &nodes);
@@ -145,6 +158,8 @@ impl Nodes {
                 at.entry(key(&split.mesh.positions[point as usize])).or_insert(point);
             }
         }
+        // (Any number of cut faces may meet in one: where it is a saddle, what is left of them touches there alone.)
+        self.may_pinch |= !at.is_empty();
         // 2. Then nodes in their order.
         self.in_cap = (0..nodes.len())
             .map(|node| {
@@ -213,13 +228,21 @@ fn find(split: &Split<'_>, first: u32) -> (Vec<Node>, Vec<CutFace>) {
 }
 
 /// Faces of one plane of the solid side by side, and which nodes between them are dropped.
-fn merge_faces(split: &Split<'_>, nodes: &[Node], faces: &[CutFace], dropped: &mut [bool]) -> Vec<Vec<u32>> {
+fn merge_faces(
+    split: &Split<'_>,
+    nodes: &[Node],
+    faces: &[CutFace],
+    classes: &[u32],
+    dropped: &mut [bool],
+) -> Vec<Vec<u32>> {
     let mut joined = UnionFind::new(faces.len());
     let mut any = false;
     for (node, dropped) in nodes.iter().zip(dropped) {
-        let [f, g] = node.faces;
-        if node.count == 2 && are_one_plane(split, faces[f as usize].triangle, faces[g as usize].triangle) {
-            joined.join(f, g);
+        let [x, y] = node.faces;
+        let [f, g] = [x, y].map(|place| faces[place as usize].triangle);
+        if node.count == 2 && classes.get(f as usize) == classes.get(g as usize) && are_one_plane(split, f, g)
+        {
+            joined.join(x, y);
             *dropped = true;
             any = true;
         }
@@ -246,14 +269,6 @@ fn are_one_plane(split: &Split<'_>, f: u32, g: u32) -> bool {
         return false;
     }
     let [of_f, of_g] = [f, g].map(|t| split.corners(t).map(|v| split.mesh.positions[v as usize]));
-    let [a, b, c] = &of_f;
-    if of_g.iter().any(|corner| orient3d(a, b, c, corner) != Sign::Zero) {
-        return false;
-    }
-    let projection = Projection::of(&of_f);
-    let looks_up = |corners: &[[f64; 3]; 3]| {
-        let [a, b, c] = corners.map(|corner| projection.project(&corner));
-        orient2d(a, b, c) == Sign::Positive
-    };
-    looks_up(&of_f) && looks_up(&of_g)
+    // (The first of them too is not always seen from the front: the normals of needles are rounded away.)
+    lie_in_one_plane(&of_f, &of_g) && look_same_way(&of_f, &of_f) && look_same_way(&of_f, &of_g)
 }

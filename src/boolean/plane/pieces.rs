@@ -13,7 +13,7 @@ pub(super) struct Piece {
     pub(super) source: Option<u32>,
 }
 
-/// The pieces of a half; and the seam, directed as the pieces below pass it.
+/// The pieces of a half.
 pub(super) fn pieces(split: &Split<'_>, nodes: &Nodes, half: Half) -> Vec<Piece> {
     let mut cutter = Cutter { split, nodes, half, pieces: Vec::new(), triangulator: Triangulator::default() };
     if nodes.plane_faces.is_empty() {
@@ -114,16 +114,12 @@ impl Cutter<'_> {
     fn cut_several(&mut self, places: &[u32]) {
         let edges = self.boundary(places);
         // 1. Points of their own numbers, in the plane.
-        let mut points: Vec<Point> = edges.iter().flatten().copied().collect();
-        points.sort_unstable();
-        points.dedup();
+        let (points, edges) = numbered(&edges);
         let source = self.nodes.faces[places[0] as usize].triangle;
         let projection =
             Projection::of(&self.split.corners(source).map(|v| self.split.mesh.positions[v as usize]));
         let flat: Vec<[f64; 2]> =
             points.iter().map(|&point| projection.project(&self.nodes.position(self.split, point))).collect();
-        let number = |point: &Point| points.partition_point(|other| other < point) as u32;
-        let edges: Vec<[u32; 2]> = edges.iter().map(|edge| edge.each_ref().map(number)).collect();
         // 2. Triangles.
         let mut triangles = Vec::new();
         self.triangulator.triangulate(&flat, &edges, &mut triangles);
@@ -179,6 +175,16 @@ pub(super) fn without_opposites(mut edges: Vec<[Point; 2]>) -> Vec<[Point; 2]> {
         left.extend(std::iter::repeat_n([high, low], back.saturating_sub(forward)));
     }
     left
+}
+
+/// The points that edges have, ascending, and the edges by their places among them.
+pub(super) fn numbered(edges: &[[Point; 2]]) -> (Vec<Point>, Vec<[u32; 2]>) {
+    let mut points: Vec<Point> = edges.iter().flatten().copied().collect();
+    points.sort_unstable();
+    points.dedup();
+    let number = |point: &Point| points.partition_point(|other| other < point) as u32;
+    let edges = edges.iter().map(|edge| edge.each_ref().map(number)).collect();
+    (points, edges)
 }
 
 /// How many pieces rounding turned over.

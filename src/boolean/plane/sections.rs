@@ -1,7 +1,8 @@
 //! Sections at one plane or at many parallel ones, in one pass over the solid.
 
 use super::cap::outline;
-use super::nodes::{Nodes, Point};
+use super::nodes::Nodes;
+use super::pieces::numbered;
 use super::section::Section;
 use super::split::{ABOVE, BELOW, ON, Split};
 use crate::boolean::many::expressions::is_simple;
@@ -102,6 +103,8 @@ impl Sections {
                     .iter()
                     .map(|plane| {
                         let mesh = solid.mesh();
+                        let numbers = mesh.positions.len() + mesh.triangles.len();
+                        let _numbers = runner.control.reserve((numbers * size_of::<u32>()) as u64)?;
                         let ranks: Vec<u32> =
                             mesh.positions.iter().map(|p| (1 + plane.side(p) as i8) as u32).collect();
                         let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
@@ -134,6 +137,7 @@ impl Sections {
         runner: Runner<'_>,
     ) -> Result<Vec<Section>, Error> {
         let mesh = solid.mesh();
+        let _ranks = runner.control.reserve((mesh.positions.len() * size_of::<u32>()) as u64)?;
         let levels: Vec<f64> = order.iter().filter_map(|&i| planes[i].as_level()).map(|(_, at)| at).collect();
         // 1. How many planes each vertex has passed.
         let mut ranks = vec![0u32; mesh.positions.len()];
@@ -156,6 +160,7 @@ impl Sections {
             }
         };
         let met = runner.gather(mesh.triangles.len(), AT_ONCE, 0, meetings)?;
+        let _met = runner.control.reserve((met.len() * size_of::<(u32, u32)>()) as u64)?;
         let met = Buckets::new(order.len(), met.into_iter());
         // 3. Plane by plane, on all threads.
         let work: Vec<(usize, usize)> = order.iter().copied().enumerate().collect();
@@ -190,16 +195,12 @@ fn levels(planes: &[Plane]) -> Option<(usize, Vec<usize>)> {
 
 /// The section at one plane.
 fn one(split: &Split<'_>, merge: bool, runner: Runner<'_>) -> Result<Section, Error> {
-    let nodes = Nodes::new(split, merge, runner)?;
-    let edges = outline(split, &nodes);
-    let mut points: Vec<Point> = edges.iter().flatten().copied().collect();
-    points.sort_unstable();
-    points.dedup();
+    // (Outlines have no attributes: faces of all classes are one.)
+    let nodes = Nodes::new(split, merge.then_some(&[]), runner)?;
+    let (points, edges) = numbered(&outline(split, &nodes));
     let places: Vec<[f64; 3]> = points.iter().map(|&point| nodes.position(split, point)).collect();
     let projection = split.plane.projection();
     let flat: Vec<[f64; 2]> = places.iter().map(|place| projection.project(place)).collect();
-    let number = |point: &Point| points.partition_point(|other| other < point) as u32;
-    let edges: Vec<[u32; 2]> = edges.iter().map(|edge| edge.each_ref().map(number)).collect();
     let polygons: Vec<Vec<Vec<[f64; 3]>>> = polygon::polygons(&flat, &edges)
         .into_iter()
         .map(|polygon| {

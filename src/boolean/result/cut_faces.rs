@@ -1,9 +1,12 @@
 //! What the faces show that a tool has cut: its own material and attributes, the body's, or something new.
 
+use std::collections::BTreeMap;
+
 use rustc_hash::FxHashMap;
 
-use crate::boolean::complex::origin::Origin;
-use crate::mesh::{Attribute, AttributeKind, FaceGroup, FaceGroups, Mesh, UnionFind};
+use crate::mesh::{
+    Attribute, AttributeKind, FaceGroup, FaceGroups, Mesh, UnionFind, area_vector, cross, unit,
+};
 
 /// What the cut faces of a result show: those that come from a tool and face the other way now, as the wall of a hole does.
 /// The default is what the tool has there, its material and its attributes.
@@ -93,23 +96,22 @@ impl CutFaces {
         self.material == CutMaterial::Tool && self.texture.is_none()
     }
 
-    /// Gives the cut faces of a result what they are to show. O(n).
-    pub(crate) fn apply(&self, mesh: &mut Mesh, origins: &[Origin]) {
-        let cut: Vec<bool> = origins.iter().map(|origin| origin.reversed).collect();
+    /// Gives the cut faces of a result what they are to show; `cut` tells for each triangle whether it is one. O(n).
+    pub(crate) fn apply(&self, mesh: &mut Mesh, cut: &[bool]) {
         if !cut.contains(&true) {
             return;
         }
-        let pieces = Pieces::new(mesh, &cut);
+        let pieces = Pieces::new(mesh, cut);
         match &self.material {
             CutMaterial::Tool => {}
             CutMaterial::Body => pieces.take_groups_around(mesh),
-            CutMaterial::Group(group) => put_in_group(&mut mesh.groups, group, &cut),
+            CutMaterial::Group(group) => put_in_group(&mut mesh.groups, group, cut),
         }
         if self.material != CutMaterial::Tool {
-            strip(mesh, &cut);
+            strip(mesh, cut);
         }
         if let Some(texture) = self.texture {
-            lay(mesh, &cut, &pieces, texture);
+            lay(mesh, cut, &pieces, texture);
         }
     }
 }
@@ -170,38 +172,27 @@ impl Pieces {
         }
         let groups = mesh.groups.list.len();
         let mut lengths = vec![0.0; groups];
-        let mut of_piece: Vec<FxHashMap<u32, f64>> = vec![FxHashMap::default(); self.count];
+        let mut of_piece: Vec<BTreeMap<u32, f64>> = vec![BTreeMap::new(); self.count];
         for &(piece, t, length) in &self.borders {
             let group = mesh.groups.of_triangle[t as usize];
             lengths[group as usize] += length;
             *of_piece[piece as usize].entry(group).or_default() += length;
         }
-        let longest = |lengths: &mut dyn Iterator<Item = (u32, f64)>| {
-            lengths.fold(None, |best: Option<(u32, f64)>, (group, length)| match best {
-                Some((known, longest))
-                    if (longest, known) > (length, group) || length == longest && known < group =>
-                {
-                    best
-                }
-                _ => Some((group, length)),
-            })
-        };
-        let overall = longest(&mut (0..).zip(lengths.iter().copied())).map_or(0, |(group, _)| group);
-        let chosen: Vec<u32> = of_piece
-            .iter()
-            .map(|lengths| {
-                let mut sorted: Vec<(u32, f64)> =
-                    lengths.iter().map(|(&group, &length)| (group, length)).collect();
-                sorted.sort_unstable_by_key(|&(group, _)| group);
-                longest(&mut sorted.into_iter()).map_or(overall, |(group, _)| group)
-            })
-            .collect();
+        let overall = longest((0..).zip(lengths)).unwrap_or(0);
+        let of_lengths = |lengths: BTreeMap<u32, f64>| longest(lengths).unwrap_or(overall);
+        let chosen: Vec<u32> = of_piece.into_iter().map(of_lengths).collect();
         for (group, &piece) in mesh.groups.of_triangle.iter_mut().zip(&self.of_triangle) {
             if piece != Self::NONE {
                 *group = chosen[piece as usize];
             }
         }
     }
+}
+
+/// Of groups with lengths, ascending, the first with the greatest length.
+fn longest(lengths: impl IntoIterator<Item = (u32, f64)>) -> Option<u32> {
+    let longer = |best: (u32, f64), next: (u32, f64)| if best.1 >= next.1 { best } else { next };
+    lengths.into_iter().reduce(longer).map(|(group, _)| group)
 }
 
 fn put_in_group(groups: &mut FaceGroups, group: &FaceGroup, cut: &[bool]) {
@@ -219,15 +210,14 @@ fn put_in_group(groups: &mut FaceGroups, group: &FaceGroup, cut: &[bool]) {
 
 /// Takes the tool's attributes off the cut faces; normals become flat.
 fn strip(mesh: &mut Mesh, cut: &[bool]) {
-    let flat = mesh.attribute("NORMAL").is_some().then(|| mesh.flat_normals());
-    for attribute in &mut mesh.attributes {
+    let Mesh { positions, triangles, attributes, .. } = mesh;
+    for attribute in attributes {
         let is_normal = attribute.kind() == AttributeKind::Normal;
         for (t, corners) in attribute.of_corner.chunks_exact_mut(3).enumerate().filter(|&(t, _)| cut[t]) {
             corners.fill(Attribute::NONE);
-            if let Some(normal) = flat.as_ref().filter(|_| is_normal).and_then(|flat| flat.at(t, 0)) {
-                let number = (attribute.values.len() / 3) as u32;
-                attribute.values.extend_from_slice(normal);
-                corners.fill(number);
+            if is_normal {
+                corners.fill((attribute.values.len() / 3) as u32);
+                attribute.values.extend(unit(area_vector(positions, &triangles[t])));
             }
         }
     }
@@ -235,7 +225,6 @@ fn strip(mesh: &mut Mesh, cut: &[bool]) {
 
 /// Lays texture coordinates on the cut faces.
 fn lay(mesh: &mut Mesh, cut: &[bool], pieces: &Pieces, texture: CutTexture) {
-    let flat = mesh.flat_normals();
     // 1. The two directions along which each triangle is measured.
     let means = match texture {
         CutTexture::Planar(_) => mean_normals(mesh, pieces),
@@ -254,7 +243,7 @@ fn lay(mesh: &mut Mesh, cut: &[bool], pieces: &Pieces, texture: CutTexture) {
         let (normal, per_unit) = match texture {
             CutTexture::Planar(per_unit) => (means[pieces.of_triangle[t] as usize], per_unit),
             CutTexture::Boxed(per_unit) => {
-                let own = flat.at(t, 0).map_or([0.0; 3], |normal| [normal[0], normal[1], normal[2]]);
+                let own = unit(area_vector(&mesh.positions, triangle));
                 let most = (1..3).fold(0, |most, k| if own[k].abs() > own[most].abs() { k } else { most });
                 let mut axis = [0.0; 3];
                 axis[most] = 1.0f64.copysign(own[most]);
@@ -285,34 +274,22 @@ fn mean_normals(mesh: &Mesh, pieces: &Pieces) -> Vec<[f64; 3]> {
         if piece == Pieces::NONE {
             continue;
         }
-        let [a, b, c] = triangle.map(|v| mesh.positions[v as usize]);
-        let [u, v]: [[f64; 3]; 2] = [b, c].map(|p| std::array::from_fn(|k| p[k] - a[k]));
-        for k in 0..3 {
-            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            sums[piece as usize][k] += u[i] * v[j] - u[j] * v[i];
-        }
+        let area = area_vector(&mesh.positions, triangle);
+        (0..3).for_each(|k| sums[piece as usize][k] += area[k]);
     }
-    sums.into_iter().map(|sum| unit(sum).unwrap_or([0.0, 0.0, 1.0])).collect()
+    sums.into_iter().map(|sum| unit_or(sum, [0.0, 0.0, 1.0])).collect()
 }
 
 /// Two directions in the plane of a normal, to the right and upwards as it is seen from outside.
 fn directions(normal: [f64; 3]) -> [[f64; 3]; 2] {
     // Upwards is z, or y where that is looked along.
     let up = if normal[2].abs() > 0.9 { [0.0, 1.0, 0.0] } else { [0.0, 0.0, 1.0] };
-    let along = unit(cross(up, normal)).unwrap_or([1.0, 0.0, 0.0]);
+    let along = unit_or(cross(up, normal), [1.0, 0.0, 0.0]);
     [along, cross(normal, along)]
 }
 
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn unit(v: [f64; 3]) -> Option<[f64; 3]> {
-    let largest = v.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
-    if !(largest > 0.0 && largest.is_finite()) {
-        return None;
-    }
-    let v = v.map(|x| x / largest);
-    let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-    Some(v.map(|x| x / length))
+/// The direction of a vector with length 1, or another if it has none.
+fn unit_or(v: [f64; 3], other: [f64; 3]) -> [f64; 3] {
+    let direction = unit(v);
+    if direction == [0.0; 3] { other } else { direction }
 }

@@ -223,7 +223,7 @@ fn unit_normal([a, b, c]: &[[f64; 3]; 3]) -> Option<DVec3> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Solid, primitives};
+    use crate::{PlaneCut, Solid, exact::Plane, primitives};
 
     fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
         Solid::try_from(primitives::cuboid(low, high).expect("a box")).expect("closed")
@@ -253,6 +253,17 @@ mod tests {
         let slot = cuboid([-1.0, 0.25, -1.0], [2.0, 0.75, 1.0 - 1e-9]);
         let near = body.difference(&slot).expect("no limits").certificate().nearly_flush.clone();
         assert_eq!(near.count, 4, "{near:?}");
+    }
+
+    #[test]
+    fn a_cut_of_a_result_is_told_of_the_operands_of_that() {
+        let (body, beside) =
+            (cuboid([0.0; 3], [1.0; 3]), cuboid([1.0 + 1e-9, 0.25, 0.25], [2.0, 0.75, 0.75]));
+        let both = body.union(&beside).expect("no limits");
+        let plane = Plane::new([0.0, 1.0, 0.0], 0.5).expect("a plane");
+        let half = PlaneCut::new(plane).below(both.solid()).expect("no limits");
+        assert_eq!(half.nearly_flush().count, 0);
+        assert_eq!(half.after(&both, 2).nearly_flush().count, 4);
     }
 
     #[test]

@@ -50,8 +50,8 @@ impl Outcome {
     /// The same with other faces where tools have cut.
     pub(crate) fn with_cut_faces(mut self, faces: &CutFaces) -> Self {
         if !faces.are_the_tools() {
-            let origins: Vec<Origin> = self.origins.iter().collect();
-            self.solid.change_faces(|mesh| faces.apply(mesh, &origins));
+            let cut: Vec<bool> = self.origins.iter().map(|origin| origin.reversed).collect();
+            self.solid.change_faces(|mesh| faces.apply(mesh, &cut));
         }
         self
     }
@@ -113,6 +113,7 @@ impl Outcome {
         let plane = Origins::from_iter([Origin { operand: plane, triangle: 0, reversed: false }]);
         self.origins = self.origins.compose([&earlier.origins, &plane]);
         self.list = OnceLock::new();
+        self.nearly_flush = OnceLock::new();
         self.certificate = OnceLock::new();
         self.notes.operands.clone_from(&earlier.notes.operands);
         self

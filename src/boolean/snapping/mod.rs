@@ -69,7 +69,7 @@ pub(super) fn snap(operands: &[&Solid], distance: f64, runner: Runner<'_>) -> Re
     loop {
         runner.control.report("snapping", f64::from(report.rounds) / f64::from(MOST_ROUNDS))?;
         // 1. Vertices.
-        weld::weld(&mut surfaces, distance);
+        report.collapsed += weld::weld(&mut surfaces, distance);
         // 2. What is near edges and faces.
         let mut found = near::find(&surfaces, distance, runner)?;
         if found.is_empty() {
@@ -95,6 +95,10 @@ pub(super) fn snap(operands: &[&Solid], distance: f64, runner: Runner<'_>) -> Re
         report.moved += u64::from(moved > 0.0);
         report.farthest = report.farthest.max(moved);
     }
-    let (solids, sources) = surfaces.into_solids(operands).into_iter().unzip();
+    let all = surfaces.triangles.len();
+    let (solids, sources): (Vec<Solid>, Vec<Vec<u32>>) = surfaces.into_solids(operands).into_iter().unzip();
+    report.walls = (all - sources.iter().map(Vec::len).sum::<usize>()) as u64;
+    let vanished = |(given, left): &(&&Solid, &Solid)| left.is_empty() && !given.is_empty();
+    report.vanished = operands.iter().zip(&solids).filter(vanished).count() as u64;
     Ok(Snapped { solids, sources, report })
 }

@@ -9,6 +9,12 @@ pub struct Snapping {
     pub distance: f64,
     /// Vertices that were moved.
     pub moved: u64,
+    /// Triangles that vanished since corners of theirs became one.
+    pub collapsed: u64,
+    /// Triangles that were left out in pairs, since they lay back to back in one operand.
+    pub walls: u64,
+    /// Operands of which nothing is left: they were no larger than the distance.
+    pub vanished: u64,
     /// Edges that got vertices.
     pub split_edges: u64,
     /// Faces that got vertices or edges inside.

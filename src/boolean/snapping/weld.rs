@@ -6,11 +6,12 @@ use rustc_hash::FxHashMap;
 use super::surfaces::Surfaces;
 
 /// Joins each vertex to the nearest earlier one within the distance that was not itself joined to another, and leaves out the
-/// triangles that thereby lose a corner. So no vertex moves further than the distance, and of equal ones the first operand's stay.
-pub(super) fn weld(surfaces: &mut Surfaces, distance: f64) {
+/// triangles that thereby lose a corner, which are counted. So no vertex moves further than the distance, and of equal ones the first operand's stay.
+pub(super) fn weld(surfaces: &mut Surfaces, distance: f64) -> u64 {
     let mut places = Places::new(distance);
     let positions = &surfaces.positions;
     let joined: Vec<u32> = (0..positions.len() as u32).map(|v| places.join(positions, v)).collect();
+    let before = surfaces.triangles.len();
     surfaces.triangles.retain_mut(|triangle| {
         triangle.corners = triangle.corners.map(|v| joined[v as usize]);
         let [a, b, c] = triangle.corners;
@@ -20,6 +21,7 @@ pub(super) fn weld(surfaces: &mut Surfaces, distance: f64) {
     for (v, &to) in joined.iter().enumerate() {
         surfaces.positions[v] = surfaces.positions[to as usize];
     }
+    (before - surfaces.triangles.len()) as u64
 }
 
 /// The distance of two points.

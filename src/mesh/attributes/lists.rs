@@ -46,6 +46,31 @@ pub(in crate::mesh) fn keep(attributes: &mut [Attribute], kept: &[u32]) {
     }
 }
 
+/// The same as a copy, without the values that none of them has.
+pub(in crate::mesh) fn selected(attributes: &[Attribute], kept: &[u32]) -> Vec<Attribute> {
+    let of_kept = |attribute: &Attribute| {
+        let mut of_corner: Vec<u32> = Vec::with_capacity(3 * kept.len());
+        for &triangle in kept {
+            let first = 3 * triangle as usize;
+            let corner = |k: usize| attribute.of_corner.get(first + k).copied().unwrap_or(Attribute::NONE);
+            of_corner.extend([0, 1, 2].map(corner));
+        }
+        // Sorted, so that what few triangles of many have is found without a look at the whole table.
+        let mut used: Vec<u32> =
+            of_corner.iter().copied().filter(|&index| attribute.value(index).is_some()).collect();
+        used.sort_unstable();
+        used.dedup();
+        let number = |index: &u32| used.binary_search(index).map_or(Attribute::NONE, |number| number as u32);
+        Attribute {
+            name: attribute.name.clone(),
+            components: attribute.components,
+            values: used.iter().filter_map(|&index| attribute.value(index)).flatten().copied().collect(),
+            of_corner: of_corner.iter().map(number).collect(),
+        }
+    };
+    attributes.iter().map(of_kept).collect()
+}
+
 /// The attributes of a mesh with every triangle turned round: the last two corners change places, normals point the other
 /// way, and tangent spaces change hands.
 pub(in crate::mesh) fn reverse(attributes: &mut [Attribute]) {
@@ -59,12 +84,12 @@ pub(in crate::mesh) fn reverse(attributes: &mut [Attribute]) {
 /// The same for some triangles, each once.
 pub(in crate::mesh) fn reverse_some(attributes: &mut [Attribute], turned: &[u32]) {
     for attribute in attributes {
-        let kind = attribute.kind();
-        let has_sides = matches!(kind, AttributeKind::Normal | AttributeKind::Tangent);
+        let has_sides = attribute.kind().has_sides();
         let mut other_side: FxHashMap<u32, u32> = FxHashMap::default();
         for &triangle in turned {
             let first = 3 * triangle as usize;
-            attribute.of_corner.swap(first + 1, first + 2);
+            let Some(corners) = attribute.of_corner.get_mut(first..first + 3) else { continue };
+            corners.swap(1, 2);
             for corner in first..first + 3 {
                 let index = attribute.of_corner[corner];
                 if has_sides && index != Attribute::NONE {
@@ -80,7 +105,7 @@ pub(in crate::mesh) fn reverse_some(attributes: &mut [Attribute], turned: &[u32]
 pub(in crate::mesh) fn turn_over(kind: AttributeKind, value: &mut [f64]) {
     match kind {
         AttributeKind::Normal => value.iter_mut().for_each(|x| *x = 0.0 - *x),
-        AttributeKind::Tangent => value[3..].iter_mut().for_each(|x| *x = -*x),
+        AttributeKind::Tangent => value.iter_mut().skip(3).for_each(|x| *x = -*x),
         _ => {}
     }
 }
@@ -180,7 +205,18 @@ mod tests {
     #[test]
     fn a_choice_of_triangles_keeps_its_corners() {
         let mut uv = [attribute("TEXCOORD_0", 2, &[0.0; 12], &[0, 1, 2, 3, 4, 5])];
+        let some = selected(&uv, &[1, 1]);
         keep(&mut uv, &[1, 0, 1]);
         assert_eq!(uv[0].of_corner, [3, 4, 5, 0, 1, 2, 3, 4, 5]);
+        assert_eq!((some[0].len(), &some[0].of_corner[..]), (3, &[0, 1, 2, 0, 1, 2][..]));
+    }
+
+    #[test]
+    fn what_does_not_fit_is_turned_as_far_as_it_goes() {
+        let mut odd =
+            [attribute("TANGENT", 2, &[1.0, 2.0], &[0]), attribute("NORMAL", 3, &[0.0; 3], &[0, 0, 0])];
+        reverse_some(&mut odd, &[0, 1]);
+        reverse(&mut odd);
+        assert_eq!(odd[0].values, [1.0, 2.0]);
     }
 }

@@ -2,15 +2,18 @@
 
 mod affine;
 mod carry;
+mod descent;
 mod interpolate;
 mod lists;
 mod moved;
 mod pieces;
+mod plan;
 mod table;
 
 pub(crate) use affine::continues;
-pub(crate) use carry::{CornerPlace, Descent, Run, carry, reach};
-pub(super) use lists::{append, keep, reverse, reverse_some};
+pub(crate) use carry::carry;
+pub(crate) use descent::{CornerPlace, Descent, Run, reach};
+pub(super) use lists::{append, keep, reverse, reverse_some, selected};
 pub(crate) use moved::moved;
 pub(super) use moved::turn_corners;
 pub(crate) use pieces::of_pieces;
@@ -82,6 +85,11 @@ pub enum AttributeKind {
 }
 
 impl AttributeKind {
+    /// Whether values say which side of a face is out, so that they change where it is turned round.
+    pub(crate) fn has_sides(self) -> bool {
+        matches!(self, Self::Normal | Self::Tangent)
+    }
+
     /// Whether values of this kind and name may have so many components.
     pub(crate) fn allows(self, name: &str, components: usize) -> bool {
         match self {

@@ -1,6 +1,7 @@
 //! Attributes of a mesh that was mended or taken apart: its triangles are those of another, or pieces of them.
 
-use super::carry::{Descent, Run, carry};
+use super::carry::carry;
+use super::descent::{Descent, Run};
 use super::{Attribute, Mesh};
 use crate::control::Control;
 use crate::parallel::Runner;

@@ -1,8 +1,8 @@
 //! The table of each attribute of a new mesh: values of its sources that are still in use, then those that were made.
 
-use super::carry::{NEW, NewCorner, Plan};
 use super::interpolate::Found;
-use super::lists::{turn_over, widened};
+use super::lists::{missing, turn_over, widened};
+use super::plan::{NEW, NewCorner, Plan};
 use super::{Attribute, AttributeKind};
 use crate::control::Limit;
 use crate::parallel::Runner;
@@ -52,6 +52,8 @@ struct Table<'a> {
     kind: AttributeKind,
     components: usize,
     rows: Vec<Rows>,
+    /// By source the place in the list of its rows as they are, and of those turned round.
+    places: Vec<[Option<u32>; 2]>,
     /// The number of the first value that was made.
     made_from: u32,
     made: Vec<f64>,
@@ -60,11 +62,11 @@ struct Table<'a> {
 impl<'a> Table<'a> {
     fn new(plan: &'a Plan<'a>, name: &'a str, components: usize) -> Self {
         let kind = AttributeKind::of(name).unwrap_or(AttributeKind::Plain);
-        let has_sides = matches!(kind, AttributeKind::Normal | AttributeKind::Tangent);
         let mut rows = Vec::new();
+        let mut places = vec![[None; 2]; plan.of.sources.len()];
         let mut next = 0;
         let mut counts = counts(plan);
-        if !has_sides {
+        if !kind.has_sides() {
             let [straight, reversed] = &mut counts;
             straight.iter_mut().zip(reversed).for_each(|(count, more)| *count += std::mem::take(more));
         }
@@ -75,11 +77,12 @@ impl<'a> Table<'a> {
                 let Some(attribute) = place.filter(|_| triangles > 0) else { continue };
                 let count = mesh.attributes[attribute].len() as u32;
                 let compact = (triangles as f64) < MOSTLY_LEFT * mesh.triangles.len() as f64;
+                places[source][usize::from(reversed)] = Some(rows.len() as u32);
                 rows.push(Rows { source, attribute, reversed, first: next, count, compact });
                 next += count;
             }
         }
-        Self { plan, name, kind, components, rows, made_from: next, made: Vec::new() }
+        Self { plan, name, kind, components, rows, places, made_from: next, made: Vec::new() }
     }
 
     fn attribute(mut self) -> Attribute {
@@ -96,9 +99,8 @@ impl<'a> Table<'a> {
     }
 
     fn rows_of(&self, source: u32, reversed: bool) -> Option<&Rows> {
-        let has_sides = matches!(self.kind, AttributeKind::Normal | AttributeKind::Tangent);
-        let reversed = reversed && has_sides;
-        self.rows.iter().find(|rows| rows.source == source as usize && rows.reversed == reversed)
+        let place = self.places[source as usize][usize::from(reversed && self.kind.has_sides())]?;
+        self.rows.get(place as usize)
     }
 
     /// For each new corner its value. Equal ones at a vertex are one.
@@ -108,7 +110,8 @@ impl<'a> Table<'a> {
         for &corner in &self.plan.by_vertex {
             let new = &self.plan.new[corner as usize];
             if at_vertex.0 != new.vertex {
-                at_vertex = (new.vertex, Vec::new());
+                at_vertex.0 = new.vertex;
+                at_vertex.1.clear();
             }
             of_new[corner as usize] = self.value_of(new, &mut at_vertex.1);
         }
@@ -128,7 +131,7 @@ impl<'a> Table<'a> {
                     turn_over(self.kind, &mut self.made[start..]);
                 }
                 let own = self.made.len() - start;
-                let fill = super::lists::missing(self.kind);
+                let fill = missing(self.kind);
                 self.made.extend(std::iter::repeat_n(fill, self.components - own));
                 let (before, value) = self.made.split_at(start);
                 let is_equal = |&&index: &&u32| {
