@@ -99,22 +99,26 @@ pub fn save_report(mesh: &Mesh, path: impl AsRef<Path>, options: &WriteOptions) 
         Error::File { action, source, .. } => Error::File { action, path: path.to_path_buf(), source },
         other => other,
     };
-    let written = match format {
-        Format::Gltf if options.separate && options.scene.is_none() => {
-            finish::check_for_writing(mesh)?;
-            let (uri, mut buffer) = beside.buffer(path)?;
-            let aside = gltf::Aside { buffer: (uri, &mut buffer.file), pictures: &beside.pictures };
-            let written = gltf::write(mesh, format, &mut new.file, &options, Some(aside)).map_err(named)?;
-            if !mesh.is_empty() {
-                beside.files.push(buffer);
-            }
-            written
+    let written = if is_separate(format, &options) {
+        finish::check_for_writing(mesh)?;
+        let (uri, mut buffer) = beside.buffer(path)?;
+        let aside = gltf::Aside { buffer: (uri, &mut buffer.file), pictures: &beside.pictures };
+        let written = gltf::write(mesh, format, &mut new.file, &options, Some(aside)).map_err(named)?;
+        if !mesh.is_empty() {
+            beside.files.push(buffer);
         }
-        _ => write_report(mesh, format, &mut new.file, &options).map_err(named)?,
+        written
+    } else {
+        write_report(mesh, format, &mut new.file, &options).map_err(named)?
     };
     beside.write_pictures()?;
     beside.commit(new)?;
     Ok(written)
+}
+
+/// Whether the buffer and the pictures of a glTF are in files of their own; all of a kept scene is in one.
+fn is_separate(format: Format, options: &WriteOptions) -> bool {
+    format == Format::Gltf && options.separate && options.scene.is_none()
 }
 
 /// The files that belong to a model: its material library, its buffer, its pictures.
@@ -128,7 +132,7 @@ impl Beside {
     /// Names for the pictures of a model that has them in files of their own.
     fn new(mesh: &Mesh, path: &Path, format: Format, options: &WriteOptions) -> Self {
         let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        let has_files = format == Format::Obj || format == Format::Gltf && options.separate;
+        let has_files = format == Format::Obj || is_separate(format, options) && !mesh.is_empty();
         let destination = options.destination.as_deref().unwrap_or(&folder);
         let destination = if destination.as_os_str().is_empty() { Path::new(".") } else { destination };
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -311,5 +315,41 @@ mod tests {
     #[test]
     fn library_names_have_no_blanks() {
         assert_eq!(library_name(Path::new("out/my part.v2.obj")), "my_part.v2.mtl");
+    }
+
+    #[test]
+    fn pictures_are_files_only_where_the_model_names_them() {
+        let folder = std::env::temp_dir().join(format!("trisect-beside-{}", std::process::id()));
+        fs::create_dir_all(folder.join("out")).unwrap();
+        let mut mesh = crate::primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
+        let image = crate::mesh::Image {
+            file: String::new(),
+            mime_type: "image/png".into(),
+            bytes: b"not a picture".as_slice().into(),
+            text: String::new(),
+        };
+        let mut material = crate::Material::plain("wood", [1.0; 4]);
+        material.base_color_texture = Some(crate::mesh::TextureUse {
+            image: std::sync::Arc::new(image),
+            coordinates: 0,
+            wrap: Default::default(),
+            nearest: false,
+            transform: crate::mesh::TextureUse::UNMOVED,
+        });
+        mesh.groups.list = vec![crate::FaceGroup { name: "box".into(), material: Some(material) }];
+        mesh.groups.of_triangle = vec![0; 12];
+        let separate = WriteOptions::new().separate(true);
+        let files = |mesh: &Mesh, name: &str, options: &WriteOptions| {
+            save(mesh, folder.join(name), options).unwrap();
+            let parent = folder.join(name).parent().unwrap().to_path_buf();
+            fs::read_dir(parent).unwrap().filter(|entry| entry.as_ref().unwrap().path().is_file()).count()
+        };
+        assert_eq!(files(&mesh, "room.gltf", &separate), 3);
+        let scene = super::super::KeptScene::load(folder.join("room.gltf"), "box").unwrap();
+        assert_eq!(files(&mesh, "out/room.gltf", &separate.clone().in_scene(scene)), 1);
+        mesh.triangles.clear();
+        mesh.groups.of_triangle.clear();
+        assert_eq!(files(&mesh, "out/room.gltf", &separate), 1);
+        fs::remove_dir_all(folder).unwrap();
     }
 }

@@ -26,8 +26,8 @@ impl ReadOptions {
         Self::default()
     }
 
-    /// Where files named in the file are looked for: material libraries of OBJ, buffers of glTF. Only files in this
-    /// folder and below are opened. Without a folder none are; [`load`](super::load) sets it to the file's own.
+    /// Where files named in the file are looked for: material libraries of OBJ, buffers of glTF, pictures of both. Only
+    /// files in this folder and below are opened. Without a folder none are; [`load`](super::load) sets it to the file's own.
     #[must_use]
     pub fn folder(mut self, folder: impl Into<PathBuf>) -> Self {
         self.folder = Some(folder.into());

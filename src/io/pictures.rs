@@ -1,6 +1,6 @@
 //! The pictures of materials as files of their own: names, and which have to be written.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::path::Path;
 use std::sync::Arc;
@@ -37,43 +37,42 @@ pub(super) fn of_mesh(mesh: &Mesh) -> Vec<Arc<Image>> {
 }
 
 /// Names for the files of a mesh's pictures in a folder, beside a model called `stem`. A file that is there with the same
-/// bytes is taken as it is; one with other bytes stays, and the picture gets another name.
+/// bytes is taken as it is; one with other bytes stays, and the picture gets another name. So it does where the name is one of
+/// the model's own files, or differs from another's in small and capital letters alone, which are one to some systems.
 pub(super) fn files(mesh: &Mesh, folder: Option<&Path>, stem: &str) -> Vec<PictureFile> {
-    let mut taken: HashSet<String> = HashSet::new();
+    let own = ["bin", "glb", "gltf", "mtl", "obj"].map(|ending| format!("{stem}.{ending}").to_lowercase());
+    let mut taken: HashSet<String> = HashSet::from(own.clone());
+    let mut last_number: HashMap<String, u32> = HashMap::new();
     let mut list = Vec::new();
-    for (number, image) in of_mesh(mesh).into_iter().enumerate() {
-        if image.bytes.is_empty() {
-            // It was not there to be read: what the file said is all there is.
+    let images = of_mesh(mesh);
+    // What was not there to be read keeps its name: what the file said is all there is.
+    let is_missing = |image: &Image| image.bytes.is_empty();
+    taken.extend(images.iter().filter(|image| is_missing(image)).map(|image| image.file.to_lowercase()));
+    for (number, image) in images.into_iter().enumerate() {
+        let is_there = folder.is_some_and(|folder| {
+            !own.contains(&image.file.to_lowercase())
+                && beside(folder, &image.file).is_ok_and(|path| state(&path, &image) == State::Same)
+        });
+        if is_there || is_missing(&image) {
+            taken.insert(image.file.to_lowercase());
             list.push(PictureFile { name: image.file.clone(), image, is_new: false });
             continue;
         }
-        let file =
-            if image.file.is_empty() || taken.contains(&image.file) { None } else { Some(&image.file) };
-        if let (Some(file), Some(folder)) = (file, folder)
-            && beside(folder, file).is_ok_and(|path| state(&path, &image) == State::Same)
-        {
-            taken.insert(file.clone());
-            list.push(PictureFile { name: file.clone(), image, is_new: false });
-            continue;
-        }
         let (base, extension) = parts(&image, stem, number);
-        let mut name = format!("{base}.{extension}");
-        let state_of = |name: &str| match folder.map(|folder| state(&folder.join(name), &image)) {
-            _ if taken.contains(name) => State::Other,
-            Some(state) => state,
-            None => State::Free,
-        };
-        let mut further = 1;
-        let found = loop {
-            match state_of(&name) {
-                State::Other if further < 10_000 => {
-                    further += 1;
-                    name = format!("{base}_{further}.{extension}");
+        let further = last_number.entry(format!("{base}.{extension}").to_lowercase()).or_insert(0);
+        let (name, found) = loop {
+            *further += 1;
+            let name = match *further {
+                1 => format!("{base}.{extension}"),
+                further => format!("{base}_{further}.{extension}"),
+            };
+            if taken.insert(name.to_lowercase()) {
+                let state = folder.map_or(State::Free, |folder| state(&folder.join(&name), &image));
+                if state != State::Other {
+                    break (name, state);
                 }
-                state => break state,
             }
         };
-        taken.insert(name.clone());
         list.push(PictureFile { name, image, is_new: found != State::Same });
     }
     list
@@ -123,7 +122,13 @@ fn parts(image: &Image, stem: &str, number: usize) -> (String, String) {
     }
     let clean = |text: &str| -> String {
         let plain = |c: char| if c.is_control() || "/\\:*?\"<>|#%".contains(c) { '_' } else { c };
-        text.trim().trim_start_matches('.').chars().take(100).map(plain).collect()
+        // Systems admit names of 255 bytes.
+        let mut bytes = 0;
+        let has_room = |c: &char| {
+            bytes += c.len_utf8();
+            bytes <= 200
+        };
+        text.trim().trim_start_matches('.').chars().take(100).take_while(has_room).map(plain).collect()
     };
     let name = clean(&name);
     let base = if name.is_empty() { format!("{}_image{number}", clean(stem)) } else { name };
@@ -135,6 +140,10 @@ fn parts(image: &Image, stem: &str, number: usize) -> (String, String) {
 mod tests {
     use super::*;
     use crate::FaceGroup;
+
+    fn image(file: &str, text: &str, bytes: &[u8]) -> Image {
+        Image { file: file.into(), mime_type: "image/png".into(), bytes: bytes.into(), text: text.into() }
+    }
 
     fn with_pictures(images: &[Image]) -> Mesh {
         let mut mesh = Mesh::default();
@@ -155,12 +164,6 @@ mod tests {
 
     #[test]
     fn names_are_plain_and_differ() {
-        let image = |file: &str, text: &str, bytes: &[u8]| Image {
-            file: file.into(),
-            mime_type: "image/png".into(),
-            bytes: bytes.into(),
-            text: text.into(),
-        };
         let mesh = with_pictures(&[
             image("textures/wood.png", "", b"a"),
             image("", "{\"name\":\"../wood.png\"}", b"b"),
@@ -171,5 +174,24 @@ mod tests {
         ]);
         let names: Vec<String> = files(&mesh, None, "part").into_iter().map(|file| file.name).collect();
         assert_eq!(names, ["wood.png", "_wood.png", "part_image2.png", "gone.png", "wood_2.png"]);
+    }
+
+    #[test]
+    fn no_picture_takes_the_place_of_another_file() {
+        // That of the buffer, one that differs in capitals alone, one that was not there; any number of equal names.
+        let mut images = vec![
+            Image { mime_type: "image/avif".into(), ..image("", "{\"name\":\"part\"}", b"a") },
+            image("Wood.png", "", b"b"),
+            image("wood.png", "", b"c"),
+            image("", "{\"name\":\"gone\"}", b"d"),
+            image("gone.png", "", b""),
+            image("", &format!("{{\"name\":\"{}\"}}", "\u{6728}".repeat(100)), b"e"),
+        ];
+        images.extend((0..100_u32).map(|i| image("", "{\"name\":\"many\"}", &i.to_le_bytes())));
+        let names: Vec<String> =
+            files(&with_pictures(&images), None, "part").into_iter().map(|file| file.name).collect();
+        assert_eq!(names[..5], ["part_2.bin", "Wood.png", "wood_2.png", "gone_2.png", "gone.png"]);
+        assert!(names[5].len() < 255 && names[5].starts_with('\u{6728}'), "{}", names[5]);
+        assert_eq!(names.iter().map(|name| name.to_lowercase()).collect::<HashSet<_>>().len(), names.len());
     }
 }

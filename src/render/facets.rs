@@ -4,15 +4,18 @@ use glam::{DVec2, DVec3};
 
 use super::View;
 use super::camera::{Camera, Seen};
+use super::light::{linear, lit};
 use super::surface::{Looks, Pictures, Surface};
 use crate::Mesh;
 
-/// A visible triangle of the picture.
+/// A drawable triangle of the picture.
 #[derive(Clone, Debug)]
 pub(super) struct Facet<'a> {
+    /// Its number in the mesh.
+    triangle: usize,
     pub(super) corners: [[f64; 2]; 3],
-    /// Closeness at the first corner, and its change per sample to the right and downwards.
-    closeness: f64,
+    /// Closeness at the corners, and its change per sample to the right and downwards.
+    closeness: [f64; 3],
     pub(super) slope: DVec2,
     /// Closeness at the farthest and the nearest corner: bounds what the slope of a sliver may extrapolate.
     range: [f64; 2],
@@ -20,13 +23,21 @@ pub(super) struct Facet<'a> {
     pub(super) normal: DVec3,
     /// Linear colour after lighting, where it is one.
     light: [f32; 3],
-    /// What it looks like, where the mesh says so.
+    /// What it looks like, where the mesh says so and it is seen.
     surface: Option<Box<Surface<'a>>>,
     /// Area in samples.
     pub(super) area: f64,
 }
 
-impl Facet<'_> {
+impl<'a> Facet<'a> {
+    /// Finds out what it looks like.
+    fn dress(&mut self, looks: &Looks<'a>, pictures: &Pictures, camera: &Camera) {
+        let corners = self.corners.map(DVec2::from);
+        let front = is_front(corners);
+        let surface = looks.surface(self.triangle, corners, self.closeness, front, (camera, pictures));
+        self.surface = Some(Box::new(surface));
+    }
+
     /// Linear colour after lighting at a position in the picture.
     pub(super) fn light_at(&self, at: DVec2, pictures: &Pictures) -> [f32; 3] {
         self.surface.as_ref().map_or(self.light, |surface| surface.light_at(at, self.normal, pictures))
@@ -39,7 +50,7 @@ impl Facet<'_> {
 
     /// Closeness at a position in the picture.
     pub(super) fn closeness_at(&self, at: DVec2) -> f64 {
-        let value = self.closeness + self.slope.dot(at - DVec2::from(self.corners[0]));
+        let value = self.closeness[0] + self.slope.dot(at - DVec2::from(self.corners[0]));
         value.clamp(self.range[0], self.range[1])
     }
 }
@@ -50,7 +61,6 @@ pub(super) fn facets<'a>(
     mesh: &Mesh,
     view: &View,
     colours: Option<&[[u8; 3]]>,
-    looks: Option<(&Looks<'a>, &Pictures)>,
     camera: &Camera,
 ) -> Vec<Facet<'a>> {
     let local: Vec<DVec3> = mesh.positions.iter().map(|&p| camera.local(p.into())).collect();
@@ -62,16 +72,24 @@ pub(super) fn facets<'a>(
         };
         let corners = [corner(0)?, corner(1)?, corner(2)?];
         let colour = colours.and_then(|colours| colours.get(index)).copied().unwrap_or(view.colour);
-        let mut facet = facet(corners, colour, camera)?;
-        if let Some((looks, pictures)) = looks {
-            let (at, closeness) =
-                (corners.map(|corner| corner.1.at), corners.map(|corner| corner.1.closeness));
-            let surface = looks.surface(index, at, closeness, is_front(at), (camera, pictures));
-            facet.surface = Some(Box::new(surface));
-        }
-        Some(facet)
+        facet(index, corners, colour, camera)
     };
     mesh.triangles.iter().enumerate().filter_map(facet).collect()
+}
+
+/// Finds out what those facets look like that are seen; `seen` has numbers of facets, and others.
+pub(super) fn dress<'a>(
+    facets: &mut [Facet<'a>],
+    seen: &[u32],
+    looks: &Looks<'a>,
+    pictures: &Pictures,
+    camera: &Camera,
+) {
+    for &number in seen {
+        if let Some(facet) = facets.get_mut(number as usize).filter(|facet| facet.surface.is_none()) {
+            facet.dress(looks, pictures, camera);
+        }
+    }
 }
 
 /// Whether a triangle is seen from outside. Rows count downwards, so counter-clockwise ones have a negative determinant.
@@ -79,7 +97,12 @@ fn is_front([a, b, c]: [DVec2; 3]) -> bool {
     (b - a).perp_dot(c - a) < 0.0
 }
 
-fn facet<'a>(corners: [(DVec3, Seen); 3], colour: [u8; 3], camera: &Camera) -> Option<Facet<'a>> {
+fn facet<'a>(
+    triangle: usize,
+    corners: [(DVec3, Seen); 3],
+    colour: [u8; 3],
+    camera: &Camera,
+) -> Option<Facet<'a>> {
     let [(a, seen_a), (b, seen_b), (c, seen_c)] = corners;
     let (u, v) = (seen_b.at - seen_a.at, seen_c.at - seen_a.at);
     let doubled = u.perp_dot(v);
@@ -91,33 +114,19 @@ fn facet<'a>(corners: [(DVec3, Seen); 3], colour: [u8; 3], camera: &Camera) -> O
     let front = is_front([seen_a.at, seen_b.at, seen_c.at]);
     let outward = (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Z);
     let normal = if outward.dot(camera.towards_eye(a)) < 0.0 { -outward } else { outward };
-    let range = [seen_a, seen_b, seen_c].map(|seen| seen.closeness);
+    let closeness = [seen_a, seen_b, seen_c].map(|seen| seen.closeness);
     Some(Facet {
+        triangle,
         corners: [seen_a.at, seen_b.at, seen_c.at].map(|at| at.to_array()),
-        closeness: seen_a.closeness,
+        closeness,
         slope,
-        range: [range[0].min(range[1]).min(range[2]), range[0].max(range[1]).max(range[2])],
+        range: [
+            closeness[0].min(closeness[1]).min(closeness[2]),
+            closeness[0].max(closeness[1]).max(closeness[2]),
+        ],
         normal,
         light: lit(colour.map(linear), normal, front),
         surface: None,
         area: doubled.abs() / 2.0,
     })
-}
-
-/// Two lamps fixed to the camera, a strong one from the upper left and a weak one from the right, and light from
-/// all around that is brighter from above.
-pub(super) fn lit(colour: [f64; 3], normal: DVec3, front: bool) -> [f32; 3] {
-    let key = DVec3::new(-0.60, 0.60, 0.53);
-    let fill = DVec3::new(0.80, -0.05, 0.60);
-    let around = 0.30 + 0.10 * normal.y;
-    let light = around + 0.78 * normal.dot(key).max(0.0) + 0.17 * normal.dot(fill).max(0.0);
-    let tint = if front { [1.0; 3] } else { [0.85, 0.32, 0.28] };
-    std::array::from_fn(|channel| (colour[channel] * tint[channel] * light) as f32)
-}
-
-/// An sRGB byte as linear light, with the curve taken as a square: close enough to the eye, and the same bits on
-/// every machine, which a power function does not promise.
-pub(super) fn linear(byte: u8) -> f64 {
-    let value = f64::from(byte) / 255.0;
-    value * value
 }

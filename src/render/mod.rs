@@ -16,6 +16,7 @@
 
 mod camera;
 mod facets;
+mod light;
 mod occlusion;
 mod picture;
 mod raster;
@@ -27,14 +28,15 @@ pub use camera::View;
 pub use picture::Picture;
 
 use crate::Mesh;
+use light::encoded;
 use surface::{Looks, Pictures};
 
 /// Draws `mesh` as `view` looks at it.
 ///
 /// `colours` gives an sRGB colour for every triangle (by operand, by group, ...), shaded flat; triangles beyond its length have
 /// the view's own colour. Without it the mesh looks as it says itself: in the colours of its materials and of its corners
-/// (`COLOR_0`), with the pictures of its materials (PNG and JPEG; what cannot be decoded is left out), and smooth where it has
-/// normals; what it says nothing of has the view's colour. Nothing is transparent. A mesh without visible triangles gives the
+/// (`COLOR_0`), with the pictures of its materials (PNG and JPEG; what cannot be decoded is left out, and many large ones are
+/// shown less sharp), and smooth where it has normals; what it says nothing of has the view's colour. Nothing is transparent. A mesh without visible triangles gives the
 /// background.
 #[must_use]
 pub fn mesh(mesh: &Mesh, view: &View, colours: Option<&[[u8; 3]]>) -> Picture {
@@ -43,9 +45,11 @@ pub fn mesh(mesh: &Mesh, view: &View, colours: Option<&[[u8; 3]]>) -> Picture {
     };
     let mut pictures = Pictures::default();
     let looks = if colours.is_none() { Looks::of(mesh, view, &mut pictures) } else { None };
-    let looks = looks.as_ref().map(|looks| (looks, &pictures));
-    let facets = facets::facets(mesh, view, colours, looks, &camera);
+    let mut facets = facets::facets(mesh, view, colours, &camera);
     let samples = raster::draw(&facets, view.width * shade::SAMPLES, view.height * shade::SAMPLES);
+    if let Some(looks) = &looks {
+        facets::dress(&mut facets, &samples.facet, looks, &pictures, &camera);
+    }
     shade::develop(&samples, &facets, &pictures, view, &camera)
 }
 
@@ -81,13 +85,6 @@ pub fn palette(index: usize) -> [u8; 3] {
         [206, 150, 180],
     ];
     COLOURS[index % COLOURS.len()]
-}
-
-/// A linear channel in 0..=1 as an sRGB byte, by the standard's curve.
-fn encoded(linear: f32) -> u8 {
-    let linear = if linear.is_finite() { linear.clamp(0.0, 1.0) } else { 0.0 };
-    let curve = if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
-    (curve * 255.0).round() as u8
 }
 
 #[cfg(test)]

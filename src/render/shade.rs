@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::camera::{Camera, View};
-use super::facets::{Facet, linear};
+use super::facets::Facet;
+use super::light::linear;
 use super::occlusion::{occlusion, probes};
 use super::picture::Picture;
 use super::raster::{NONE, Samples};

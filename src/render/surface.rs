@@ -1,11 +1,11 @@
 //! What a mesh says of its own looks: materials with pictures, colours and normals of corners.
 
 use glam::{DVec2, DVec3};
+use rustc_hash::FxHashMap;
 
-use super::camera::Camera;
-use super::facets::{linear, lit};
+use super::camera::{Camera, View};
+use super::light::{encoded, linear, lit};
 use super::texture::Texels;
-use super::{View, encoded};
 use crate::Mesh;
 use crate::mesh::{Attribute, TextureUse};
 
@@ -27,9 +27,23 @@ struct Skin<'a> {
     coordinates: &'a Attribute,
 }
 
+/// All pictures that were decoded have at most so many pixels together, 16 bytes each.
+const MOST_PIXELS: usize = 1 << 28;
+
 /// All decoded pictures.
 #[derive(Default)]
 pub(super) struct Pictures(Vec<Texels>);
+
+impl Pictures {
+    /// Decodes a picture and gives its number. Where many pictures are large, later ones are kept in half the size, or less.
+    fn add(&mut self, bytes: &[u8]) -> Option<usize> {
+        let mut texels = Texels::decode(bytes)?;
+        let taken: usize = self.0.iter().map(Texels::pixels).sum();
+        texels.shrink(MOST_PIXELS.saturating_sub(taken) / 2);
+        self.0.push(texels);
+        Some(self.0.len() - 1)
+    }
+}
 
 /// What one triangle looks like, ready for its samples.
 #[derive(Clone, Debug)]
@@ -61,7 +75,9 @@ impl<'a> Looks<'a> {
             mesh.attribute(name).filter(|attribute| attribute.fault(mesh.triangles.len()).is_none())
         };
         let bare = view.colour.map(linear);
-        let mut decoded: Vec<(*const u8, Option<usize>)> = Vec::new();
+        // Materials share pictures and coordinates: each is looked at once.
+        let mut decoded: FxHashMap<*const u8, Option<usize>> = FxHashMap::default();
+        let mut sets: FxHashMap<u32, Option<&Attribute>> = FxHashMap::default();
         let mut of_group = Vec::new();
         for group in &mesh.groups.list {
             let Some(material) = &group.material else {
@@ -71,21 +87,10 @@ impl<'a> Looks<'a> {
             let [r, g, b, _] = material.base_color;
             let colour = [r, g, b].map(|channel| linear(encoded(channel)));
             let skin = material.base_color_texture.as_ref().and_then(|how| {
-                let coordinates = sound(&format!("TEXCOORD_{}", how.coordinates))?;
-                // Materials share pictures: each is decoded once.
+                let set = how.coordinates;
+                let coordinates = (*sets.entry(set).or_insert_with(|| sound(&format!("TEXCOORD_{set}"))))?;
                 let bytes = &how.image.bytes;
-                let known = decoded.iter().find(|(place, _)| *place == bytes.as_ptr());
-                let texels = match known {
-                    Some(&(_, texels)) => texels,
-                    None => {
-                        let texels = Texels::decode(bytes).map(|texels| {
-                            pictures.0.push(texels);
-                            pictures.0.len() - 1
-                        });
-                        decoded.push((bytes.as_ptr(), texels));
-                        texels
-                    }
-                };
+                let texels = *decoded.entry(bytes.as_ptr()).or_insert_with(|| pictures.add(bytes));
                 Some(Skin { texels: texels?, how, coordinates })
             });
             of_group.push((colour, skin));

@@ -4,7 +4,7 @@ use std::io::Cursor;
 
 use crate::mesh::{TextureUse, Wrap};
 
-use super::facets::linear;
+use super::light::linear;
 
 /// The most pixels of a picture that are decoded: 8192 x 8192. (256 MiB as bytes; a file that claims more may be a trap.)
 const MOST_PIXELS: usize = 1 << 26;
@@ -75,6 +75,17 @@ impl Texels {
             let below = c[channel] + (d[channel] - c[channel]) * right_part;
             above + (below - above) * low_part
         })
+    }
+
+    /// How many pixels it has in its full size.
+    pub(super) fn pixels(&self) -> usize {
+        self.levels[0].pixels.len()
+    }
+
+    /// Leaves out the largest sizes until there are at most so many pixels, or one.
+    pub(super) fn shrink(&mut self, most: usize) {
+        let fits = self.levels.iter().position(|level| level.pixels.len() <= most);
+        self.levels.drain(..fits.unwrap_or(self.levels.len() - 1));
     }
 
     /// Pixels along the sides.
@@ -213,6 +224,17 @@ mod tests {
         assert_eq!(smooth, [0.5, 0.5, 0.0]);
         assert_eq!(texels.colour([0.1, 0.9], 100.0, &use_of(Wrap::Repeat, false)), [0.5, 0.5, 0.5]);
         assert_eq!(texels.colour([f64::NAN, 0.0], 1.0, &use_of(Wrap::Repeat, false)), [1.0; 3]);
+    }
+
+    #[test]
+    fn a_picture_without_room_is_smaller() {
+        for (most, pixels) in [(4, 4), (3, 1), (0, 1)] {
+            let mut texels = four_pixels();
+            texels.shrink(most);
+            assert_eq!(texels.pixels(), pixels);
+            let mean = texels.colour([0.1, 0.9], 100.0, &use_of(Wrap::Repeat, false));
+            assert_eq!(mean, [0.5, 0.5, 0.5]);
+        }
     }
 
     #[test]

@@ -105,8 +105,7 @@ impl<'a> Accessors<'a> {
     /// The accessor's numbers, `N` to an item. The caller has accounted for the memory: an accessor without a buffer
     /// view can announce any count.
     pub(super) fn numbers<const N: usize>(&self, index: u32, pointer: &str) -> Result<Vec<[f64; N]>, Error> {
-        let shape = [Type::Scalar, Type::Vec2, Type::Vec3, Type::Vec4][N - 1];
-        let accessor = self.get(index, shape, pointer)?;
+        let accessor = self.get(index, shape_of(N), pointer)?;
         let pointer = format!("/accessors/{index}");
         let component = self.component(accessor.component_type, &pointer)?;
         let count = self.count(accessor.count, &pointer)?;
@@ -137,6 +136,16 @@ impl<'a> Accessors<'a> {
         };
         self.replace(accessor, component, N, &pointer, |at, bytes| list[at] = item(bytes))?;
         Ok(list)
+    }
+
+    /// The accessor's numbers, as [`numbers`](Self::numbers) reads them, one after the other: `width`, 1 to 4, to an item.
+    pub(super) fn list(&self, index: u32, width: usize, pointer: &str) -> Result<Vec<f64>, Error> {
+        Ok(match width {
+            1 => self.numbers::<1>(index, pointer)?.into_flattened(),
+            2 => self.numbers::<2>(index, pointer)?.into_flattened(),
+            3 => self.numbers::<3>(index, pointer)?.into_flattened(),
+            _ => self.numbers::<4>(index, pointer)?.into_flattened(),
+        })
     }
 
     /// The accessor's indices.
@@ -253,6 +262,11 @@ impl<'a> Accessors<'a> {
         }
         Ok(())
     }
+}
+
+/// The shape of items of `width` numbers, 1 to 4.
+pub(super) fn shape_of(width: usize) -> Type {
+    [Type::Scalar, Type::Vec2, Type::Vec3, Type::Vec4][width.clamp(1, 4) - 1]
 }
 
 /// The items of an accessor in its buffer view.

@@ -101,6 +101,11 @@ fn materials_keep_all_that_is_said() {
     assert_eq!(texture.transform, [[2.0, 0.0, 0.5], [0.0, 2.0, 0.0]]);
     let text = material.text.as_ref().unwrap();
     assert_eq!((text.language, text.textures.len()), (MaterialLanguage::Gltf, 2));
+    assert!(
+        text.text.contains(r#""fooTexture":{"index":12}"#),
+        "extras are nobody's business: {}",
+        text.text
+    );
     for format in [Format::Gltf, Format::Glb] {
         let bytes = written(&scene.mesh, format, &WriteOptions::new());
         let again = read(&bytes, format, &ReadOptions::new(), false).unwrap();
@@ -129,6 +134,9 @@ fn morphs_are_read_in_the_shape_of_their_weights() {
     assert_eq!(mesh.positions.map_z(), [0.5, 1.0, 2.0]);
     document["nodes"][0]["weights"] = json!([0.25]);
     assert_eq!(read_value(&document).unwrap().mesh.positions.map_z(), [0.25, 0.5, 1.0]);
+    document["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 5, "_HEAT": 4}]);
+    let scene = read_value(&document).unwrap();
+    assert_eq!(attribute(&scene.mesh, "_HEAT").at(0, 0), Some(&[20.5 * 1.25][..]), "{:?}", scene.warnings);
     document["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 1}]);
     assert!(read_value(&document).is_err(), "a target of pairs");
     document["meshes"][0]["primitives"][0]["targets"] = json!(7);
@@ -167,12 +175,30 @@ fn what_is_wrong_with_an_attribute_costs_it_alone() {
 }
 
 #[test]
+fn values_are_shared_by_primitives_of_as_many_vertices_only() {
+    let mut document = triangle();
+    let mut second = document["meshes"][0]["primitives"][0].clone();
+    let six = json!({"bufferView": 6, "componentType": 5126, "count": 6, "type": "VEC3"});
+    document["accessors"].as_array_mut().unwrap().push(six);
+    document["bufferViews"].as_array_mut().unwrap().push(json!({"buffer": 0, "byteLength": 72}));
+    second["attributes"]["POSITION"] = json!(6);
+    second["targets"].take();
+    document["meshes"][0]["primitives"].as_array_mut().unwrap().push(second);
+    let scene = read_value(&document).unwrap();
+    let uv = attribute(&scene.mesh, "TEXCOORD_0");
+    assert_eq!(uv.fault(scene.mesh.triangles.len()), None);
+    assert!((1..3).all(|triangle| uv.at(triangle, 0).is_none()), "{:?}", uv.of_corner);
+    assert!(scene.warnings.iter().any(|warning| warning.contains("3 values for 6 vertices")));
+}
+
+#[test]
 fn what_is_wrong_with_a_material_costs_its_part_alone() {
     for (pointer, value, words) in [
         ("/materials/0/pbrMetallicRoughness/baseColorTexture/index", json!(9), "texture 9"),
         ("/textures/1", json!(3), "texture 1"),
         ("/textures/1/sampler", json!(3), "sampler 3"),
         ("/textures/1/source", json!(u64::MAX), "picture"),
+        ("/textures/1/extensions", json!({"EXT_texture_webp": {"source": 9}}), "picture 9"),
         ("/images/0", json!([]), "picture"),
         ("/images/0/uri", json!("../../secret.png"), "picture not read"),
         ("/images/0/uri", json!("/etc/passwd"), "picture not read"),
@@ -181,7 +207,10 @@ fn what_is_wrong_with_a_material_costs_its_part_alone() {
         ("/materials/0", json!({"name": "paint", "pbrMetallicRoughness": 3}), ""),
     ] {
         let mut document = triangle();
-        *document.pointer_mut(pointer).unwrap() = value;
+        match document.pointer_mut(pointer) {
+            Some(place) => *place = value.clone(),
+            None => document["textures"][1]["extensions"] = value.clone(),
+        }
         let options = ReadOptions::new().folder("nowhere");
         let scene = read(document.to_string().as_bytes(), Format::Gltf, &options, false).unwrap();
         assert!(
@@ -192,8 +221,13 @@ fn what_is_wrong_with_a_material_costs_its_part_alone() {
         assert_eq!(scene.mesh.groups.list[0].material.as_ref().unwrap().name, "paint");
         // It can be written, whatever was missing.
         let mut bytes = Vec::new();
-        write(&scene.mesh, Format::Glb, &mut bytes, &WriteOptions::new(), None).unwrap();
-        read(&bytes, Format::Glb, &ReadOptions::new(), false).unwrap();
+        write(&scene.mesh, Format::Gltf, &mut bytes, &WriteOptions::new(), None).unwrap();
+        read(&bytes, Format::Gltf, &ReadOptions::new(), false).unwrap();
+        let document: Value = serde_json::from_slice(&bytes).unwrap();
+        assert!(!document["textures"].to_string().contains("4294967295"), "{pointer}");
+        if value.as_str().is_some_and(|uri| uri.contains("//")) {
+            assert_eq!(document["images"][0]["uri"], value, "the file refers to it as it did");
+        }
     }
 }
 

@@ -121,8 +121,11 @@ impl<'a> Buffers<'a> {
         Ok(bytes)
     }
 
-    /// The name of the file that a URI means.
+    /// The name of the file that a URI means; one with a scheme names none that is read, and stays as it is.
     pub(super) fn file_name(&self, uri: &str, pointer: &str) -> Result<String, Error> {
+        if uri.contains("://") {
+            return Ok(uri.to_string());
+        }
         percent_decode(uri).map(|name| without_dots(&name)).ok_or_else(|| {
             self.reader.error(pointer, format!("the URI {:?} has a wrong percent escape", shorten(uri)))
         })

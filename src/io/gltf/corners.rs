@@ -20,12 +20,15 @@ const MOST: usize = 64;
 /// The names and accessors of the attributes of a primitive.
 pub(super) type Names<'a> = BTreeMap<Cow<'a, str>, u32>;
 
+/// An attribute, and the accessor, the count and the linear part of the transform that its values are from.
+type Placed = (usize, u32, u64, Option<[u64; 9]>);
+
 /// The attributes of a scene so far.
 #[derive(Default)]
 pub(super) struct Corners {
     pub(super) list: Vec<Attribute>,
-    /// The first value of an accessor under a name and a transform: primitives share their values.
-    placed: HashMap<(usize, u32, Option<[u64; 9]>), u32>,
+    /// The first value of those placed: primitives share their values.
+    placed: HashMap<Placed, u32>,
 }
 
 /// A primitive whose triangles were added.
@@ -56,7 +59,7 @@ impl Corners {
                 notes.add("attribute whose name glTF does not have left out", 1);
                 continue;
             }
-            match self.attribute(name, accessor, shown, accessors, budget) {
+            match self.attribute(name, accessor, shown, accessors, budget, notes) {
                 Ok(true) => {}
                 Ok(false) => notes.add("attribute after the first 64 left out", 1),
                 Err(error)
@@ -78,26 +81,21 @@ impl Corners {
         shown: &Shown<'_>,
         accessors: &Accessors<'_>,
         budget: &mut Budget<'_>,
+        notes: &mut Notes,
     ) -> Result<bool, Error> {
         let kind = AttributeKind::of(name).unwrap_or(AttributeKind::Plain);
         // 1. The values under a transform, from the file if they are new.
         let moves = matches!(kind, AttributeKind::Normal | AttributeKind::Tangent);
-        let linear = shown.world.matrix3.to_cols_array();
         let is_moved = moves && shown.world.matrix3 != glam::DMat3::IDENTITY;
+        let linear = is_moved.then(|| shown.world.matrix3.to_cols_array().map(f64::to_bits));
         let known = self.list.iter().position(|attribute| attribute.name == name);
-        let key = known.map(|known| (known, accessor, is_moved.then(|| linear.map(f64::to_bits))));
-        let shared = key.filter(|_| shown.morph.is_none()).and_then(|key| self.placed.get(&key).copied());
-        let mut addition = Attribute::new(name, 1);
-        if shared.is_none() {
-            let pointer = format!("{}/attributes/{}", shown.pointer, shorten(name));
-            addition.components = read_values(&mut addition, accessor, &pointer, shown, accessors, budget)?;
-            shown.morph.deform(&mut addition, accessors, budget)?;
-            addition.values.iter_mut().filter(|number| !number.is_finite()).for_each(|number| *number = 0.0);
-            if is_moved {
-                let [x, y, z] = [0, 1, 2].map(|i| [linear[i], linear[3 + i], linear[6 + i]]);
-                move_attributes(std::slice::from_mut(&mut addition), &[x, y, z], shown.mirrored);
-            }
-        }
+        let key = |index| (index, accessor, shown.vertices, linear);
+        let shared = known.filter(|_| shown.morph.is_none()).and_then(|known| self.placed.get(&key(known)));
+        let shared = shared.copied();
+        let addition = match shared {
+            Some(_) => Attribute::new(name, 1),
+            None => shown_values(name, accessor, shown, is_moved, accessors, budget, notes)?,
+        };
         if known.is_none() && self.list.len() == MOST {
             return Ok(false);
         }
@@ -126,7 +124,7 @@ impl Corners {
             }
         };
         if shown.morph.is_none() {
-            self.placed.insert((index, accessor, is_moved.then(|| linear.map(f64::to_bits))), first);
+            self.placed.insert(key(index), first);
         }
         attribute.of_corner.resize(3 * shown.before, Attribute::NONE);
         attribute.of_corner.extend(shown.corners.as_flattened().iter().map(|&vertex| first + vertex));
@@ -140,6 +138,34 @@ impl Corners {
         }
         self.list
     }
+}
+
+/// The values of an accessor as a primitive shows them, `is_moved` if its transform changes them.
+fn shown_values(
+    name: &str,
+    accessor: u32,
+    shown: &Shown<'_>,
+    is_moved: bool,
+    accessors: &Accessors<'_>,
+    budget: &mut Budget<'_>,
+    notes: &mut Notes,
+) -> Result<Attribute, Error> {
+    let mut attribute = Attribute::new(name, 1);
+    let pointer = format!("{}/attributes/{}", shown.pointer, shorten(name));
+    attribute.components = read_values(&mut attribute, accessor, &pointer, shown, accessors, budget)?;
+    shown.morph.deform(&mut attribute, accessors, budget)?;
+    let mut wrong = 0;
+    for number in attribute.values.iter_mut().filter(|number| !number.is_finite()) {
+        *number = 0.0;
+        wrong += 1;
+    }
+    notes.add("number of an attribute that is not finite taken as 0", wrong);
+    if is_moved {
+        let linear = shown.world.matrix3.to_cols_array();
+        let [x, y, z] = [0, 1, 2].map(|i| [linear[i], linear[3 + i], linear[6 + i]]);
+        move_attributes(std::slice::from_mut(&mut attribute), &[x, y, z], shown.mirrored);
+    }
+    Ok(attribute)
 }
 
 /// Reads the values of an accessor, and gives the number of components of each.
@@ -168,12 +194,7 @@ fn read_values(
         return Err(reader.error(pointer, format!("has {components} components")));
     }
     budget.charge(found.count.saturating_mul(8 * components as u64))?;
-    attribute.values = match components {
-        1 => accessors.numbers::<1>(accessor, pointer)?.into_flattened(),
-        2 => accessors.numbers::<2>(accessor, pointer)?.into_flattened(),
-        3 => accessors.numbers::<3>(accessor, pointer)?.into_flattened(),
-        _ => accessors.numbers::<4>(accessor, pointer)?.into_flattened(),
-    };
+    attribute.values = accessors.list(accessor, components, pointer)?;
     Ok(components)
 }
 

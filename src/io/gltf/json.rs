@@ -58,8 +58,11 @@ fn visit_number(object: &mut Map<String, Value>, key: &str, visit: &mut dyn FnMu
     }
 }
 
-/// A file name as part of a URI.
+/// A file name as part of a URI. What is a URI with a scheme already (no file here has such a name) stays as it is.
 pub(super) fn percent_encode(name: &str) -> String {
+    if name.contains("://") {
+        return name.to_string();
+    }
     let mut encoded = String::with_capacity(name.len());
     for byte in name.bytes() {
         match byte {

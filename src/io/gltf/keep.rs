@@ -16,7 +16,6 @@ use super::budget::Budget;
 use super::buffers::Buffers;
 use super::container;
 use super::document::Document;
-use super::extensions;
 use super::joints;
 use super::materials::Materials;
 use super::place::{Place, find, in_node};
@@ -74,9 +73,7 @@ pub(in crate::io) fn write(
     let broken = |error: serde_json::Error| malformed(kept.format, "JSON", error.to_string());
     let document: Document<'_> = serde_json::from_slice(container.json).map_err(broken)?;
     let reader = Reader { document: &document, format: kept.format };
-    reader.check_version()?;
-    extensions::check(&document.extensions_required, kept.format)?;
-    reader.check_references()?;
+    reader.check()?;
     let buffers = Buffers::new(&reader, container.binary, &read_options);
     // 1. The mesh in the coordinates of its node.
     let place = find(&reader, &kept.node)?;
@@ -253,8 +250,11 @@ impl Scene {
         };
         let nodes = self.list("nodes");
         clear(&mut nodes[place.node], &["mesh", "weights"]);
-        if let Some(Value::Object(extensions)) = nodes[place.node].get_mut("extensions") {
-            extensions.remove("EXT_mesh_gpu_instancing");
+        for &changed in place.below.iter().chain([&place.node]) {
+            let extensions = nodes.get_mut(changed).and_then(|node| node.get_mut("extensions"));
+            if let Some(Value::Object(extensions)) = extensions {
+                extensions.remove("EXT_mesh_gpu_instancing");
+            }
         }
         match new {
             Some(new) => set(&mut nodes[place.node], "mesh", new),

@@ -13,7 +13,7 @@ pub(super) struct Merged {
 }
 
 impl Merged {
-    /// Reads what a mesh says; `Err(Ok(reason))` if it is not as the extension wants it.
+    /// Reads what a mesh says; `Ok(Err(reason))` if it is not as the extension wants it.
     pub(super) fn read(
         object: &MeshObject<'_>,
         positions: &[[f64; 3]],

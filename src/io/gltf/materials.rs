@@ -14,7 +14,7 @@ use super::budget::Budget;
 use super::buffers::Buffers;
 use super::document::{Named, PlainMaterial};
 use super::json::{for_each_source, for_each_texture};
-use super::write::plain_object;
+use super::plain::plain_object;
 use crate::mesh::{Image, Material, MaterialLanguage, MaterialText, Texture, TextureUse, Wrap};
 use crate::{Error, mesh};
 
@@ -143,8 +143,7 @@ impl<'a> Materials<'a> {
             return Ok(known.clone());
         }
         let document = self.reader.document;
-        let text = usize::try_from(index).ok().and_then(|index| document.textures.get(index));
-        let json = text.ok_or("it does not exist".to_string()).and_then(|text| object(text.get()));
+        let json = item(&document.textures, Some(index)).and_then(object);
         let texture = match json {
             Ok(json) => Some(Arc::new(self.texture_of(json, index, budget, notes)?)),
             Err(reason) => {
@@ -165,8 +164,7 @@ impl<'a> Materials<'a> {
     ) -> Result<Texture, Error> {
         let document = self.reader.document;
         if let Some(sampler) = json.remove("sampler") {
-            let text = sampler.as_u64().and_then(|sampler| document.samplers.get(sampler as usize));
-            match text.ok_or("it does not exist".to_string()).and_then(|text| object(text.get())) {
+            match item(&document.samplers, sampler.as_u64()).and_then(object) {
                 Ok(sampler) => drop(json.insert("sampler".to_string(), Value::Object(sampler))),
                 Err(reason) => {
                     notes.say(format!("sampler {sampler} of /textures/{index} left out: {reason}"));
@@ -204,9 +202,8 @@ impl<'a> Materials<'a> {
         if let Some(known) = self.images.get(&index) {
             return Ok(known.clone());
         }
-        let text = usize::try_from(index).ok().and_then(|index| self.reader.document.images.get(index));
-        let fields = text.ok_or("it does not exist".to_string()).and_then(|text| {
-            serde_json::from_str::<ImageFields<'_>>(text.get()).map_err(|error| error.to_string())
+        let fields = item(&self.reader.document.images, Some(index)).and_then(|text| {
+            serde_json::from_str::<ImageFields<'_>>(text).map_err(|error| error.to_string())
         });
         let image = match fields {
             Ok(fields) => Some(Arc::new(self.image_of(&fields, index, budget, notes)?)),
@@ -283,6 +280,13 @@ impl<'a> Materials<'a> {
     }
 }
 
+/// The text of the item of a list that a number names.
+fn item<'a>(list: &[&'a RawValue], index: Option<u64>) -> Result<&'a str, String> {
+    let index = index.and_then(|index| usize::try_from(index).ok());
+    let found = index.and_then(|index| list.get(index)).ok_or("it does not exist")?;
+    Ok(found.get())
+}
+
 /// A JSON object that is not too long.
 fn object(text: &str) -> Result<Map<String, Value>, String> {
     if text.len() > LONGEST_TEXT {
@@ -305,7 +309,7 @@ fn remove_missing(json: &mut Map<String, Value>, places: &HashMap<u64, u64>) {
         let index = value.get("index").and_then(Value::as_u64);
         !(super::json::names_texture(key) && index.is_some_and(|index| !places.contains_key(&index)))
     });
-    for value in json.values_mut() {
+    for (_, value) in json.iter_mut().filter(|(key, _)| *key != "extras") {
         if let Value::Object(inner) = value {
             remove_missing(inner, places);
         }

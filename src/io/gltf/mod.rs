@@ -18,6 +18,7 @@ mod manifold;
 mod materials;
 mod morph;
 mod place;
+mod plain;
 mod primitive;
 mod scene;
 mod triangles;
@@ -63,9 +64,7 @@ pub(super) fn read(
         malformed(format, place, error.to_string())
     })?;
     let reader = Reader { document: &document, format };
-    reader.check_version()?;
-    extensions::check(&document.extensions_required, format)?;
-    reader.check_references()?;
+    reader.check()?;
 
     let buffers = Buffers::new(&reader, container.binary, options);
     let mut builder = Builder::new(&reader, &buffers, bytes.len() as u64, options, &mut notes);
@@ -120,6 +119,13 @@ impl<'a> Reader<'a> {
         list.get(index).ok_or_else(|| {
             self.error(pointer, format!("names item {index} of {name:?}, which has {} items", list.len()))
         })
+    }
+
+    /// Makes sure that the document can be read: its version, the extensions that it requires, what it refers to.
+    fn check(&self) -> Result<(), Error> {
+        self.check_version()?;
+        extensions::check(&self.document.extensions_required, self.format)?;
+        self.check_references()
     }
 
     fn check_version(&self) -> Result<(), Error> {

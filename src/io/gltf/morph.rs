@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use gltf::json::accessor::Type;
 use serde_json::value::RawValue;
 
-use super::accessor::Accessors;
+use super::accessor::{Accessors, shape_of};
 use super::budget::Budget;
 use crate::Error;
 use crate::mesh::{Attribute, AttributeKind};
@@ -93,24 +92,13 @@ impl<'a> Morph<'a> {
             let Some(&accessor) = target.get(name) else { continue };
             let pointer = format!("{}/targets/{name}", self.pointer);
             let width = if name == "TANGENT" { 3 } else { components };
-            let shape = if width == 2 {
-                Type::Vec2
-            } else if width == 4 {
-                Type::Vec4
-            } else {
-                Type::Vec3
-            };
-            let found = accessors.get(accessor, shape, &pointer)?;
+            let found = accessors.get(accessor, shape_of(width), &pointer)?;
             if found.count != items as u64 {
                 let what = format!("has {} values for {items} vertices", found.count);
                 return Err(accessors.reader.error(pointer, what));
             }
             budget.charge(found.count.saturating_mul(8 * width as u64))?;
-            let differences = match width {
-                2 => accessors.numbers::<2>(accessor, &pointer)?.into_flattened(),
-                4 => accessors.numbers::<4>(accessor, &pointer)?.into_flattened(),
-                _ => accessors.numbers::<3>(accessor, &pointer)?.into_flattened(),
-            };
+            let differences = accessors.list(accessor, width, &pointer)?;
             for (value, difference) in
                 values.chunks_exact_mut(components).zip(differences.chunks_exact(width))
             {

@@ -71,42 +71,12 @@ fn read_in_chunks(bytes: &[u8], count: usize, options: &ReadOptions) -> Result<(
     let label_counts = [texture.len(), normals.len()];
     let resolved = parallel::map(chunks, |chunk| resolve(chunk, &positions, label_counts, options));
 
-    let mut groups = Groups::default();
-    let mut parts = Vec::with_capacity(resolved.len());
-    let (mut of_texture, mut of_normals) = (Vec::new(), Vec::new());
-    let mut polygons = Polygons::default();
-    let mut before = 0;
+    let mut whole = Whole { parts: Vec::with_capacity(resolved.len()), ..Whole::default() };
     for part in resolved {
-        let Resolved {
-            triangles,
-            offsets,
-            changes,
-            libraries,
-            notes: part_notes,
-            corners,
-            polygons: of_chunk,
-        } = part?;
-        for (change, offset) in changes.iter().zip(offsets) {
-            groups.change(change, before + offset);
-        }
-        for name in libraries {
-            groups.add_library(name, options.folder.as_deref(), &mut notes);
-        }
-        polygons.append(before, &of_chunk, triangles.len());
-        before += triangles.len();
-        if before > u32::MAX as usize {
-            return Err(too_large(Format::Obj, "triangles"));
-        }
-        notes.append(part_notes);
-        for (indices, of_chunk) in [(&mut of_texture, corners.texture), (&mut of_normals, corners.normals)] {
-            if !of_chunk.is_empty() {
-                indices.resize(3 * (before - triangles.len()), NO_INDEX);
-                indices.extend(of_chunk);
-            }
-        }
-        parts.push(triangles);
+        whole.append(part?, options, &mut notes)?;
     }
-    let groups = groups.finish(before, options, bytes.len().max(1 << 16), &mut notes)?;
+    let Whole { groups, parts, count, of_texture, of_normals, polygons } = whole;
+    let groups = groups.finish(count, options, bytes.len().max(1 << 16), &mut notes)?;
     let mut mesh = Mesh::new(positions, join(parts));
     mesh.groups = groups;
     mesh.polygons = polygons;
@@ -150,6 +120,46 @@ struct Resolved<'a> {
     notes: Notes,
     corners: ChunkCorners,
     polygons: Polygons,
+}
+
+/// What all chunks hold, as it grows chunk by chunk.
+#[derive(Default)]
+struct Whole<'a> {
+    groups: Groups<'a>,
+    /// The triangles of each chunk, and how many there are.
+    parts: Vec<Vec<[u32; 3]>>,
+    count: usize,
+    of_texture: Vec<u32>,
+    of_normals: Vec<u32>,
+    polygons: Polygons,
+}
+
+impl<'a> Whole<'a> {
+    /// Adds the next chunk.
+    fn append(&mut self, part: Resolved<'a>, options: &ReadOptions, notes: &mut Notes) -> Result<(), Error> {
+        let before = self.count;
+        for (change, offset) in part.changes.iter().zip(part.offsets) {
+            self.groups.change(change, before + offset);
+        }
+        for name in part.libraries {
+            self.groups.add_library(name, options.folder.as_deref(), notes);
+        }
+        self.polygons.append(before, &part.polygons, part.triangles.len());
+        self.count += part.triangles.len();
+        if self.count > u32::MAX as usize {
+            return Err(too_large(Format::Obj, "triangles"));
+        }
+        notes.append(part.notes);
+        let ChunkCorners { texture, normals, .. } = part.corners;
+        for (indices, of_chunk) in [(&mut self.of_texture, texture), (&mut self.of_normals, normals)] {
+            if !of_chunk.is_empty() {
+                indices.resize(3 * before, NO_INDEX);
+                indices.extend(of_chunk);
+            }
+        }
+        self.parts.push(part.triangles);
+        Ok(())
+    }
 }
 
 /// Makes triangles of the faces of a chunk.

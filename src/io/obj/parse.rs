@@ -196,6 +196,8 @@ impl<'a> Chunk<'a> {
             self.colors.push([red, green, blue]);
         } else if count == 1 && only != 1.0 {
             self.notes.at("vertex weight other than 1 ignored", start);
+        } else if count == 2 || count > 4 {
+            self.notes.at("numbers after the coordinates that are no colour ignored", start);
         }
         scanner.skip_statement();
     }

@@ -115,7 +115,12 @@ impl<'a, const BIG: bool> BinarySource<'a, BIG> {
         let Some(records) = usize::try_from(element.count).ok().and_then(|count| records.get(..count)) else {
             return false;
         };
-        if !usual || records.len() >= u32::MAX as usize || !parallel::all(records, |record| record[0] == 3) {
+        // (Those of strips that come before stay.)
+        if !usual
+            || !body.faces.is_empty()
+            || records.len() >= u32::MAX as usize
+            || !parallel::all(records, |record| record[0] == 3)
+        {
             return false;
         }
         let triangles = parallel::build(records.len(), SMALLEST_PIECE, |first, run: &mut [[u32; 3]]| {

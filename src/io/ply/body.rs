@@ -102,7 +102,10 @@ impl Body {
         match element.role {
             Role::Vertices(axes) => self.vertices(element, axes, source, control),
             Role::Faces(indices) => {
-                self.faces = FaceList::with_capacity(element.count as usize);
+                // Strips may come before.
+                if self.faces.is_empty() {
+                    self.faces = FaceList::with_capacity(element.count as usize);
+                }
                 self.lists(element, indices, source, control, Self::face)
             }
             Role::Strips(indices) => self.lists(element, indices, source, control, Self::strips),
@@ -160,6 +163,8 @@ impl Body {
     ) -> Result<(), Error> {
         let mut item = ListItem::new(element, indices);
         let mut channels = Channel::of(element, 0);
+        // Triangles of strips that come before have no properties.
+        channels.iter_mut().for_each(|channel| channel.values.resize(self.faces.len(), f64::NAN));
         for i in 0..element.count {
             if i % CHECK_INTERVAL == 0 {
                 control.check()?;
@@ -272,8 +277,10 @@ impl ListItem {
         source: &mut impl Source,
     ) -> Result<(), Error> {
         let length = list_length(count, source)?;
-        if self.texture_list == Some(p) && length <= LONGEST_TEXTURE {
+        if self.texture_list == Some(p) {
             self.texture.clear();
+        }
+        if self.texture_list == Some(p) && length <= LONGEST_TEXTURE {
             for _ in 0..length {
                 self.texture.push(source.number(item)?);
             }

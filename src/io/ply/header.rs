@@ -84,6 +84,8 @@ pub(super) struct Element {
     /// The names of the properties that matter beside coordinates and corners, with their numbers; of vertices and faces
     /// alone.
     pub(super) further: Vec<(usize, String)>,
+    /// How many more would matter, but are too many to keep.
+    pub(super) left_out: usize,
     pub(super) role: Role,
 }
 
@@ -112,7 +114,7 @@ pub(super) struct Header {
     pub(super) end: usize,
 }
 
-/// More properties than these are skipped. Each takes eight bytes a vertex or face.
+/// More properties than these are skipped, with a note. Each takes eight bytes a vertex or face.
 pub(super) const MOST_FURTHER: usize = 64;
 
 impl Coding {
@@ -161,6 +163,7 @@ impl Header {
                         count,
                         properties: Vec::new(),
                         further: Vec::new(),
+                        left_out: 0,
                         role: Role::Other,
                     };
                     elements.push(Named { element, names: Vec::new() });
@@ -185,16 +188,17 @@ impl Header {
         }
         let coding = coding.ok_or_else(|| lines.error("the header has no line \"format\""))?;
         let elements = elements.into_iter().map(Named::with_role).collect::<Result<Vec<_>, _>>()?;
-        for role in ["vertex", "face"] {
-            if elements.iter().filter(|element| element.name == role).count() > 1 {
-                return Err(malformed(
-                    Format::Ply,
-                    "header",
-                    format!("the element {role:?} is defined twice"),
-                ));
-            }
-        }
+        refuse_twice(&elements)?;
         Ok(Self { coding, elements, end: lines.at })
+    }
+}
+
+/// Vertices and faces are there once each.
+fn refuse_twice(elements: &[Element]) -> Result<(), Error> {
+    let count = |role: &str| elements.iter().filter(|element| element.name == role).count();
+    match ["vertex", "face"].into_iter().find(|role| count(role) > 1) {
+        Some(role) => Err(malformed(Format::Ply, "header", format!("the element {role:?} is defined twice"))),
+        None => Ok(()),
     }
 }
 
@@ -221,7 +225,7 @@ impl Named<'_> {
                         })?;
                 }
                 element.role = Role::Vertices(axes);
-                element.further = further(&names, &element.properties, &axes);
+                (element.further, element.left_out) = further(&names, &element.properties, &axes);
             }
             "face" | "tristrips" => {
                 let is_indices = |property: &Property| matches!(property, Property::List { item, .. } if item.is_integer());
@@ -234,7 +238,8 @@ impl Named<'_> {
                     .or(only);
                 element.role = match (indices, element.name.as_str()) {
                     (Some(indices), "face") => {
-                        element.further = further(&names, &element.properties, &[indices]);
+                        (element.further, element.left_out) =
+                            further(&names, &element.properties, &[indices]);
                         Role::Faces(indices)
                     }
                     (Some(indices), _) => Role::Strips(indices),
@@ -254,15 +259,17 @@ impl Named<'_> {
     }
 }
 
-/// The properties beside those that are known, by name. A list is one only where it has texture coordinates.
-fn further(names: &[&[u8]], properties: &[Property], known: &[usize]) -> Vec<(usize, String)> {
+/// The properties beside those that are known, by name, and how many more there are. A list is one only where it has texture
+/// coordinates.
+fn further(names: &[&[u8]], properties: &[Property], known: &[usize]) -> (Vec<(usize, String)>, usize) {
     let is_kept = |&(i, name): &(usize, &&[u8])| match properties[i] {
         _ if known.contains(&i) => false,
         Property::Scalar(_) => true,
         Property::List { .. } => **name == b"texcoord"[..],
     };
-    let kept = names.iter().enumerate().filter(is_kept).take(MOST_FURTHER);
-    kept.map(|(i, name)| (i, decode(name))).collect()
+    let mut all = names.iter().enumerate().filter(is_kept);
+    let kept = all.by_ref().take(MOST_FURTHER).map(|(i, name)| (i, decode(name))).collect();
+    (kept, all.count())
 }
 
 fn property<'a>(words: &mut impl Iterator<Item = &'a [u8]>) -> Option<(&'a [u8], Property)> {

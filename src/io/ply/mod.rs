@@ -38,6 +38,8 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<Str
         return Err(malformed(Format::Ply, "header", "there is no element \"vertex\""));
     };
     let mut notes = std::mem::take(&mut body.notes);
+    let left_out = header.elements.iter().map(|element| element.left_out).sum();
+    notes.add("property after the first 64 of vertices or faces not read", left_out);
     let mesh = assemble(positions, body, ROOM * bytes.len().max(1 << 12), &mut notes, options)?;
     let place = |offset| match header.coding {
         Coding::Ascii => line_place(bytes, offset),

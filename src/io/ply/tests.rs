@@ -228,3 +228,42 @@ fn texture_coordinates_of_faces_are_a_list() {
         assert_eq!(read_all(odd.as_bytes()).unwrap().0.attributes[0].at(0, 0), None);
     }
 }
+
+#[test]
+fn strips_and_faces_stand_side_by_side() {
+    let body = |strips_first: bool| {
+        let strips = "element tristrips 1\nproperty list uchar int vertex_indices\n";
+        let faces = "element face 1\nproperty list uchar int vertex_indices\nproperty float heat\n";
+        let (elements, data) = if strips_first {
+            (format!("{strips}{faces}"), "3 0 1 2\n3 0 2 3 7.5\n")
+        } else {
+            (format!("{faces}{strips}"), "3 0 2 3 7.5\n3 0 1 2\n")
+        };
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n{elements}\
+             end_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0.1\n{data}"
+        )
+    };
+    for (strips_first, place) in [(true, 1), (false, 0)] {
+        let (mesh, warnings) = read_all(body(strips_first).as_bytes()).unwrap();
+        assert!(warnings.is_empty(), "{warnings:?}");
+        assert_eq!((mesh.triangles.len(), mesh.triangles[place]), (2, [0, 2, 3]));
+        assert_eq!(mesh.attributes[0].at(place, 0), Some(&[7.5][..]));
+        assert_eq!(mesh.attributes[0].at(1 - place, 0), None);
+    }
+}
+
+#[test]
+fn properties_that_are_too_many_are_told() {
+    let lines: String = (0..70).map(|i| format!("property float p{i}\n")).collect();
+    let zeros = " 0".repeat(70);
+    let text = ASCII.replace("property float z\n", &format!("property float z\n{lines}")).replace(
+        "\n0 0 0\n1 0 0\n1 1 0\n0 1 0.1\n",
+        &format!("\n0 0 0{zeros}\n1 0 0{zeros}\n1 1 0{zeros}\n0 1 0.1{zeros}\n"),
+    );
+    let (_, warnings) = read_all(text.as_bytes()).unwrap();
+    assert!(
+        warnings.iter().any(|told| told.contains("after the first 64") && told.contains("6 in all")),
+        "{warnings:?}"
+    );
+}

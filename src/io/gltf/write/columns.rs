@@ -8,6 +8,9 @@ use crate::mesh::{Attribute, AttributeKind};
 /// Values have at most so many components in glTF.
 const MOST_COMPONENTS: usize = 4;
 
+/// A file has at most so many attributes, one bit of a part each. Devices have room for sixteen.
+const MOST_COLUMNS: usize = 64;
+
 /// How far the length of a direction may be from one before it is set right: below what validators admit, above what rounding
 /// to bytes does.
 const UNIT_TOLERANCE: f64 = 5e-4;
@@ -54,11 +57,19 @@ impl<'a> Column<'a> {
                 ));
                 continue;
             }
+            if columns.len() == MOST_COLUMNS {
+                warnings.push(format!(
+                    "attribute {} not written: a file has at most {MOST_COLUMNS}",
+                    attribute.name
+                ));
+                continue;
+            }
             let filler = match kind {
                 AttributeKind::Normal => [0.0, 0.0, 1.0, 0.0],
                 AttributeKind::Tangent => [1.0, 0.0, 0.0, 1.0],
                 AttributeKind::Colour => [1.0; 4],
-                AttributeKind::Weights => [1.0, 0.0, 0.0, 0.0],
+                // All sets together have the sum 1.
+                AttributeKind::Weights if attribute.name == "WEIGHTS_0" => [1.0, 0.0, 0.0, 0.0],
                 _ => [0.0; 4],
             };
             columns.push(Self { attribute, number: Number::of(attribute), filler });
@@ -104,7 +115,10 @@ impl<'a> Column<'a> {
         }
         for (bytes, &value) in bytes.chunks_exact_mut(size).zip(numbers) {
             match self.number {
-                Number::Single => bytes.copy_from_slice(&(value as f32).to_le_bytes()),
+                // Infinite numbers are not allowed.
+                Number::Single => {
+                    bytes.copy_from_slice(&(value as f32).clamp(f32::MIN, f32::MAX).to_le_bytes());
+                }
                 Number::Bytes => bytes[0] = (value * 255.0).round() as u8,
                 Number::Shorts => bytes.copy_from_slice(&((value * 65_535.0).round() as u16).to_le_bytes()),
                 Number::Whole8 => bytes[0] = value as u8,

@@ -10,8 +10,8 @@ use super::super::super::WriteOptions;
 use super::super::super::pictures::PictureFile;
 use super::frame::Frame;
 use super::layout::{Layout, Part, Section};
-use super::materials::{Lists, MaterialList};
-use crate::mesh::{Material, is_two_manifold};
+use super::materials::{Known, Lists, MaterialList};
+use crate::mesh::is_two_manifold;
 use crate::{Error, Mesh};
 
 const ARRAY_BUFFER: u32 = 34_962;
@@ -26,17 +26,6 @@ pub(in crate::io::gltf) struct Fragment<'a> {
     meshes: Vec<Value>,
     lists: Lists,
     used: Vec<String>,
-}
-
-/// What a document has already.
-#[derive(Default)]
-pub(in crate::io::gltf) struct Known {
-    /// Its materials: the mesh may have the same ones.
-    pub(in crate::io::gltf) materials: Vec<Material>,
-    /// How many textures, samplers and pictures it has.
-    pub(in crate::io::gltf) textures: u32,
-    pub(in crate::io::gltf) samplers: u32,
-    pub(in crate::io::gltf) images: u32,
 }
 
 /// What is added to a document, its numbers counted on from those there.
@@ -62,7 +51,10 @@ impl<'a> Fragment<'a> {
                 "coordinates are beyond single precision in the node's scene".into(),
             ));
         }
-        let manifold = options.manifold && can_be_manifold(mesh, warnings);
+        let manifold = options.manifold && is_two_manifold(mesh);
+        if options.manifold && !manifold {
+            warnings.push(NOT_MANIFOLD.to_string());
+        }
         Ok(Self::new(layout, None, known, manifold, true, warnings))
     }
 
@@ -157,15 +149,15 @@ impl<'a> Fragment<'a> {
     }
 }
 
-/// The document without its buffer, and what is in that. Pictures are in the buffer unless they have files.
+/// The document without its buffer, and what is in that. Pictures are in the buffer unless they have files. `manifold` says
+/// whether `EXT_mesh_manifold` is written, which takes a closed surface.
 pub(super) fn document<'a>(
     mesh: &'a Mesh,
     pictures: Option<&'a [PictureFile]>,
-    options: &WriteOptions,
+    manifold: bool,
     warnings: &mut Vec<String>,
 ) -> (Layout<'a>, Map<String, Value>) {
     let layout = Layout::new(mesh, Frame::of(mesh), false, warnings);
-    let manifold = options.manifold && can_be_manifold(mesh, warnings);
     let fragment = Fragment::new(layout, pictures, Known::default(), manifold, manifold, warnings);
     let Fragment { layout, accessors, meshes, lists, used } = fragment;
     let nodes = nodes(&layout, &meshes);
@@ -191,17 +183,9 @@ pub(super) fn document<'a>(
     (layout, document)
 }
 
-/// Whether the extension can hold the mesh; a warning if not.
-fn can_be_manifold(mesh: &Mesh, warnings: &mut Vec<String>) -> bool {
-    let is_manifold = is_two_manifold(mesh);
-    if !is_manifold {
-        warnings.push(
-            "EXT_mesh_manifold not written: there are edges with other than two triangles, one for each direction"
-                .to_string(),
-        );
-    }
-    is_manifold
-}
+/// What is said where `EXT_mesh_manifold` cannot hold the mesh.
+pub(super) const NOT_MANIFOLD: &str =
+    "EXT_mesh_manifold not written: there are edges with other than two triangles, one for each direction";
 
 pub(super) fn asset() -> Value {
     json!({"version": "2.0", "generator": concat!("trisect ", env!("CARGO_PKG_VERSION"))})
@@ -369,7 +353,7 @@ fn indices(layout: &Layout<'_>, section: Section, count: u64) -> Value {
 fn attributes(layout: &Layout<'_>, part: &Part) -> Map<String, Value> {
     let mut attributes = Map::new();
     attributes.insert("POSITION".to_string(), 0.into());
-    let has = |index: usize| index < 64 && part.columns >> index & 1 == 1;
+    let has = |index: usize| part.columns >> index & 1 == 1;
     for (index, column) in layout.columns.iter().enumerate() {
         let name = &column.attribute.name;
         let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());

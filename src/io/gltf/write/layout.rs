@@ -85,36 +85,43 @@ impl<'a> Layout<'a> {
         }
     }
 
+    /// The sections in their order.
+    fn order(&self) -> impl Iterator<Item = Section> {
+        let merges = [Section::MergePlaces, Section::MergeVertices].into_iter();
+        std::iter::once(Section::Positions)
+            .chain((0..self.columns.len()).map(Section::Column))
+            .chain([Section::Indices])
+            .chain(merges.filter(|_| !self.merges.is_empty()))
+            .chain((0..self.images.len()).map(Section::Image))
+    }
+
+    /// The bytes of a section.
+    fn length(&self, section: Section) -> u64 {
+        let bytes = |count: usize, size: u64| count as u64 * size;
+        match section {
+            Section::Positions => bytes(self.vertices.len(), 12),
+            Section::Column(index) => bytes(self.vertices.len(), self.columns[index].stride() as u64),
+            Section::Indices => bytes(self.mesh.triangles.len(), 3 * self.index_size()),
+            Section::MergePlaces => bytes(self.merges.len(), 4),
+            Section::MergeVertices => bytes(self.merges.len(), self.index_size()),
+            Section::Image(index) => bytes(self.images[index].bytes.len(), 1),
+        }
+    }
+
     /// The sections in their order, where each begins and how many bytes it has. Each begins at a multiple of four.
     pub(super) fn sections(&self) -> Vec<(Section, u64, u64)> {
-        let vertices = self.vertices.len() as u64;
-        let mut list = vec![(Section::Positions, 12 * vertices)];
-        for (index, column) in self.columns.iter().enumerate() {
-            list.push((Section::Column(index), column.stride() as u64 * vertices));
-        }
-        list.push((Section::Indices, 3 * self.index_size() * self.mesh.triangles.len() as u64));
-        if !self.merges.is_empty() {
-            let merges = 4 * self.merges.len() as u64;
-            list.extend([
-                (Section::MergePlaces, merges),
-                (Section::MergeVertices, self.index_size() * merges / 4),
-            ]);
-        }
-        for (index, image) in self.images.iter().enumerate() {
-            list.push((Section::Image(index), image.bytes.len() as u64));
-        }
         let mut start = 0;
-        let placed = |(section, length): (Section, u64)| {
-            let here = start;
+        let placed = |section: Section| {
+            let (here, length) = (start, self.length(section));
             start += length.next_multiple_of(4);
             (section, here, length)
         };
-        list.into_iter().map(placed).collect()
+        self.order().map(placed).collect()
     }
 
     /// The number of a section, which is that of its buffer view.
     pub(super) fn view(&self, section: Section) -> usize {
-        self.sections().iter().position(|(found, ..)| *found == section).unwrap_or(0)
+        self.order().position(|found| found == section).unwrap_or(0)
     }
 
     /// The bytes of the buffer.
@@ -231,8 +238,7 @@ fn parts(mesh: &Mesh, columns: &[Column<'_>]) -> Vec<Part> {
     let mut last: Option<(Option<usize>, u64)> = None;
     let mut run: Vec<u32> = Vec::new();
     for triangle in 0..mesh.triangles.len() {
-        // More than 64 columns have no bit; they are none of the standard's.
-        let bits = columns.iter().take(64).enumerate();
+        let bits = columns.iter().enumerate();
         let mask = bits.fold(0, |mask, (bit, column)| mask | u64::from(has(column, triangle)) << bit);
         let key = (group_of(triangle), mask);
         if last != Some(key) {

@@ -7,9 +7,20 @@ use serde_json::{Map, Value, json};
 
 use super::super::super::pictures::{PictureFile, file_of};
 use super::super::json::{for_each_extension, for_each_source, for_each_texture, percent_encode};
-use super::document::Known;
+use super::super::plain::{channel, plain_object};
 use super::mtl;
 use crate::mesh::{Image, Material, MaterialLanguage, MaterialText, Texture, TextureUse, Wrap};
+
+/// What a document has already.
+#[derive(Default)]
+pub(in crate::io::gltf) struct Known {
+    /// Its materials: the mesh may have the same ones.
+    pub(in crate::io::gltf) materials: Vec<Material>,
+    /// How many textures, samplers and pictures it has.
+    pub(in crate::io::gltf) textures: u32,
+    pub(in crate::io::gltf) samplers: u32,
+    pub(in crate::io::gltf) images: u32,
+}
 
 /// The lists as they grow.
 pub(super) struct MaterialList<'a> {
@@ -71,7 +82,9 @@ impl<'a> MaterialList<'a> {
             Some(text) if text.language == MaterialLanguage::Gltf => self.verbatim(material, text),
             Some(text) => {
                 let mut value = self.plain(material);
-                mtl::translate(text, &mut value, self);
+                for warning in mtl::translate(text, &mut value, &mut |texture| self.texture_info(texture)) {
+                    self.warn(warning);
+                }
                 value
             }
             None => self.plain(material),
@@ -112,7 +125,7 @@ impl<'a> MaterialList<'a> {
     }
 
     /// What a material says of a texture.
-    pub(super) fn texture_info(&mut self, texture: &TextureUse) -> Option<Value> {
+    fn texture_info(&mut self, texture: &TextureUse) -> Option<Value> {
         let kind = &*texture.image.mime_type;
         let mut json = match kind {
             "image/png" | "image/jpeg" => json!({"source": 0}),
@@ -120,10 +133,11 @@ impl<'a> MaterialList<'a> {
             _ => {
                 let name = &texture.image.file;
                 let name = if name.is_empty() { "a picture" } else { name };
-                self.warnings.push(match texture.image.bytes.is_empty() {
-                    true => format!("{name} not written: it was not there to be read"),
-                    false => format!("{name} not written: glTF has PNG and JPEG pictures only"),
-                });
+                let reason = match texture.image.bytes.is_empty() {
+                    true => "it was not there to be read",
+                    false => "glTF has PNG and JPEG pictures only",
+                };
+                self.warn(format!("{name} not written: {reason}"));
                 return None;
             }
         };
@@ -152,7 +166,10 @@ impl<'a> MaterialList<'a> {
         }
         if texture.transform != TextureUse::UNMOVED {
             // Files that say it in words of glTF are written as they are; others only scale and move.
-            let [[width, _, x], [_, height, y]] = texture.transform;
+            let [[width, aslant, x], [turned, height, y]] = texture.transform;
+            if [aslant, turned] != [0.0; 2] {
+                self.warn("turned texture coordinates of a material written without the turn".to_string());
+            }
             info["extensions"] =
                 json!({"KHR_texture_transform": {"offset": [x, y], "scale": [width, height]}});
         }
@@ -167,8 +184,14 @@ impl<'a> MaterialList<'a> {
         }
         let numbers: Vec<u64> = texture.images.iter().map(|image| self.image(image)).collect();
         // What names a picture that was not there is left out.
-        if json.get("source").and_then(Value::as_u64).is_some_and(|place| place >= numbers.len() as u64) {
+        let is_missing = |source: Option<&Value>| {
+            source.and_then(Value::as_u64).is_some_and(|place| place >= numbers.len() as u64)
+        };
+        if is_missing(json.get("source")) {
             json.remove("source");
+        }
+        if let Some(Value::Object(extensions)) = json.get_mut("extensions") {
+            extensions.retain(|_, extension| !is_missing(extension.get("source")));
         }
         for_each_source(&mut json, &mut |place| {
             *place = numbers.get(*place as usize).copied().unwrap_or(*place);
@@ -187,7 +210,7 @@ impl<'a> MaterialList<'a> {
     }
 
     /// Notes what cannot be written.
-    pub(super) fn warn(&mut self, warning: String) {
+    fn warn(&mut self, warning: String) {
         if !self.warnings.contains(&warning) {
             self.warnings.push(warning);
         }
@@ -246,26 +269,4 @@ impl<'a> MaterialList<'a> {
             extensions_required: required.into_iter().collect(),
         }
     }
-}
-
-/// The shortest digits of a single-precision number, which JSON would write as a double.
-pub(super) fn channel(value: f32) -> f64 {
-    let value = if value.is_finite() { value.clamp(0.0, 1.0) } else { 1.0 };
-    value.to_string().parse::<f64>().unwrap_or(1.0)
-}
-
-/// A material of a name and a colour.
-pub(in crate::io::gltf) fn plain_object(name: &str, color: [f32; 4]) -> Value {
-    let mut material = json!({
-        "pbrMetallicRoughness": {
-            "baseColorFactor": color.map(channel), "metallicFactor": 0, "roughnessFactor": 1
-        }
-    });
-    if !name.is_empty() {
-        material["name"] = json!(name);
-    }
-    if color[3] < 1.0 {
-        material["alphaMode"] = json!("BLEND");
-    }
-    material
 }

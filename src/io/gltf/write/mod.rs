@@ -26,8 +26,8 @@ use super::super::{Format, WriteOptions, write_error};
 use super::json::percent_encode;
 use crate::mesh::is_two_manifold;
 use crate::{Error, Mesh};
-pub(super) use document::{Fragment, Known};
-pub(super) use materials::plain_object;
+pub(super) use document::Fragment;
+pub(super) use materials::Known;
 
 /// Where a `.gltf` file puts what is not its JSON.
 pub(in crate::io) struct Aside<'a> {
@@ -57,12 +57,17 @@ pub(in crate::io) fn write(
         return Ok(Written::default());
     }
     // Seams of the mesh itself are joined first, where that is all that keeps the surface from being closed.
-    let joined =
-        (options.manifold && !is_two_manifold(mesh)).then(|| mesh.clone().welded(0.0)).transpose()?;
-    let mesh = joined.as_ref().filter(|joined| is_two_manifold(joined)).unwrap_or(mesh);
+    let is_closed = options.manifold && is_two_manifold(mesh);
+    let joined = (options.manifold && !is_closed).then(|| mesh.clone().welded(0.0)).transpose()?;
+    let joined = joined.filter(is_two_manifold);
+    let manifold = is_closed || joined.is_some();
+    let mesh = joined.as_ref().unwrap_or(mesh);
     let mut warnings = Vec::new();
+    if options.manifold && !manifold {
+        warnings.push(document::NOT_MANIFOLD.to_string());
+    }
     let pictures = aside.as_ref().map(|aside| aside.pictures);
-    let (layout, mut document) = document::document(mesh, pictures, options, &mut warnings);
+    let (layout, mut document) = document::document(mesh, pictures, manifold, &mut warnings);
     let bytes = layout.bytes();
     match aside {
         Some(Aside { buffer: (name, buffer), .. }) if format == Format::Gltf => {

@@ -3,14 +3,20 @@
 use serde_json::{Value, json};
 
 use super::super::super::mtl::MapStatement;
-use super::materials::{MaterialList, channel};
+use super::super::plain::channel;
 use crate::mesh::{MaterialText, TextureUse, Wrap};
 
 /// Statements that glTF has no words for are named once; these say what its plain material says in any case.
 const UNDERSTOOD: [&str; 9] = ["Kd", "d", "Tr", "map_Kd", "Ke", "Pr", "Pm", "illum", "newmtl"];
 
-/// Adds to a material what the statements of a library say beside colour and opacity.
-pub(super) fn translate(text: &MaterialText, material: &mut Value, list: &mut MaterialList<'_>) {
+/// Adds to a material what the statements of a library say beside colour and opacity, and gives what is said of the others.
+/// `info` is what a material says of a texture.
+pub(super) fn translate(
+    text: &MaterialText,
+    material: &mut Value,
+    info: &mut dyn FnMut(&TextureUse) -> Option<Value>,
+) -> Vec<String> {
+    let mut warnings = Vec::new();
     let mut textures = text.textures.iter();
     for line in text.text.lines() {
         let mut words = line.split_whitespace();
@@ -32,7 +38,7 @@ pub(super) fn translate(text: &MaterialText, material: &mut Value, list: &mut Ma
             _ if UNDERSTOOD.contains(&keyword) => continue,
             _ => {
                 if !matches!(keyword, "Ka" | "Ks" | "Ns" | "Ni" | "Tf" | "map_Ka") {
-                    list.warn(format!(
+                    warnings.push(format!(
                         "statement {keyword} of materials not written: glTF has no word for it"
                     ));
                 }
@@ -40,8 +46,8 @@ pub(super) fn translate(text: &MaterialText, material: &mut Value, list: &mut Ma
             }
         };
         let image = texture.and_then(|texture| texture.images.first());
-        let info = image.and_then(|image| {
-            list.texture_info(&TextureUse {
+        let said = image.and_then(|image| {
+            info(&TextureUse {
                 image: image.clone(),
                 coordinates: 0,
                 wrap: [Wrap::Repeat; 2],
@@ -49,11 +55,12 @@ pub(super) fn translate(text: &MaterialText, material: &mut Value, list: &mut Ma
                 transform: TextureUse::UNMOVED,
             })
         });
-        if let Some(info) = info {
-            material[place] = info;
+        if let Some(said) = said {
+            material[place] = said;
             if place == "emissiveTexture" && material.get("emissiveFactor").is_none() {
                 material["emissiveFactor"] = json!([1, 1, 1]);
             }
         }
     }
+    warnings
 }
