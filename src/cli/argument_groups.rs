@@ -7,7 +7,6 @@ use clap::{Args, ColorChoice, ValueEnum};
 use trisect::io::Format;
 use trisect::mesh::Welding;
 
-use super::scenes::SceneChoice;
 use super::surface::{self, Normals};
 use super::values;
 
@@ -217,6 +216,16 @@ pub(crate) struct Drawing {
     /// Parallel projection instead of perspective
     #[arg(long)]
     pub(crate) png_parallel: bool,
+}
+
+/// What becomes of the scene that a part of the first input stands in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SceneChoice {
+    /// The result stands alone
+    #[default]
+    Drop,
+    /// glTF outputs are the scene, with the result at the node
+    Keep,
 }
 
 /// The upward axis of a picture.

@@ -5,7 +5,7 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::Value;
 use trisect::io::{Format, WriteOptions};
-use trisect::{BooleanOptions, Embed, Grid, OperandState, Operation, Outcome, Rule, Solid};
+use trisect::{BooleanOptions, Control, Embed, Grid, OperandState, Operation, Outcome, Rule, Solid};
 
 use super::argument_groups::{Colours, Results, Writing};
 use super::arguments::{Combination, Combine};
@@ -102,7 +102,7 @@ fn run_task(
     }
 
     let start = Instant::now();
-    let options = options(arguments, &operands, &targets.concat(), session).control(control);
+    let options = options(arguments, &operands, &targets.concat(), session, control);
     let solids: Vec<&Solid> = operands.iter().map(|operand| &operand.solid).collect();
     let outcomes = task.run(&options, &solids)?;
     let seconds = session.took("run", start);
@@ -155,18 +155,18 @@ fn options(
     operands: &[Operand],
     targets: &[Target],
     session: &Session<'_>,
+    control: Control,
 ) -> BooleanOptions {
-    let options = BooleanOptions::new()
+    let solids = operands.iter().map(|operand| &operand.solid);
+    let cut_faces = surface::cut_faces(arguments.cut_material.as_deref(), arguments.cut_uv, solids);
+    let options = session
+        .boolean_options(control)
         .rules(operands.iter().map(|operand| operand.request.rule))
         .embed(embedding(arguments, targets))
-        .cut_faces(surface::cut_faces(arguments, operands.iter().map(|operand| &operand.solid)))
+        .cut_faces(cut_faces)
         .assume_clean(arguments.inputs.using.assume_clean);
-    let options = match arguments.snap {
+    match arguments.snap {
         Some(distance) => options.snap(distance),
-        None => options,
-    };
-    match session.common.threads {
-        Some(threads) => options.threads(usize::from(threads)),
         None => options,
     }
 }
@@ -215,13 +215,17 @@ pub(super) fn tell(
         if snapping.unfinished {
             session.warn(format!("{name}: something nearer than the distance to snap by was left as it was"));
         }
+        if snapping.vanished > 0 {
+            let inputs = words::counted(snapping.vanished as usize, "input");
+            session
+                .warn(format!("{name}: nothing is left of {inputs}, no larger than the distance to snap by"));
+        }
     }
     if let Some(left) = outcome.embedding().map(|done| done.left).filter(|&left| left > 0) {
         let triangles = words::counted(left, "triangle");
         session.warn(format!("{name}: {triangles} still cross others or lie on them after rounding"));
     }
-    let names: Vec<String> = targets.iter().map(Target::name).collect();
-    let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
+    let arrow = output::arrow(targets);
     session.console.say(&format!("{name}: {} ({}){arrow}", measures.line(), words::time(seconds)));
     if session.common.verbose > 0 {
         session.console.detail(&outcome.certificate().to_string());
@@ -246,12 +250,7 @@ fn parts(task: &Task, mut requests: Vec<Request>, session: &Session<'_>) -> Resu
     }
     let control = session.control();
     if task.numbers_inputs() {
-        let together = |(index, request): (usize, Request)| {
-            let name = request.name();
-            selection::together(request, &session.limits, &control)
-                .map_err(|error| Fault::from(error.of_operand(index, name)))
-        };
-        return requests.into_iter().enumerate().map(together).collect();
+        return Ok(selection::joined(requests, &session.limits, &control)?);
     }
     if task.is_difference() && !requests.is_empty() {
         let others = requests.split_off(1);
@@ -274,8 +273,7 @@ fn parts(task: &Task, mut requests: Vec<Request>, session: &Session<'_>) -> Resu
 
 /// Command lines that are well formed but cannot be meant.
 fn refuse_pointless(arguments: &Combine, targets: &[Target], session: &Session<'_>) -> Result<(), Fault> {
-    let common = session.common;
-    if targets.is_empty() && !common.json && common.report.is_none() && !arguments.dry_run {
+    if targets.is_empty() && !session.is_reported() && !arguments.dry_run {
         return Err(Fault::usage(
             "nowhere to put the result: add -o FILE (or -o - for standard output, --png FILE, --json, --report FILE, \
              --dry-run)",

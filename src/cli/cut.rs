@@ -12,6 +12,7 @@ use super::fault::{Exit, Fault};
 use super::operands;
 use super::output::{self, Target};
 use super::requests;
+use super::scenes;
 use super::selection;
 use super::session::Session;
 use super::words;
@@ -28,14 +29,14 @@ pub(crate) fn run(arguments: &Cut, matches: &ArgMatches, session: &mut Session<'
     if requests.len() > 1 {
         return Err(Fault::usage("cut takes one input; cut others by runs of their own"));
     }
+    let writing = &arguments.results.writing;
+    scenes::name_node(&mut requests, writing)?;
     let control = session.control();
-    for request in &mut requests {
-        let name = request.name();
-        *request = selection::together(request.clone(), &session.limits, &control)
-            .map_err(|error| Fault::from(error.of_operand(0, name)))?;
-    }
-    let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
-    if targets.is_empty() && !session.common.json && session.common.report.is_none() && !arguments.dry_run {
+    let requests = selection::joined(requests, &session.limits, &control)?;
+    let write_options =
+        scenes::kept(output::write_options(writing, &session.limits), writing, requests.first())?;
+    let targets = output::targets(writing, &arguments.results.drawing, session.common)?;
+    if targets.is_empty() && !session.is_reported() && !arguments.dry_run {
         return Err(Fault::usage("nowhere to put the result: add -o FILE, --png FILE, --json or --dry-run"));
     }
     let suffixes = suffixes(arguments);
@@ -48,7 +49,7 @@ pub(crate) fn run(arguments: &Cut, matches: &ArgMatches, session: &mut Session<'
     let assume_clean = arguments.inputs.using.assume_clean;
     let operands = operands::operands(requests, assume_clean, &session.limits, &control, &session.console)?;
     session.took("read", start);
-    combine::describe(&operands, Some(&arguments.results.writing), session);
+    combine::describe(&operands, Some(writing), session);
     let Some(operand) = operands.first() else { return Err(Fault::usage("an input is needed")) };
     if arguments.dry_run {
         let planes = words::counted(arguments.plane.len(), "plane");
@@ -58,24 +59,18 @@ pub(crate) fn run(arguments: &Cut, matches: &ArgMatches, session: &mut Session<'
     }
 
     let start = Instant::now();
-    let options =
-        BooleanOptions::new().rule(operand.request.rule).assume_clean(assume_clean).control(control);
-    let options = match session.common.threads {
-        Some(threads) => options.threads(usize::from(threads)),
-        None => options,
-    };
+    let options = session.boolean_options(control).rule(operand.request.rule).assume_clean(assume_clean);
     let pieces = pieces(arguments, &operand.solid, &options)?;
     let seconds = session.took("run", start);
     if let Some(piece) = pieces.first() {
         combine::warn_of_inward(piece, &operands, session);
     }
+    let style = combine::Style { format: Some(operand.format), options: write_options };
     let (mut results, mut outputs) = (Vec::new(), Vec::new());
     for ((piece, targets), suffix) in pieces.iter().zip(&targets).zip(&suffixes) {
         if piece.solid().is_empty() && arguments.keep == Keep::Both {
             session.warn(format!("{}: nothing of the solid is there", name_of(suffix)));
         }
-        let options = output::write_options(&arguments.results.writing, &session.limits);
-        let style = combine::Style { format: Some(operand.format), options };
         outputs.extend(combine::write(&arguments.results, targets, piece, &style, session)?);
         results.push(combine::tell(name_of(suffix), piece, targets, seconds, session));
     }
@@ -114,16 +109,19 @@ fn places(arguments: &Cut, targets: &[Target], suffixes: &[String]) -> Result<Ve
             "more than {MOST_PLANES} planes make too many pieces; --keep one side"
         )));
     }
-    let given = arguments.results.writing.output.len();
-    if let ([_, _], 2) = (suffixes, given) {
-        // The files first, then a picture.
-        let (files, pictures) = targets.split_at(2);
+    // A file for each of two pieces, and pictures of both; or a picture for each.
+    let (mut pictures, mut files): (Vec<&Target>, Vec<&Target>) =
+        targets.iter().partition(|target| target.is_picture());
+    if files.is_empty() && arguments.results.writing.output.len() == 2 {
+        files = pictures.drain(..2).collect();
+    }
+    if let ([_, _], [_, _]) = (suffixes, &*files) {
         return files
             .iter()
             .zip(suffixes)
             .map(|(file, suffix)| {
                 let pictures = pictures.iter().map(|picture| picture.with_suffix(suffix));
-                std::iter::once(Ok(file.clone())).chain(pictures).collect()
+                std::iter::once(Ok((*file).clone())).chain(pictures).collect()
             })
             .collect();
     }

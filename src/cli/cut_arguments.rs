@@ -75,7 +75,7 @@ pub(crate) struct Section {
     )]
     pub(crate) heights: Option<Heights>,
     /// The axis of the heights
-    #[arg(long, value_enum, default_value_t = Axis::Z, help_heading = "Results")]
+    #[arg(long, value_enum, default_value_t = Axis::Z, conflicts_with = "plane", help_heading = "Results")]
     pub(crate) axis: Axis,
     /// What counts where faces of the solid lie in the plane
     #[arg(long, value_enum, default_value_t = Side::Inside, help_heading = "Results")]

@@ -16,13 +16,14 @@ use super::output::{self, Product, Target};
 use super::reading;
 use super::recenter;
 use super::report::Measures;
+use super::scenes;
 use super::session::Session;
 use super::stream::STANDARD;
 use super::words;
 
 /// Evaluates a model.
 pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, Fault> {
-    super::scenes::refuse(&arguments.results.writing)?;
+    scenes::refuse(&arguments.results.writing)?;
     let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
     let common = session.common;
     let wanted = !targets.is_empty() || common.json || common.report.is_some();

@@ -63,6 +63,11 @@ impl Target {
         Ok(Self { path: self.path.with_file_name(name), kind: self.kind })
     }
 
+    /// Whether it is a picture, which holds no mesh.
+    pub(crate) fn is_picture(&self) -> bool {
+        self.kind == Kind::Picture
+    }
+
     /// Whether the format has coordinates of single precision.
     pub(crate) fn is_single(&self) -> bool {
         match self.kind {
@@ -80,6 +85,12 @@ impl Target {
             Kind::Picture => "png".into(),
         }
     }
+}
+
+/// Where outputs go, as the end of a summary line.
+pub(crate) fn arrow(targets: &[Target]) -> String {
+    let names: Vec<String> = targets.iter().map(Target::name).collect();
+    if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) }
 }
 
 /// What is to be written: the mesh, how, and how to draw it.

@@ -222,7 +222,10 @@ pub(crate) fn snapping(snapping: &Snapping) -> String {
         counted(snapping.split_edges as usize, "edge"),
         counted(snapping.split_faces as usize, "face"),
         short(snapping.farthest),
-    )
+    ) + &match snapping.collapsed + snapping.walls {
+        0 => String::new(),
+        left_out => format!(", {} left out", counted(left_out as usize, "triangle")),
+    }
 }
 
 /// The power of ten that is well above some distances, and above what rounding does to coordinates there.

@@ -1,21 +1,10 @@
 //! Scenes that stay around what a verb makes of one of their nodes.
 
-use clap::ValueEnum;
 use trisect::io::{Contents, KeptScene, WriteOptions};
 
-use super::argument_groups::Writing;
+use super::argument_groups::{SceneChoice, Writing};
 use super::fault::Fault;
 use super::requests::Request;
-
-/// What becomes of the scene that a part of the first input stands in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(crate) enum SceneChoice {
-    /// The result stands alone
-    #[default]
-    Drop,
-    /// glTF outputs are the scene, with the result at the node
-    Keep,
-}
 
 /// What an input loses that its file holds besides meshes; the first one nothing if its scene stays.
 pub(crate) fn lost(contents: &Contents, writing: &Writing, index: usize) -> Vec<String> {
@@ -42,7 +31,7 @@ pub(crate) fn name_node(requests: &mut [Request], writing: &Writing) -> Result<(
 pub(crate) fn refuse(writing: &Writing) -> Result<(), Fault> {
     if writing.scene == SceneChoice::Keep || writing.node.is_some() {
         return Err(Fault::usage(
-            "--scene and --node are for booleans and convert, whose first input can be a node of a scene",
+            "--scene and --node are for verbs whose first input can be a node of a scene: booleans, cut, split, trim and convert",
         ));
     }
     Ok(())

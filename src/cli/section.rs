@@ -7,7 +7,7 @@ use clap::ArgMatches;
 use serde_json::{Value, json};
 use trisect::exact::Plane;
 use trisect::io::drawing::{self, Layer};
-use trisect::{BooleanOptions, Error, SectionSide, Sections};
+use trisect::{Error, SectionSide, Sections};
 
 use super::combine;
 use super::cut_arguments::{Section, Side};
@@ -18,7 +18,6 @@ use super::operands;
 use super::requests;
 use super::selection;
 use super::session::Session;
-use super::stream::STANDARD;
 use super::words;
 
 /// Makes sections of an input.
@@ -27,11 +26,11 @@ pub(crate) fn run(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
-    let mut requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
     if requests.len() > 1 {
         return Err(Fault::usage("section takes one input; unite several first"));
     }
-    if arguments.output.is_empty() && !session.common.json && session.common.report.is_none() {
+    if arguments.output.is_empty() && !session.is_reported() {
         return Err(Fault::usage(
             "nowhere to put the sections: add -o FILE (*.svg, *.dxf, *.json), or --json for areas alone",
         ));
@@ -41,11 +40,7 @@ pub(crate) fn run(
     let paths = arguments.output.iter().map(std::path::PathBuf::as_path);
     documents::check(paths, session.common, &session.limits)?;
     let control = session.control();
-    for request in &mut requests {
-        let name = request.name();
-        *request = selection::together(request.clone(), &session.limits, &control)
-            .map_err(|error| Fault::from(error.of_operand(0, name)))?;
-    }
+    let requests = selection::joined(requests, &session.limits, &control)?;
     let start = Instant::now();
     let assume_clean = arguments.inputs.using.assume_clean;
     let operands = operands::operands(requests, assume_clean, &session.limits, &control, &session.console)?;
@@ -55,12 +50,7 @@ pub(crate) fn run(
 
     let start = Instant::now();
     let planes = planes(arguments)?;
-    let options =
-        BooleanOptions::new().rule(operand.request.rule).assume_clean(assume_clean).control(control);
-    let options = match session.common.threads {
-        Some(threads) => options.threads(usize::from(threads)),
-        None => options,
-    };
+    let options = session.boolean_options(control).rule(operand.request.rule).assume_clean(assume_clean);
     let sections = Sections::new().side(side(arguments)).options(options).at(&operand.solid, &planes)?;
     let seconds = session.took("run", start);
 
@@ -126,7 +116,7 @@ fn format(path: &Path) -> Result<&'static str, Fault> {
     documents::check_ending(path, &["svg", "dxf", "json"], "sections are written as *.svg, *.dxf or *.json")?;
     let ending = path.extension().and_then(std::ffi::OsStr::to_str).unwrap_or_default().to_ascii_lowercase();
     Ok(match ending.as_str() {
-        "svg" if path != Path::new(STANDARD) => "svg",
+        "svg" => "svg",
         "dxf" => "dxf",
         _ => "json",
     })

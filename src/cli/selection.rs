@@ -51,6 +51,19 @@ pub(crate) fn each(
     Ok(expanded)
 }
 
+/// The inputs, each with all parts that it asks for as one mesh: as many as before.
+pub(crate) fn joined(
+    requests: Vec<Request>,
+    limits: &Limits,
+    control: &Control,
+) -> Result<Vec<Request>, Error> {
+    let one = |(index, request): (usize, Request)| {
+        let name = request.name();
+        together(request, limits, control).map_err(|error| error.of_operand(index, name))
+    };
+    requests.into_iter().enumerate().map(one).collect()
+}
+
 /// The input with all parts that it asks for as one mesh.
 pub(crate) fn together(request: Request, limits: &Limits, control: &Control) -> Result<Request, Error> {
     let Some(pattern) = request.part.clone() else { return Ok(request) };

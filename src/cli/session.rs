@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use serde_json::{Map, Value, json};
-use trisect::Control;
+use trisect::{BooleanOptions, Control};
 
 use super::argument_groups::Common;
 use super::fault::{Exit, Fault, SCHEMA};
@@ -45,6 +45,15 @@ impl<'a> Session<'a> {
     /// The limits of the run, with progress shown on the console.
     pub(crate) fn control(&self) -> Control {
         self.console.watch(self.limits.control())
+    }
+
+    /// Options of booleans under these limits, with as many threads as are asked for.
+    pub(crate) fn boolean_options(&self, control: Control) -> BooleanOptions {
+        let options = BooleanOptions::new().control(control);
+        match self.common.threads {
+            Some(threads) => options.threads(usize::from(threads)),
+            None => options,
+        }
     }
 
     /// Whether anybody reads the report.

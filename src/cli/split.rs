@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::Value;
-use trisect::io::Format;
 use trisect::mesh::Gate;
 use trisect::{BooleanOptions, Expression, Mesh, Outcome, Solid};
 
@@ -15,8 +14,10 @@ use super::cut_arguments::Split;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Operand};
 use super::output::{self, Product, Target};
-use super::report::Measures;
+use super::recenter;
+use super::report::{self, Measures};
 use super::requests::{self, Request};
+use super::scenes;
 use super::selection;
 use super::session::Session;
 use super::words;
@@ -26,15 +27,17 @@ struct Part {
     /// What its files' names end with.
     suffix: String,
     mesh: Mesh,
-    solid: Option<Solid>,
+    measures: Measures,
     /// The operand that each triangle came from.
     operands: Vec<usize>,
 }
 
 impl Part {
     fn of_solid(suffix: String, solid: Solid) -> Self {
-        let (mesh, operands) = (solid.mesh().clone(), vec![0; solid.mesh().triangles.len()]);
-        Self { suffix, mesh, solid: Some(solid), operands }
+        let measures = Measures::of_solid(&solid);
+        let mesh = solid.into_mesh();
+        let operands = vec![0; mesh.triangles.len()];
+        Self { suffix, mesh, measures, operands }
     }
 
     fn of_outcome(suffix: String, outcome: Outcome) -> Self {
@@ -45,59 +48,74 @@ impl Part {
 
 /// Splits an input.
 pub(crate) fn run(arguments: &Split, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
-    let mut requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let mut requests = requests(arguments, matches)?;
+    let writing = &arguments.results.writing;
+    scenes::name_node(&mut requests, writing)?;
+    let targets = output::targets(writing, &arguments.results.drawing, session.common)?;
+    if targets.is_empty() && !session.is_reported() {
+        return Err(Fault::usage(
+            "nowhere to put the parts: add -o FILE, whose name gets a number for each part, or --json",
+        ));
+    }
+    let control = session.control();
+    let requests = selection::joined(requests, &session.limits, &control)?;
+    let write_options =
+        scenes::kept(output::write_options(writing, &session.limits), writing, requests.first())?;
+    // (Their names get ends, which the folder does not mind.)
+    output::probe(&targets, &session.limits)?;
+
+    let start = Instant::now();
+    let assume_clean = arguments.inputs.using.assume_clean;
+    let operands = operands::operands(requests, assume_clean, &session.limits, &control, &session.console)?;
+    session.took("read", start);
+    combine::describe(&operands, Some(writing), session);
+    let start = Instant::now();
+    let options = session
+        .boolean_options(control)
+        .rules(operands.iter().map(|operand| operand.request.rule))
+        .assume_clean(assume_clean);
+    let parts = parts(arguments, &operands, &options, session)?;
+    let seconds = session.took("run", start);
+    let format = operands.first().map(|operand| operand.format);
+    let style = combine::Style { format, options: write_options };
+    write(&arguments.results, &targets, &parts, &style, seconds, session)
+}
+
+/// The input, and the solid that it is cut by if there is one. That is mended as the input is.
+fn requests(arguments: &Split, matches: &ArgMatches) -> Result<Vec<Request>, Fault> {
+    let mut requests = requests::placed_requests(matches)?;
     if requests.len() > 1 {
         return Err(Fault::usage("split takes one input; --by FILE names the solid that it is cut by"));
     }
     if let Some(by) = &arguments.by {
         let (path, part) = chosen::split(by.clone());
         let of_input = requests.first().cloned().ok_or_else(|| Fault::usage("an input is needed"))?;
-        requests.push(Request { path, part, format: None, transforms: Vec::new(), ..of_input });
+        requests.push(Request { path, part, transforms: Vec::new(), ..of_input });
     }
-    let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
-    if targets.is_empty() && !session.common.json && session.common.report.is_none() {
-        return Err(Fault::usage(
-            "nowhere to put the parts: add -o FILE, whose name gets a number for each part, or --json",
-        ));
-    }
-    let control = session.control();
-    for (index, request) in requests.iter_mut().enumerate() {
-        let name = request.name();
-        *request = selection::together(request.clone(), &session.limits, &control)
-            .map_err(|error| Fault::from(error.of_operand(index, name)))?;
-    }
-
-    let start = Instant::now();
-    let assume_clean = arguments.inputs.using.assume_clean;
-    let operands = operands::operands(requests, assume_clean, &session.limits, &control, &session.console)?;
-    session.took("read", start);
-    combine::describe(&operands, Some(&arguments.results.writing), session);
-    let start = Instant::now();
-    let options = BooleanOptions::new()
-        .rules(operands.iter().map(|operand| operand.request.rule))
-        .assume_clean(assume_clean)
-        .control(control);
-    let parts = parts(arguments, &operands, &options)?;
-    let seconds = session.took("run", start);
-    let format = operands.first().map(|operand| operand.format);
-    write(&arguments.results, &targets, &parts, format, seconds, session)
+    requests::name_formats(&mut requests, arguments.inputs.reading.format)?;
+    Ok(requests)
 }
 
-fn parts(arguments: &Split, operands: &[Operand], options: &BooleanOptions) -> Result<Vec<Part>, Fault> {
+fn parts(
+    arguments: &Split,
+    operands: &[Operand],
+    options: &BooleanOptions,
+    session: &mut Session<'_>,
+) -> Result<Vec<Part>, Fault> {
     let [input, tools @ ..] = operands else { return Err(Fault::usage("an input is needed")) };
     if arguments.groups {
         let mesh = input.solid.mesh();
         let groups = mesh.by_group();
-        let part = |(group, mesh): (u32, Mesh)| {
-            let name =
-                input.solid.mesh().groups.list.get(group as usize).map_or("", |group| group.name.as_str());
-            let operands = vec![group as usize; mesh.triangles.len()];
-            Part { suffix: format!("-{}", file_name(name, group)), solid: closed(&mesh), mesh, operands }
+        let part = |(group, surface): (u32, Mesh)| {
+            let name = mesh.groups.list.get(group as usize).map_or("", |group| group.name.as_str());
+            let operands = vec![group as usize; surface.triangles.len()];
+            let suffix = format!("-{}", file_name(name, group));
+            Part { suffix, measures: measures_of_group(&surface), mesh: surface, operands }
         };
         return Ok(groups.into_iter().map(part).collect());
     }
     let Some(tool) = tools.first() else {
-        return Ok(numbered("", input_bodies(input, options)?));
+        return Ok(numbered("", input_bodies(operands, input, options, session)?));
     };
     let both = || vec![Expression::Operand(0), Expression::Operand(1)];
     let cells = [
@@ -106,6 +124,12 @@ fn parts(arguments: &Split, operands: &[Operand], options: &BooleanOptions) -> R
         Expression::Difference(vec![Expression::Operand(1), Expression::Operand(0)]),
     ];
     let outcomes = options.evaluate_all(&cells, [&input.solid, &tool.solid])?;
+    if let Some(outcome) = outcomes.first() {
+        combine::warn_of_inward(outcome, operands, session);
+        if let Some(warning) = report::nearly_flush(outcome.nearly_flush()) {
+            session.warn(warning);
+        }
+    }
     let named = outcomes.into_iter().zip(["-difference", "-intersection", "-reverse"]);
     let parts = named.filter(|(outcome, _)| !outcome.solid().is_empty()).flat_map(|(outcome, name)| {
         if arguments.explode {
@@ -117,16 +141,24 @@ fn parts(arguments: &Split, operands: &[Operand], options: &BooleanOptions) -> R
     Ok(parts.collect())
 }
 
-/// A group that is closed by itself, as a solid.
-fn closed(mesh: &Mesh) -> Option<Solid> {
-    Gate::new().as_is(true).solid(mesh.clone()).ok()
+/// The measures of a group, those of a solid if it is closed by itself.
+fn measures_of_group(mesh: &Mesh) -> Measures {
+    let solid = Gate::new().as_is(true).solid(mesh.clone());
+    solid.map_or_else(|_| Measures::of_mesh(mesh), |solid| Measures::of_solid(&solid))
 }
 
 /// The bodies of an input, which is resolved where it crosses itself.
-fn input_bodies(input: &Operand, options: &BooleanOptions) -> Result<Vec<Solid>, Fault> {
+fn input_bodies(
+    operands: &[Operand],
+    input: &Operand,
+    options: &BooleanOptions,
+    session: &mut Session<'_>,
+) -> Result<Vec<Solid>, Fault> {
     let crosses = input.crossings.as_ref().is_some_and(|crossings| crossings.count + crossings.touching > 0);
     if crosses {
-        return Ok(options.resolve(&input.solid)?.solid().bodies());
+        let outcome = options.resolve(&input.solid)?;
+        combine::warn_of_inward(&outcome, operands, session);
+        return Ok(outcome.solid().bodies());
     }
     Ok(input.solid.bodies())
 }
@@ -153,7 +185,7 @@ fn write(
     results: &Results,
     targets: &[Target],
     parts: &[Part],
-    format: Option<Format>,
+    style: &combine::Style,
     seconds: f64,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
@@ -163,24 +195,24 @@ fn write(
     for part in parts {
         let targets: Vec<Target> =
             targets.iter().map(|target| target.with_suffix(&part.suffix)).collect::<Result<_, _>>()?;
+        let mesh = recenter::placed(&part.mesh, &results.writing, session);
+        let mesh = mesh.as_ref();
         let picture = || {
             let operands = part.operands.iter().copied();
             let colours = output::colours(results.drawing.png_color.unwrap_or(Colours::Operand), operands);
-            trisect::render::mesh(&part.mesh, &output::view(&results.drawing, format), colours.as_deref())
+            trisect::render::mesh(mesh, &output::view(&results.drawing, style.format), colours.as_deref())
         };
-        let options = output::write_options(&results.writing, &session.limits);
-        let product = Product { mesh: &part.mesh, options, picture: &picture, documents: &[] };
+        let options = style.options.clone();
+        let product = Product { mesh, options, picture: &picture, documents: &[] };
         let (written, warnings) = output::write_all(&targets, &product, &session.limits)?;
         warnings.into_iter().for_each(|warning| session.warn(warning));
         outputs.extend(written);
-        let measures = part.solid.as_ref().map_or_else(|| Measures::of_mesh(&part.mesh), Measures::of_solid);
-        let mut object = measures.to_json();
+        let mut object = part.measures.to_json();
         let name = part.suffix.trim_start_matches('-').to_owned();
         object.insert("part".into(), name.clone().into());
         described.push(object.into());
-        let names: Vec<String> = targets.iter().map(Target::name).collect();
-        let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
-        session.console.say(&format!("{name}: {}{arrow}", measures.line()));
+        let arrow = output::arrow(&targets);
+        session.console.say(&format!("{name}: {}{arrow}", part.measures.line()));
     }
     session.took("write", start);
     session.note("results", described);

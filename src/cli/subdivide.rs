@@ -1,5 +1,6 @@
 //! `subdivide`: a cage refined, or its limit surface as a mesh.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -14,8 +15,11 @@ use super::cages;
 use super::documents;
 use super::fault::{Exit, Fault};
 use super::output::{self, Product, Target};
+use super::recenter;
 use super::report::Measures;
+use super::scenes;
 use super::session::Session;
+use super::surface::Normals;
 use super::words;
 
 /// What subdivision gave.
@@ -37,11 +41,10 @@ pub(crate) fn run(
     let (cage_paths, mesh_paths) =
         if keeps_cage { cages::sorted(outputs)? } else { (Vec::new(), outputs.clone()) };
     let writing = Writing { output: mesh_paths, ..arguments.results.writing.clone() };
-    super::scenes::refuse(&writing)?;
+    scenes::refuse(&writing)?;
     let targets = output::targets(&writing, drawing, session.common)?;
     documents::check(cage_paths.iter().map(|path| -> &Path { path }), session.common, &session.limits)?;
-    if targets.is_empty() && cage_paths.is_empty() && !session.common.json && session.common.report.is_none()
-    {
+    if targets.is_empty() && cage_paths.is_empty() && !session.is_reported() {
         return Err(Fault::usage(
             "nowhere to put the result: add -o FILE, --png FILE, --json or --report FILE",
         ));
@@ -89,6 +92,12 @@ fn write(
     (drawing, session): (&Drawing, &mut Session<'_>),
 ) -> Result<Vec<Value>, Fault> {
     let start = Instant::now();
+    if !cage_paths.is_empty() && (writing.recenter || writing.normals != Normals::Keep) {
+        session.warn("cages are written as they are: --recenter and --normals are for meshes");
+    }
+    let mesh =
+        if targets.is_empty() { Cow::Borrowed(mesh) } else { recenter::placed(mesh, writing, session) };
+    let mesh = mesh.as_ref();
     let cage = match made {
         Made::Cage(cage) => Some(&**cage),
         Made::Mesh(_) => None,

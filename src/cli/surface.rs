@@ -4,8 +4,6 @@ use std::borrow::Cow;
 
 use trisect::{CutFaces, FaceGroup, Material, Mesh, Solid};
 
-use super::arguments::Combine;
-
 /// Which normals outputs have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Normals {
@@ -62,8 +60,12 @@ pub(crate) fn cut_material(text: &str) -> Result<String, String> {
 }
 
 /// What the cut faces show. A material's name means one of the operands, or else a new one.
-pub(crate) fn cut_faces<'a>(arguments: &Combine, solids: impl Iterator<Item = &'a Solid>) -> CutFaces {
-    let faces = match arguments.cut_material.as_deref() {
+pub(crate) fn cut_faces<'a>(
+    material: Option<&str>,
+    uv: Option<CutUv>,
+    solids: impl Iterator<Item = &'a Solid>,
+) -> CutFaces {
+    let faces = match material {
         None | Some("keep") => CutFaces::tool(),
         Some("body") => CutFaces::body(),
         Some(name) => {
@@ -78,7 +80,7 @@ pub(crate) fn cut_faces<'a>(arguments: &Combine, solids: impl Iterator<Item = &'
             CutFaces::group(known.unwrap_or_else(new))
         }
     };
-    match arguments.cut_uv {
+    match uv {
         None => faces,
         Some(CutUv::Planar(density)) => faces.planar(density),
         Some(CutUv::Boxed(density)) => faces.boxed(density),

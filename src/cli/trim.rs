@@ -3,81 +3,117 @@
 use std::time::Instant;
 
 use clap::ArgMatches;
-use trisect::{BooleanOptions, TrimSide};
+use trisect::control::Reservation;
+use trisect::io::Format;
+use trisect::{Control, Error, Mesh, TrimSide};
 
-use super::argument_groups::Colours;
+use super::argument_groups::{Colours, Writing};
 use super::combine;
 use super::cut_arguments::Trim;
 use super::fault::{Exit, Fault};
+use super::mended;
 use super::operands;
-use super::output::{self, Product, Target};
+use super::output::{self, Product};
 use super::reading::{self, Input};
 use super::recenter;
 use super::report::Measures;
-use super::requests;
+use super::requests::{self, Request};
 use super::scenes;
 use super::selection;
 use super::session::Session;
+use super::usable;
 use super::words;
 
 /// Trims the first input by the second.
 pub(crate) fn run(arguments: &Trim, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
     let mut requests = requests::requests(matches, arguments.inputs.reading.format)?;
-    let targets = output::targets(&arguments.results.writing, &arguments.results.drawing, session.common)?;
-    if targets.is_empty() && !session.common.json && session.common.report.is_none() {
+    let writing = &arguments.results.writing;
+    scenes::name_node(&mut requests, writing)?;
+    let targets = output::targets(writing, &arguments.results.drawing, session.common)?;
+    if targets.is_empty() && !session.is_reported() {
         return Err(Fault::usage("nowhere to put the result: add -o FILE, --png FILE or --json"));
     }
     let control = session.control();
-    for (index, request) in requests.iter_mut().enumerate() {
-        let name = request.name();
-        *request = selection::together(request.clone(), &session.limits, &control)
-            .map_err(|error| Fault::from(error.of_operand(index, name)))?;
-    }
-    let [sheet, by] = <[_; 2]>::try_from(requests).map_err(|_| {
+    let requests = selection::joined(requests, &session.limits, &control)?;
+    let write_options =
+        scenes::kept(output::write_options(writing, &session.limits), writing, requests.first())?;
+    let [request, by] = <[_; 2]>::try_from(requests).map_err(|_| {
         Fault::usage("trim takes two inputs: the surface, then the solid that it is trimmed by")
     })?;
     output::probe(&targets, &session.limits)?;
 
     let start = Instant::now();
-    let Input { mesh, format, mut warnings, contents, reserved: _reserved } =
-        reading::read(&sheet, &session.limits, &control)
-            .map_err(|error| Fault::from(error.of_operand(0, sheet.name())))?;
-    warnings.extend(scenes::lost(&contents, &arguments.results.writing, 0));
-    for warning in warnings {
-        session.warn(format!("{}: {warning}", sheet.name()));
-    }
-    session.console.say(&format!("{}: {}", sheet.name(), Measures::of_mesh(&mesh).line()));
+    let sheet = sheet(&request, writing, &control, session)?;
     let assume_clean = arguments.inputs.using.assume_clean;
     let solids = operands::operands(vec![by], assume_clean, &session.limits, &control, &session.console)?;
     session.took("read", start);
-    combine::describe(&solids, Some(&arguments.results.writing), session);
+    combine::describe(&solids, Some(writing), session);
     let Some(by) = solids.first() else { return Err(Fault::usage("two inputs are needed")) };
 
     let start = Instant::now();
     let side = if arguments.inside { TrimSide::Inside } else { TrimSide::Outside };
-    let options = BooleanOptions::new().rule(by.request.rule).assume_clean(assume_clean).control(control);
-    let trimmed = options.trim(&mesh, &by.solid, side)?;
+    let options = session.boolean_options(control).rule(by.request.rule).assume_clean(assume_clean);
+    let trimmed = options.trim(&sheet.mesh, &by.solid, side)?;
     let seconds = session.took("run", start);
     let measures = Measures::of_mesh(&trimmed.mesh);
     session.note("result", measures.to_json());
 
     let start = Instant::now();
-    let placed = recenter::placed(&trimmed.mesh, &arguments.results.writing, session);
+    let placed = recenter::placed(&trimmed.mesh, writing, session);
     let placed = placed.as_ref();
     let drawing = &arguments.results.drawing;
     let picture = || {
         let operands = placed.triangles.iter().map(|_| 0);
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
-        trisect::render::mesh(placed, &output::view(drawing, Some(format)), colours.as_deref())
+        trisect::render::mesh(placed, &output::view(drawing, Some(sheet.format)), colours.as_deref())
     };
-    let options = output::write_options(&arguments.results.writing, &session.limits);
-    let product = Product { mesh: placed, options, picture: &picture, documents: &[] };
+    let product = Product { mesh: placed, options: write_options, picture: &picture, documents: &[] };
     let (outputs, warnings) = output::write_all(&targets, &product, &session.limits)?;
     warnings.into_iter().for_each(|warning| session.warn(warning));
     session.note("outputs", outputs);
     session.took("write", start);
-    let names: Vec<String> = targets.iter().map(Target::name).collect();
-    let arrow = if names.is_empty() { String::new() } else { format!(" -> {}", names.join(", ")) };
+    let arrow = output::arrow(&targets);
     session.console.say(&format!("result: {} ({}){arrow}", measures.line(), words::time(seconds)));
     Ok(Exit::Fine)
+}
+
+/// The surface that is trimmed.
+struct Sheet {
+    mesh: Mesh,
+    format: Format,
+    /// Held while the mesh is.
+    _reserved: Reservation,
+}
+
+/// Reads the surface, joins its vertices and turns its faces where that is asked for, and says what it is.
+fn sheet(
+    request: &Request,
+    writing: &Writing,
+    control: &Control,
+    session: &mut Session<'_>,
+) -> Result<Sheet, Fault> {
+    let of_sheet = |error: Error| error.of_operand(0, request.name());
+    let Input { mesh, format, mut warnings, contents, reserved } =
+        reading::read(request, &session.limits, control).map_err(of_sheet)?;
+    warnings.extend(scenes::lost(&contents, writing, 0));
+    let repairs = request.repairs;
+    if repairs.closed_parts || repairs.fill_holes.is_some() {
+        warnings.push(
+            "--closed-parts and --fill-holes are for the solid: the surface that is trimmed stays open"
+                .into(),
+        );
+    }
+    for warning in warnings {
+        session.warn(format!("{}: {warning}", request.name()));
+    }
+    let (mesh, welded) = usable::welded(mesh, repairs.weld).map_err(of_sheet)?;
+    let (mesh, turned) = if repairs.orient { usable::oriented(mesh) } else { (mesh, false) };
+    session.console.say(&format!(
+        "{}: {}{}{}",
+        request.name(),
+        Measures::of_mesh(&mesh).line(),
+        mended::welded(welded),
+        if turned { ", turned outwards" } else { "" },
+    ));
+    Ok(Sheet { mesh, format, _reserved: reserved })
 }

@@ -45,6 +45,11 @@ fn take<T: DeserializeOwned>(object: &mut Map<String, Value>, key: &str) -> Resu
     }
 }
 
+/// The file that a node names.
+fn file_of(object: &mut Map<String, Value>) -> Result<String, Error> {
+    take(object, "file")?.ok_or_else(|| fault("`file` is missing"))
+}
+
 pub(super) fn model(text: &str, folder: &Path) -> Result<Model, Error> {
     let value: Value = serde_json::from_str(text).map_err(|error| fault(format!("not JSON: {error}")))?;
     let Value::Object(mut object) = value else {
@@ -263,11 +268,7 @@ impl ModelReader<'_> {
             return primitive.map(Kind::Primitive).map_err(|what| fault(what).in_node(label));
         }
         let kind = match name {
-            "mesh" => {
-                let file: Option<String> = take(&mut object, "file").map_err(within(label))?;
-                let file = file.ok_or_else(|| fault("`file` is missing").in_node(label))?;
-                Kind::Mesh(file.into())
-            }
+            "mesh" => Kind::Mesh(file_of(&mut object).map_err(within(label))?.into()),
             "half_space" => {
                 let keys = Value::Object(std::mem::take(&mut object));
                 Kind::HalfSpace(HalfSpace::parse(keys).map_err(fault).map_err(within(label))?)
@@ -294,8 +295,7 @@ impl ModelReader<'_> {
                 region_of(region).map_err(within(label))?
             }
             "parametric" => {
-                let file: Option<String> = take(&mut object, "file").map_err(within(label))?;
-                let file = file.ok_or_else(|| fault("`file` is missing").in_node(label))?;
+                let file = file_of(&mut object).map_err(within(label))?;
                 self.described(&file).map_err(within(label))?
             }
             "freeform" => self.cage(std::mem::take(&mut object)).map_err(within(label))?,

@@ -34,6 +34,51 @@ fn a_file_is_cut_in_two() {
 }
 
 #[test]
+fn a_picture_is_no_piece() {
+    let folder = folder();
+    folder.run("cut block.off --plane z=1 -o low.off -o low.png --png-size 16x16").exits(0);
+    assert_eq!([volume(&folder, "low-above.off"), volume(&folder, "low-below.off")], [18.0, 6.0]);
+    folder.run("cut block.off --plane z=1 -o a.off -o b.off --png c.png --png-size 16x16").exits(0);
+    assert_eq!([volume(&folder, "a.off"), volume(&folder, "b.off")], [18.0, 6.0]);
+    assert!(folder.path("c-above.png").exists() && folder.path("c-below.png").exists());
+}
+
+#[test]
+fn parts_get_the_normals_and_the_place_that_are_asked_for() {
+    let folder = folder();
+    folder.run("split two.off --recenter --normals flat -o part.ply").exits(0).says("moved by");
+    for name in ["part-1.ply", "part-2.ply"] {
+        let mesh = Mesh::load(folder.path(name)).expect("a mesh");
+        let bounds = mesh.bounds().expect("a body");
+        assert!((0..3).all(|axis| (bounds.low[axis] + bounds.high[axis]).abs() < 1e-6), "{bounds:?}");
+        assert!(mesh.attributes.iter().any(|attribute| attribute.name == "NORMAL"));
+    }
+}
+
+#[test]
+fn what_is_wound_inwards_and_lost_is_told() {
+    let folder = folder();
+    let mut both = primitives::cuboid([0.0; 3], [4.0; 3]).expect("a box");
+    let mut inwards = primitives::cuboid([3.0; 3], [5.0; 3]).expect("a box");
+    inwards.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    both.append(&inwards).expect("few vertices");
+    both.save(folder.path("both.off")).expect("written");
+    for line in ["split both.off -o part.off", "split both.off --by block.off -o cell.off"] {
+        folder.run(line).exits(0).says("is wound around inwards");
+    }
+}
+
+#[test]
+fn the_solid_that_splits_has_the_format_that_is_said() {
+    let folder = folder();
+    for name in ["block", "two"] {
+        folder.write(&format!("{name}.dat"), folder.read(&format!("{name}.off")));
+    }
+    folder.run("split block.dat --by two.dat --format off -o cell.off").exits(0);
+    assert_eq!(volume(&folder, "cell-intersection.off"), 1.0);
+}
+
+#[test]
 fn several_planes_make_pieces() {
     let folder = folder();
     folder.run("cut block.off --plane x=1 --plane y=1 --cap cut#d08030 -o piece.obj").exits(0);
@@ -70,6 +115,7 @@ fn sections_are_written_in_three_formats() {
     assert_eq!(folder.read("s.dxf").matches("POLYLINE").count(), 4);
     let drawing: serde_json::Value = serde_json::from_str(&folder.read("s.json")).expect("JSON");
     assert_eq!(drawing["layers"][1]["polygons"][0]["outline"].as_array().expect("points").len(), 4);
+    folder.run("section block.off --plane x=1 --axis y -o s.svg").exits(1).says("--axis");
     folder.run("section block.off --plane x=1 -o s.stl").exits(1).says("*.svg, *.dxf or *.json");
 }
 
@@ -106,4 +152,16 @@ fn an_open_surface_is_trimmed() {
     assert_eq!([area("in.obj"), area("out.obj")], [6.0, 94.0]);
     folder.run("trim sheet.obj block.off -o in.obj").exits(1).says("--inside");
     folder.run("trim sheet.obj --inside -o in.obj").exits(1).says("two inputs");
+    // What is mended in the surface.
+    let halves = vec![
+        [-1.0, -1.0, 1.0],
+        [9.0, -1.0, 1.0],
+        [9.0, 9.0, 1.0],
+        [-1.0, -1.0, 1.001],
+        [9.0, 9.0, 1.001],
+        [-1.0, 9.0, 1.001],
+    ];
+    Mesh::new(halves, vec![[0, 1, 2], [3, 4, 5]]).save(folder.path("torn.obj")).expect("written");
+    folder.run("trim torn.obj --weld 0.01 block.off --inside -o in.obj").exits(0).says("2 vertices welded");
+    folder.run("trim sheet.obj --fill-holes block.off --inside -o in.obj").exits(0).says("stays open");
 }

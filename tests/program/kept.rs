@@ -77,6 +77,23 @@ fn a_scene_stays_around_the_node_that_is_cut() {
 }
 
 #[test]
+fn cuts_splits_and_trims_keep_the_scene_too() {
+    let folder = workshop();
+    scene(&folder);
+    for (line, output) in [
+        ("cut scene.gltf#body --plane x=5.5 --keep below -o cut.gltf", "cut.gltf"),
+        ("split scene.gltf --node body -o part.gltf", "part-1.gltf"),
+        ("trim scene.gltf --node body bit.obj --outside -o trimmed.gltf", "trimmed.gltf"),
+    ] {
+        folder.run(&format!("{line} --scene keep --strict")).exits(0);
+        let document: Value = serde_json::from_str(&folder.read(output)).expect("JSON");
+        let nodes = document["nodes"].as_array().expect("nodes");
+        assert_eq!((nodes.len(), &nodes[3]["camera"]), (4, &json!(0)), "{line}");
+        folder.run(line).exits(0).says("1 camera not kept");
+    }
+}
+
+#[test]
 fn what_the_mesh_of_a_node_says_goes_to_the_new_one() {
     let folder = workshop();
     scene(&folder);

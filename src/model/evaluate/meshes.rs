@@ -29,6 +29,11 @@ struct Leaves {
 /// bound. What is left is evaluated by itself first.
 const MOST_OPERATIONS: usize = 4096;
 
+/// The error of a node that has no end, and what to do with it instead.
+fn unbounded(what: &str, instead: &str) -> Error {
+    Error::Model(format!("{what} is unbounded and has no mesh: {instead}, or evaluate it as a field"))
+}
+
 impl State<'_> {
     /// The node as a mesh: by the exact booleans where it is an operation.
     pub(super) fn exact(&mut self, node: usize) -> Result<Arc<Solid>, Error> {
@@ -58,13 +63,11 @@ impl State<'_> {
                     self.of_tree(operation, &operands, label)?
                 }
                 Kind::Complement(_) => {
-                    let what = "a complement is unbounded and has no mesh: use `difference`, or evaluate it as a field";
-                    return Err(Error::Model(what.into()).in_node(label));
+                    return Err(unbounded("a complement", "use `difference`").in_node(label));
                 }
                 Kind::HalfSpace(_) => {
-                    let what = "a half-space is unbounded and has no mesh: use it in an `intersection`, take it off in a \
-                                `difference`, or evaluate it as a field";
-                    return Err(Error::Model(what.into()).in_node(label));
+                    let instead = "use it in an `intersection`, take it off in a `difference`";
+                    return Err(unbounded("a half-space", instead).in_node(label));
                 }
                 Kind::Reference(_, target) => (*self.operand_solid(*target)?).mesh().clone(),
                 Kind::Mesh(file) => {
@@ -74,13 +77,10 @@ impl State<'_> {
                     let tolerance = self.tolerance(node, primitive.diagonal());
                     primitive.mesh(tolerance).map_err(|error| error.in_node(label))?
                 }
-                Kind::Formula { .. } | Kind::Contour(_) => {
-                    // Transformed already.
-                    return self.extracted(node);
-                }
+                // (Transformed already.)
+                Kind::Formula { .. } | Kind::Contour(_) => return self.extracted(node),
                 Kind::Parametric(solid) => {
-                    let mesh = solid.mesh(self.given_tolerance(node), control);
-                    mesh.map_err(|error| error.in_node(label))?
+                    solid.mesh(self.given_tolerance(node), control).map_err(|error| error.in_node(label))?
                 }
                 #[cfg(feature = "subdivision")]
                 Kind::Cage(cage) => self.limit_mesh(node, cage)?,
