@@ -53,6 +53,37 @@ impl Solid {
     }
 }
 
+/// The pairs of triangles of a solid that may cross or lie on each other, the lower one first. Computed once and remembered.
+///
+/// # Errors
+/// Only limits.
+pub(in crate::boolean) fn near_pairs<'a>(
+    solid: &'a Solid,
+    runner: Runner<'_>,
+) -> Result<&'a [[u32; 2]], Error> {
+    if let Some(known) = solid.known_near_pairs() {
+        return Ok(known);
+    }
+    let Some(bounds) = solid.bounds() else { return Ok(&[]) };
+    let frame = Frame::of(bounds.low, bounds.high);
+    let (pairs, _) = find_near(solid.mesh(), &bounds, &frame, runner)?;
+    Ok(solid.remember_near_pairs(pairs))
+}
+
+/// The same, looked for, and the boxes of all triangles.
+fn find_near(
+    mesh: &Mesh,
+    bounds: &Bounds,
+    frame: &Frame,
+    runner: Runner<'_>,
+) -> Result<(Vec<[u32; 2]>, BoxTree), Error> {
+    let (tree, neighbours) =
+        runner.both(|| tree_of(mesh, frame), || Neighbours::new(mesh, bounds.largest()));
+    let may_meet = |pair: [u32; 2]| neighbours.may_meet(pair);
+    let pairs = self_pairs(mesh, &tree, frame, runner, &neighbours, may_meet)?;
+    Ok((pairs, tree))
+}
+
 /// Finds all crossings of a surface with itself.
 fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     let mesh = solid.mesh();
@@ -60,9 +91,13 @@ fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     let largest = bounds.largest();
     // 1. Pairs that are near one another and not plainly apart: none, nearly always.
     let frame = Frame::of(bounds.low, bounds.high);
-    let (tree, neighbours) = runner.both(|| tree_of(mesh, &frame), || Neighbours::new(mesh, largest));
-    let may_meet = |pair: [u32; 2]| neighbours.may_meet(pair);
-    let pairs = self_pairs(mesh, &tree, &frame, runner, &neighbours, may_meet)?;
+    let (pairs, tree) = match solid.known_near_pairs() {
+        Some(pairs) => (pairs, None),
+        None => {
+            let (pairs, tree) = find_near(mesh, &bounds, &frame, runner)?;
+            (solid.remember_near_pairs(pairs), Some(tree))
+        }
+    };
     let part = tolerance_of_one(&mesh.positions);
     let mut result = SelfCrossings { tolerance: part * largest, ..SelfCrossings::default() };
     if pairs.is_empty() {
@@ -71,6 +106,7 @@ fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     // 2. Those that cross or touch.
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
     let complex = Complex::alone(operand, largest);
+    let tree = tree.unwrap_or_else(|| tree_of(mesh, &frame));
     let surface = Surface::new(&complex, tree, frame, &bounds, part);
     let found = runner.pieces(pairs.len(), 4096, |range| {
         pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
