@@ -48,7 +48,7 @@ impl Solid {
         if let Some(known) = self.known_self_crossings() {
             return Ok(known);
         }
-        let found = find(self, Runner::new(control, true))?;
+        let found = find(self, Runner::new(control, true), |_| true)?;
         Ok(self.remember_self_crossings(found))
     }
 }
@@ -84,8 +84,34 @@ fn find_near(
     Ok((pairs, tree))
 }
 
-/// Finds all crossings of a surface with itself.
-fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
+/// Whether a solid crosses itself nowhere deeper than a few roundings, nor lies on itself. Stops at the first place that tells
+/// otherwise; what it then knows is not all, and not remembered.
+///
+/// # Errors
+/// Only limits.
+pub(in crate::boolean) fn is_nearly_simple(solid: &Solid, control: &Control) -> Result<bool, Error> {
+    if let Some(known) = solid.known_self_crossings() {
+        return Ok(known.is_nearly_simple());
+    }
+    let found = find(solid, Runner::new(control, true), SelfCrossings::is_nearly_simple)?;
+    let is_simple = found.is_nearly_simple();
+    if is_simple {
+        solid.remember_self_crossings(found);
+    }
+    Ok(is_simple)
+}
+
+/// Pairs that one thread examines before the limits are checked.
+const PAIRS_AT_ONCE: usize = 1024;
+/// Pairs that are examined before it is asked whether to go on: several for each thread.
+const PAIRS_IN_A_ROW: usize = 1 << 14;
+
+/// Finds all crossings of a surface with itself, or some: as long as `go_on` accepts what was found so far.
+fn find(
+    solid: &Solid,
+    runner: Runner<'_>,
+    go_on: impl Fn(&SelfCrossings) -> bool,
+) -> Result<SelfCrossings, Error> {
     let mesh = solid.mesh();
     let Some(bounds) = solid.bounds() else { return Ok(SelfCrossings::default()) };
     let largest = bounds.largest();
@@ -108,20 +134,25 @@ fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     let complex = Complex::alone(operand, largest);
     let tree = tree.unwrap_or_else(|| tree_of(mesh, &frame));
     let surface = Surface::new(&complex, tree, frame, &bounds, part);
-    let found = runner.pieces(pairs.len(), 4096, |range| {
-        pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
-    })?;
-    for found in found.into_iter().flatten() {
-        let Found::Crossing(found) = found else {
-            result.touching += 1;
-            continue;
-        };
-        if found.real {
-            result.count += 1;
-            result.shallow += usize::from(found.shallow);
-            result.places.push(found.crossing);
-        } else {
-            result.tolerated += 1;
+    for pairs in pairs.chunks(PAIRS_IN_A_ROW) {
+        let found = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
+            pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
+        })?;
+        for found in found.into_iter().flatten() {
+            let Found::Crossing(found) = found else {
+                result.touching += 1;
+                continue;
+            };
+            if found.real {
+                result.count += 1;
+                result.shallow += usize::from(found.shallow);
+                result.places.push(found.crossing);
+            } else {
+                result.tolerated += 1;
+            }
+        }
+        if !go_on(&result) {
+            break;
         }
     }
     result.places.sort_by(|x, y| y.depth.total_cmp(&x.depth).then(x.triangles.cmp(&y.triangles)));
