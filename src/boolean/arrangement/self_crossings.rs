@@ -77,8 +77,7 @@ fn find_near(
     frame: &Frame,
     runner: Runner<'_>,
 ) -> Result<(Vec<[u32; 2]>, BoxTree), Error> {
-    let (tree, neighbours) =
-        runner.both(|| tree_of(mesh, frame), || Neighbours::new(mesh, bounds.largest()));
+    let (tree, neighbours) = runner.both(|| tree_of(mesh, frame), || Neighbours::new(mesh, bounds.largest()));
     let may_meet = |pair: [u32; 2]| neighbours.may_meet(pair);
     let pairs = self_pairs(mesh, &tree, frame, runner, &neighbours, may_meet)?;
     Ok((pairs, tree))
@@ -103,8 +102,8 @@ pub(in crate::boolean) fn is_nearly_simple(solid: &Solid, control: &Control) -> 
 
 /// Pairs that one thread examines before the limits are checked.
 const PAIRS_AT_ONCE: usize = 1024;
-/// Pairs that are examined before it is asked whether to go on: several for each thread.
-const PAIRS_IN_A_ROW: usize = 1 << 14;
+/// Pairs that are examined before it is asked for the first time whether to go on; then four times as many, and so on.
+const PAIRS_AT_FIRST: usize = 256;
 
 /// Finds all crossings of a surface with itself, or some: as long as `go_on` accepts what was found so far.
 fn find(
@@ -134,7 +133,10 @@ fn find(
     let complex = Complex::alone(operand, largest);
     let tree = tree.unwrap_or_else(|| tree_of(mesh, &frame));
     let surface = Surface::new(&complex, tree, frame, &bounds, part);
-    for pairs in pairs.chunks(PAIRS_IN_A_ROW) {
+    let (mut rest, mut next) = (pairs, PAIRS_AT_FIRST);
+    while !rest.is_empty() && go_on(&result) {
+        let (pairs, after) = rest.split_at(next.min(rest.len()));
+        (rest, next) = (after, 4 * next);
         let found = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
             pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
         })?;
@@ -150,9 +152,6 @@ fn find(
             } else {
                 result.tolerated += 1;
             }
-        }
-        if !go_on(&result) {
-            break;
         }
     }
     result.places.sort_by(|x, y| y.depth.total_cmp(&x.depth).then(x.triangles.cmp(&y.triangles)));
@@ -249,7 +248,7 @@ impl<'a> Surface<'a> {
                 return Some(Crossing { crossing, real: true, shallow: false });
             }
         };
-        let depth = depth(a, b).min(depth(b, a)).min(distance(&segment[0], &segment[1]));
+        let depth = overlap(a, b).min(distance(&segment[0], &segment[1]));
         let place = std::array::from_fn(|k| 0.5 * segment[0][k] + 0.5 * segment[1][k]);
         let own = largest_coordinate(&segment[0]).max(largest_coordinate(&segment[1]));
         let tolerance = self.part * size_at_hand(self.largest, own);
@@ -358,13 +357,28 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// How far a triangle reaches to the shorter side of another's plane.
-fn depth(t: &[Corner; 3], plane: &[Corner; 3]) -> f64 {
-    let Some(normal) = unit_normal(plane) else { return 0.0 };
-    let heights = [0, 1, 2].map(|k| height(&normal, &plane[0].position, &t[k].position));
-    let above = heights.iter().fold(0.0f64, |reach, &h| reach.max(h));
-    let below = heights.iter().fold(0.0f64, |reach, &h| reach.max(-h));
-    above.min(below)
+/// How far one of two triangles would have to be moved at most for them to come apart: the smallest overlap along their normals and
+/// along what is perpendicular to a side of each. (Normals alone say nothing of needles, which have any.)
+fn overlap(a: &[Corner; 3], b: &[Corner; 3]) -> f64 {
+    let sides = |t: &[Corner; 3]| [0, 1, 2].map(|k| difference(&t[(k + 1) % 3].position, &t[k].position));
+    let (of_a, of_b) = (sides(a), sides(b));
+    let across = of_a.iter().flat_map(|x| of_b.iter().filter_map(|y| unit_cross(x, y)));
+    let axes = [a, b].into_iter().filter_map(unit_normal).chain(across);
+    // (Two without area have no axis, and are nowhere apart from a line.)
+    axes.map(|axis| overlap_along(&axis, a, b)).reduce(f64::min).unwrap_or(0.0)
+}
+
+/// How far one of two triangles would have to be moved along an axis for them to come apart.
+fn overlap_along(axis: &[f64; 3], a: &[Corner; 3], b: &[Corner; 3]) -> f64 {
+    let reach = |t: &[Corner; 3]| {
+        let heights = [0, 1, 2].map(|k| height(axis, &a[0].position, &t[k].position));
+        (
+            heights.iter().copied().fold(f64::INFINITY, f64::min),
+            heights.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        )
+    };
+    let ((low, high), (other_low, other_high)) = (reach(a), reach(b));
+    (high - other_low).min(other_high - low).max(0.0)
 }
 
 fn height(normal: &[f64; 3], origin: &[f64; 3], point: &[f64; 3]) -> f64 {
@@ -380,15 +394,23 @@ fn distance(p: &[f64; 3], q: &[f64; 3]) -> f64 {
     norm(&std::array::from_fn(|k| q[k] - p[k]))
 }
 
+fn difference(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| p[k] - q[k])
+}
+
 fn unit_normal(t: &[Corner; 3]) -> Option<[f64; 3]> {
-    let edge = |i: usize| -> [f64; 3] { std::array::from_fn(|k| t[i].position[k] - t[0].position[k]) };
-    let (mut u, mut v) = (edge(1), edge(2));
-    let size = u.iter().chain(&v).fold(0.0f64, |size, x| size.max(x.abs()));
-    if size == 0.0 {
-        return None;
-    }
-    u = u.map(|x| x / size);
-    v = v.map(|x| x / size);
+    let edge = |i: usize| difference(&t[i].position, &t[0].position);
+    unit_cross(&edge(1), &edge(2))
+}
+
+/// The direction of a cross product; `None` where it vanishes.
+fn unit_cross(u: &[f64; 3], v: &[f64; 3]) -> Option<[f64; 3]> {
+    // Each by its own size, so that products neither overflow nor vanish.
+    let scaled = |v: &[f64; 3]| {
+        let size = v.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        (size > 0.0).then(|| v.map(|x| x / size))
+    };
+    let (u, v) = (scaled(u)?, scaled(v)?);
     let cross: [f64; 3] =
         std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
     let length = norm(&cross);

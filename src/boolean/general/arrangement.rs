@@ -72,7 +72,8 @@ impl Crossed {
         let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
         let is_simple = |solid: &&Solid| solid.is_simple_complex();
         let all_edges = (!operands.iter().all(is_simple)).then(|| surfaces.separate());
-        let boxes = (all_edges.is_some() || !pairs::are_few(operands)).then(|| FaceBoxes::new(&surfaces, &bounds));
+        let boxes =
+            (all_edges.is_some() || !pairs::are_few(operands)).then(|| FaceBoxes::new(&surfaces, &bounds));
         let pairs = match &boxes {
             Some(boxes) => boxes.pairs(&surfaces, runner, |_| true)?,
             None => pairs::of_manifolds(&surfaces, operands, runner)?,
@@ -111,7 +112,8 @@ impl General {
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where points cannot be numbered.
     pub(crate) fn new(crossed: Crossed, fuse: bool, runner: Runner<'_>) -> Result<Self, Error> {
-        let Crossed { surfaces, edges, crossings, mut contacts, bounds, boxes, locality, last, _memory } = crossed;
+        let Crossed { surfaces, edges, crossings, mut contacts, bounds, boxes, locality, last, _memory } =
+            crossed;
         let cut: Vec<FaceId> = surfaces.faces().filter(|&face| !crossings.of_face(face).is_empty()).collect();
         // 3. Three-face points.
         let (triples, contacts_of_triples) = triples::find(&surfaces, &edges, &crossings, &cut, runner)?;

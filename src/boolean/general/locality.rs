@@ -102,7 +102,8 @@ impl Locality {
         vertices.for_each(|v| is_walked.insert(v.number()));
         let near = (0..).zip(&self.of_vertex).filter(|&(_, &patch)| patch == NONE);
         near.for_each(|(v, _)| is_walked.insert(v));
-        let is_walked = |face: &FaceId| surfaces.vertices(*face).iter().any(|v| is_walked.contains(v.number()));
+        let is_walked =
+            |face: &FaceId| surfaces.vertices(*face).iter().any(|v| is_walked.contains(v.number()));
         surfaces.faces().filter(is_walked).collect()
     }
 

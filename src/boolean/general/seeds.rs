@@ -124,7 +124,8 @@ pub(crate) fn find(
             match &boxes {
                 Some(boxes) => boxes.meeting([&ray.start.position, &ray.end.position], visit),
                 None => {
-                    let may_cross = |face: &FaceId| may_cross(&ray.start.position, &surfaces.positions(*face));
+                    let may_cross =
+                        |face: &FaceId| may_cross(&ray.start.position, &surfaces.positions(*face));
                     surfaces.faces().filter(may_cross).for_each(&mut visit);
                 }
             }

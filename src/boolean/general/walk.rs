@@ -271,7 +271,8 @@ impl Walk<'_> {
             if last.0 != patch {
                 // (A patch is of one operand, and each of its faces counts once.)
                 let outer = self.of_patches[patch];
-                let inner = self.found.labels.step(outer, self.surfaces.owner(face), self.surfaces.step(face));
+                let inner =
+                    self.found.labels.step(outer, self.surfaces.owner(face), self.surfaces.step(face));
                 last = (patch, [outer, inner]);
             }
             *of_face = last.1[0].number();
