@@ -56,6 +56,7 @@
 //! | `render` | with `cli` | the module `render`: pictures of meshes as PNG | 11 |
 //! | `serde` | with `cli` | `Serialize` and `Deserialize` for meshes, settings and reports | 3 |
 //! | `subdivision` | yes | the module `subdivision`: subdivision surfaces given by cages, and their booleans as cages | none |
+//! | `threemf` | yes | 3MF files in the module `io`; brings `formats` | 32 |
 //!
 //! For the engine alone: `default-features = false`, with `parallel` or not.
 //!

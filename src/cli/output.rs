@@ -162,13 +162,15 @@ fn refuse_terminal(format: Format, ascii: bool) -> Result<(), Fault> {
     let binary = match format {
         Format::Glb => true,
         Format::Stl | Format::Ply => !ascii,
+        #[cfg(feature = "threemf")]
+        Format::ThreeMf => true,
         // Obj, Gltf and Off are text; a new format must be added here if it is not (the enum is open to this program).
         _ => false,
     };
     if binary && stdout().is_terminal() {
         return Err(Fault::usage(format!(
             "standard output is a terminal, and {format} is binary; send it to a file or a pipe{}",
-            if format == Format::Glb { "" } else { ", or add --ascii" }
+            if matches!(format, Format::Stl | Format::Ply) { ", or add --ascii" } else { "" }
         )));
     }
     Ok(())

@@ -5,7 +5,7 @@ use trisect::io::{ReadOptions, load};
 use super::common::*;
 
 /// File, points (equal ones counted once), triangles, closed, volume.
-const GOOD: [(&str, usize, usize, bool, f64); 24] = [
+const GOOD: [(&str, usize, usize, bool, f64); 24 + cfg!(feature = "threemf") as usize] = [
     ("BoxInterleaved.glb", 8, 12, true, 1.0),
     ("P.off", 26, 52, true, 9.25),
     ("beam-inside-out.off", 8, 12, true, -0.576),
@@ -32,6 +32,8 @@ const GOOD: [(&str, usize, usize, bool, f64); 24] = [
     ("02_shared_mesh.gltf", 16, 24, true, 8.0 + 8.0 * 0.999_999_940_395_355_2 * 0.999_999_940_395_355_2),
     // Coordinates of 14 bits.
     ("nested-quantized.glb", 24, 36, true, 0.8987790543021935),
+    #[cfg(feature = "threemf")]
+    ("vertex-colours.3mf", 4, 4, true, 1000.0 / 3.0),
 ];
 
 #[test]
