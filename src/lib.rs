@@ -57,6 +57,7 @@
 //! | `serde` | with `cli` | `Serialize` and `Deserialize` for meshes, settings and reports | 3 |
 //! | `subdivision` | yes | the module `subdivision`: subdivision surfaces given by cages, and their booleans as cages | none |
 //! | `threemf` | yes | 3MF files in the module `io`; brings `formats` | 32 |
+//! | `viewer` | yes | results as pages for browsers, of the program; brings `cli` | 52 |
 //!
 //! For the engine alone: `default-features = false`, with `parallel` or not.
 //!

@@ -16,7 +16,8 @@ pub(super) fn attributes(plan: &Plan<'_>, runner: Runner<'_>) -> Result<Vec<Attr
             None => named.push((&attribute.name, attribute.components)),
         }
     }
-    runner.each(named, |(name, components)| Table::new(plan, name, components).attribute())
+    let made = |(name, components)| Table::new(plan, name, components).map(Table::attribute);
+    runner.each(named, made)?.into_iter().collect()
 }
 
 /// The rows that a source has in the table, as they are or for faces that are turned round.
@@ -45,6 +46,12 @@ fn counts(plan: &Plan<'_>) -> [Vec<usize>; 2] {
     counts
 }
 
+/// The limit for tables of more values than 32-bit numbers can name, by what they would take.
+fn too_many(rows: usize, most: usize, components: usize) -> Limit {
+    let bytes = |rows: usize| (rows as u64).saturating_mul(8 * components as u64);
+    Limit::Memory { needed: bytes(rows), limit: bytes(most) }
+}
+
 /// An attribute of the new mesh while it is being made.
 struct Table<'a> {
     plan: &'a Plan<'a>,
@@ -60,11 +67,13 @@ struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    fn new(plan: &'a Plan<'a>, name: &'a str, components: usize) -> Self {
+    fn new(plan: &'a Plan<'a>, name: &'a str, components: usize) -> Result<Self, Limit> {
         let kind = AttributeKind::of(name).unwrap_or(AttributeKind::Plain);
         let mut rows = Vec::new();
         let mut places = vec![[None; 2]; plan.of.sources.len()];
-        let mut next = 0;
+        let mut next = 0_u32;
+        // Values that may be made have numbers too, and the last number means none.
+        let most = (u32::MAX as usize).saturating_sub(plan.new.len());
         let mut counts = counts(plan);
         if !kind.has_sides() {
             let [straight, reversed] = &mut counts;
@@ -79,10 +88,14 @@ impl<'a> Table<'a> {
                 let compact = (triangles as f64) < MOSTLY_LEFT * mesh.triangles.len() as f64;
                 places[source][usize::from(reversed)] = Some(rows.len() as u32);
                 rows.push(Rows { source, attribute, reversed, first: next, count, compact });
-                next += count;
+                let rows = next as usize + count as usize;
+                if rows >= most {
+                    return Err(too_many(rows, most, components));
+                }
+                next = rows as u32;
             }
         }
-        Self { plan, name, kind, components, rows, places, made_from: next, made: Vec::new() }
+        Ok(Self { plan, name, kind, components, rows, places, made_from: next, made: Vec::new() })
     }
 
     fn attribute(mut self) -> Attribute {
