@@ -290,6 +290,9 @@ fn damaged_files() -> Vec<(&'static str, Format, Vec<u8>)> {
         "rgb_cube_with_primitives.gltf",
         "BoxInterleaved.glb",
         "nested-quantized.glb",
+        "nested-draco.glb",
+        #[cfg(feature = "threemf")]
+        "vertex-colours.3mf",
     ] {
         let bytes = std::fs::read(folder.join(name)).expect("a fixture");
         let format = Format::from_content(&bytes).expect("of a known format");

@@ -12,7 +12,7 @@ python3 - "$picture" <<'PYTHON'
 import sys
 from PIL import Image
 picture = Image.open(sys.argv[1]).convert("RGB")
-left = picture.crop((0, 0, picture.width - 250, picture.height))
+left = picture.crop((0, 0, picture.width - 300, picture.height))
 background = left.getpixel((2, 2))
 drawn = sum(1 for pixel in left.getdata() if pixel != background)
 print(f"{drawn} of {left.width * left.height} pixels are not background")

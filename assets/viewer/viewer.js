@@ -58,6 +58,8 @@
   const cut = new THREE.Plane();
   const meshes = [];
   model.traverse((node) => { if (node.isMesh) meshes.push(node); });
+  const wires = [false, true].map((vertexColors) => new THREE.MeshBasicMaterial(
+    { color: vertexColors ? '#ffffff' : '#445', wireframe: true, vertexColors }));
   const inner = new THREE.MeshBasicMaterial({ color: '#c2703d', side: THREE.BackSide, clippingPlanes: [cut] });
   const colourOf = {
     operand: (code) => data.palette[(code >> 1) % data.palette.length],
@@ -92,11 +94,10 @@
   const dress = () => {
     for (const mesh of meshes) {
       const shown = mesh.userData[way] || mesh.userData.material;
-      mesh.material = shown.material || shown;
       const colours = shown.colours || mesh.userData.own;
+      mesh.material = element('wire').checked ? wires[Number(Boolean(shown.colours))] : shown.material || shown;
       if (colours) mesh.geometry.setAttribute('color', colours); else mesh.geometry.deleteAttribute('color');
       for (const material of [].concat(mesh.material)) {
-        material.wireframe = element('wire').checked;
         material.clippingPlanes = axis ? [cut] : [];
         material.needsUpdate = true;
       }
