@@ -36,6 +36,7 @@ mod pair;
 mod plane;
 mod result;
 mod snapping;
+mod solidify;
 mod tidy;
 
 pub use complex::operation::{Contact, Operation, UnknownName};
@@ -54,6 +55,7 @@ pub use result::cut_faces::CutFaces;
 pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;
 pub use snapping::report::Snapping;
+pub use solidify::{Solidified, Solidify, SolidifyReport};
 
 use crate::{Error, Solid};
 

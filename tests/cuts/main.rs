@@ -9,3 +9,4 @@ mod parts;
 mod planes;
 mod sections;
 mod sheets;
+mod soups;

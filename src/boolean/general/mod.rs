@@ -20,11 +20,14 @@
 //! double faces. So the pieces of faces that touch in a plane are added up (`cut::plane_sums`).
 
 pub(crate) mod arrangement;
+pub(crate) mod cells;
+mod cell_neighbours;
 pub(crate) mod cross;
 pub(crate) mod crossings;
 pub(crate) mod edges;
 pub(crate) mod embed;
 pub(crate) mod evaluate;
+pub(crate) mod face_view;
 pub(crate) mod labels;
 pub(crate) mod lines;
 pub(crate) mod pairs;

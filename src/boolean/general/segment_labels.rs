@@ -25,8 +25,8 @@ pub(crate) struct Quadrants {
 /// For each segment, one for each piece between its three-face points.
 #[derive(Debug)]
 pub(crate) struct SegmentLabels {
-    starts: Vec<u32>,
-    pieces: Vec<Quadrants>,
+    pub(super) starts: Vec<u32>,
+    pub(super) pieces: Vec<Quadrants>,
 }
 
 /// Segments that are looked at before the limits are checked.

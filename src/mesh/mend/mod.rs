@@ -20,9 +20,12 @@ mod report;
 mod rounding;
 mod seams;
 mod sew;
+mod soup;
 mod splits;
 
 pub use report::Mending;
+pub use soup::Readied;
+pub(crate) use soup::Soup;
 pub(crate) use splits::fan_around_splits;
 
 use super::places::{Fault, Spots};
