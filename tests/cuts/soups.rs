@@ -98,14 +98,12 @@ fn what_is_closed_is_what_it_winds_around() {
             } else {
                 primitives::cuboid(low, high).expect("a box")
             };
-            if std::env::var("SEED").is_ok_and(|s| s == seed.to_string()) { eprintln!("{low:?} {high:?} {}", body.triangles.len()); }
             soup.append(&body).expect("few");
         }
         let both = Solid::try_from(soup.clone()).expect("closed");
         let resolved = BooleanOptions::new().rule(Rule::NonZero).resolve(&both).expect("resolved");
         let want = resolved.solid().volume();
         let made = solidified(&soup);
-        if std::env::var("SEED").is_ok_and(|s| s == seed.to_string()) { eprintln!("{:?}", made.report); }
         assert!((made.solid.volume() - want).abs() < 1e-12 * want, "seed {seed}: {} {want}", made.solid.volume());
         // Copies of faces count once here.
         let made = solidified(&apart(&soup));

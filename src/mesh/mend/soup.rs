@@ -8,7 +8,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::super::edges::EdgeTable;
 use super::super::orient::{Facing, reversed};
 use super::super::patches::Patches;
-use super::super::{Bounds, Mesh, MeshError, attributes, chain, clean, measure, weld};
+use super::super::{
+    Bounds, Mesh, MeshError, WeightedUnionFind, area_vector, attributes, chain, clean, measure, unit, weld,
+};
 use super::sew::{Sewing, Splits};
 use super::{Surface, fill, sew};
 use crate::exact::collinear;
@@ -268,7 +270,8 @@ fn joining_distance(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Option<f6
 /// Turns the triangles of each patch alike, and outwards those of closed patches that disagreed; which were turned.
 fn turn_alike(positions: &[[f64; 3]], triangles: &mut [[u32; 3]]) -> Vec<bool> {
     let table = EdgeTable::new(triangles, positions.len());
-    let patches = Patches::new(&table, triangles.len());
+    let mut patches = Patches::new(&table, triangles.len());
+    patches.reverse = flattest_first(positions, triangles, &table, &patches);
     let facing = Facing::new(positions, triangles, &patches);
     let mut disagrees = vec![false; patches.closed.len()];
     for (&patch, &reverse) in patches.of_triangle.iter().zip(&patches.reverse) {
@@ -283,6 +286,45 @@ fn turn_alike(positions: &[[f64; 3]], triangles: &mut [[u32; 3]]) -> Vec<bool> {
         *corners = reversed(*corners);
     }
     turned
+}
+
+/// Which triangles to reverse so that those of each patch agree, the fewer giving way. Where they cannot all agree, because
+/// something is folded back or joined to what it does not belong to, what is flat agrees rather than what is not.
+fn flattest_first(
+    positions: &[[f64; 3]],
+    triangles: &[[u32; 3]],
+    table: &EdgeTable<'_>,
+    patches: &Patches,
+) -> Vec<bool> {
+    // 1. The edges between two triangles, from flat to folded back.
+    let mut edges: Vec<(f64, u32, u32, bool)> = table
+        .iter()
+        .filter(|edge| edge.valence() == 2)
+        .filter_map(|edge| {
+            let mut both = edge.triangles();
+            let (a, b) = (both.next()?, both.next()?);
+            let normal = |t: u32| unit(area_vector(positions, &triangles[t as usize]));
+            let along: f64 = (0..3).map(|k| normal(a)[k] * normal(b)[k]).sum();
+            let agrees = edge.net() == 0;
+            Some((if agrees { -along } else { along }, a, b, agrees))
+        })
+        .collect();
+    edges.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+    // 2. In this order they say who agrees with whom.
+    let mut sets = WeightedUnionFind::new(triangles.len());
+    for (_, a, b, agrees) in edges {
+        sets.join(a, b, i32::from(!agrees));
+    }
+    let mut reverse: Vec<bool> =
+        (0..triangles.len() as u32).map(|t| sets.root(t).1 % 2 != 0).collect();
+    // 3. The fewer give way.
+    for members in patches.triangles.each() {
+        let reversed = members.iter().filter(|&&t| reverse[t as usize]).count();
+        if 2 * reversed > members.len() {
+            members.iter().for_each(|&t| reverse[t as usize] ^= true);
+        }
+    }
+    reverse
 }
 
 /// Triangles that fill the loops of open edges. Neighbouring loops are filled by a band between them as well, where that is smaller.
