@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod models;
+mod partitions;
 mod parts;
 mod planes;
 mod sections;

@@ -18,7 +18,8 @@ fn solidified(soup: &Mesh) -> Solidified {
 
 /// The triangles with vertices of their own.
 fn apart(mesh: &Mesh) -> Mesh {
-    let positions: Vec<[f64; 3]> = mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]).collect();
+    let positions: Vec<[f64; 3]> =
+        mesh.triangles.iter().flatten().map(|&v| mesh.positions[v as usize]).collect();
     let triangles = (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     Mesh::new(positions, triangles)
 }
@@ -76,7 +77,9 @@ fn walls_that_end_exactly_on_a_floor_are_closed() {
 #[test]
 fn what_encloses_nothing_gives_nothing() {
     let square = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
-    for triangles in [vec![], vec![[0, 1, 2]], vec![[0, 1, 2], [0, 2, 3]], vec![[0, 1, 2], [0, 2, 1], [1, 1, 2]]] {
+    for triangles in
+        [vec![], vec![[0, 1, 2]], vec![[0, 1, 2], [0, 2, 3]], vec![[0, 1, 2], [0, 2, 1], [1, 1, 2]]]
+    {
         let made = solidified(&Mesh::new(square.clone(), triangles));
         assert!(made.solid.is_empty());
     }
@@ -104,10 +107,18 @@ fn what_is_closed_is_what_it_winds_around() {
         let resolved = BooleanOptions::new().rule(Rule::NonZero).resolve(&both).expect("resolved");
         let want = resolved.solid().volume();
         let made = solidified(&soup);
-        assert!((made.solid.volume() - want).abs() < 1e-12 * want, "seed {seed}: {} {want}", made.solid.volume());
+        assert!(
+            (made.solid.volume() - want).abs() < 1e-12 * want,
+            "seed {seed}: {} {want}",
+            made.solid.volume()
+        );
         // Copies of faces count once here.
         let made = solidified(&apart(&soup));
-        assert!((made.solid.volume() - want).abs() < 1e-12 * want, "seed {seed} apart: {} {want}", made.solid.volume());
+        assert!(
+            (made.solid.volume() - want).abs() < 1e-12 * want,
+            "seed {seed} apart: {} {want}",
+            made.solid.volume()
+        );
     }
 }
 
@@ -119,7 +130,8 @@ fn known(number: u64, rng: &mut ChaCha8Rng) -> Mesh {
         2 => shapes::sphere([0.0; 3], 1.0, 8, 0.15),
         3 => shapes::spiky(5, 0.8),
         _ => {
-            let block = Solid::try_from(primitives::cuboid([-1.0; 3], [1.0; 3]).expect("a box")).expect("closed");
+            let block =
+                Solid::try_from(primitives::cuboid([-1.0; 3], [1.0; 3]).expect("a box")).expect("closed");
             let at = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
             let ball = primitives::geodesic_sphere(0.8, 4).expect("a ball").translated(at);
             let ball = Solid::try_from(ball).expect("closed");
@@ -173,7 +185,11 @@ fn soups_of_known_solids_have_their_volumes() {
         if std::env::var_os("TRISECT_SOUPS").is_some() && error > 0.5 * allowed {
             eprintln!("seed {seed}: {error:.4} of {allowed:.4}; {:?}", made.report);
         } else {
-            assert!(error <= allowed, "seed {seed}: off by {error}, missing {missing}, moved {off}; {:?}", made.report);
+            assert!(
+                error <= allowed,
+                "seed {seed}: off by {error}, missing {missing}, moved {off}; {:?}",
+                made.report
+            );
         }
         worst = [worst[0].max(error), worst[1].max(error / allowed)];
         assert_eq!(made.report.still_crossing, 0, "seed {seed}");

@@ -151,6 +151,15 @@ impl General {
         Ok((general, count))
     }
 
+    /// Arranges surfaces of which only is wanted where they meet: no labels are known.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(crate) fn without_labels(crossed: Crossed, runner: Runner<'_>) -> Result<Self, Error> {
+        let placed = Placed::new(&crossed, runner)?;
+        Self::finish(crossed, placed, FaceLabels::none(), SegmentLabels::none(), true, runner)
+    }
+
     /// What lies beside every piece.
     pub(crate) fn beside(&self) -> Beside<'_> {
         let Self { surfaces, edges, crossings, lines, faces, segment_labels: segments, .. } = self;

@@ -106,7 +106,10 @@ impl Search<'_> {
         let corners = surfaces.positions(self.bodies.widest[body]);
         let within = |axis: usize| (0..3).map(|k| WEIGHTS[k] * corners[k][axis]).sum::<f64>();
         let [y, z] = [within(1), within(2)];
-        let ends = [-coordinate_past(-bounds.high[0], -bounds.low[0]), coordinate_past(bounds.low[0], bounds.high[0])];
+        let ends = [
+            -coordinate_past(-bounds.high[0], -bounds.low[0]),
+            coordinate_past(bounds.low[0], bounds.high[0]),
+        ];
         // 1. The faces, with where they are met.
         let first = surfaces.vertex_count() + 2 * body as u32;
         let corner = |i: u32| Corner { id: VertexId::new(first + i), position: [ends[i as usize], y, z] };

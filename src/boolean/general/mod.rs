@@ -20,8 +20,8 @@
 //! double faces. So the pieces of faces that touch in a plane are added up (`cut::plane_sums`).
 
 pub(crate) mod arrangement;
-pub(crate) mod cells;
 mod cell_neighbours;
+pub(crate) mod cells;
 pub(crate) mod cross;
 pub(crate) mod crossings;
 pub(crate) mod edges;
@@ -35,6 +35,7 @@ pub(crate) mod seeds;
 pub(crate) mod segment_labels;
 pub(crate) mod shape;
 pub(crate) mod sheets;
+pub(crate) mod strips;
 pub(crate) mod surfaces;
 pub(crate) mod triples;
 pub(crate) mod walk;

@@ -33,6 +33,11 @@ pub(crate) struct SegmentLabels {
 const SEGMENTS_AT_ONCE: usize = 1 << 12;
 
 impl SegmentLabels {
+    /// Those of no segments.
+    pub(super) fn none() -> Self {
+        Self { starts: Vec::new(), pieces: Vec::new() }
+    }
+
     /// Takes them from the labels along the sides of faces, in which every segment ends.
     ///
     /// # Errors

@@ -10,12 +10,12 @@ use std::sync::OnceLock;
 use rustc_hash::FxHashMap;
 
 use super::edges::{Edges, Side};
+use crate::Mesh;
 use crate::boolean::complex::directions::Directions;
 use crate::boolean::complex::ids::{EdgeId, FaceId, VertexId};
 use crate::boolean::complex::predicates::Perturbed;
 use crate::boolean::complex::{Corner, Operand};
 use crate::mesh::UnionFind;
-use crate::Mesh;
 
 /// Directions have 10 bits; scaled by a component's colour they must stay below 2^16 (see [`crate::exact::perturbed`]).
 const MOST_COLOURS: u32 = 64;

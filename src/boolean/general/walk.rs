@@ -39,6 +39,19 @@ pub(crate) struct FaceLabels {
 }
 
 impl FaceLabels {
+    /// Those of no faces.
+    pub(super) fn none() -> Self {
+        let (inner, of_pieces, inner_of_pieces) = (Vec::new(), Vec::new(), Vec::new());
+        Self {
+            labels: Labels::new(),
+            of_face: Vec::new(),
+            inner,
+            of_pieces,
+            inner_of_pieces,
+            starts: Vec::new(),
+        }
+    }
+
     /// Walks over all pieces of surface, each from its seed.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 use super::cap::outline;
 use super::nodes::Nodes;
 use super::pieces::numbered;
+use super::rings::{Rings, Twins, Walker};
 use super::section::Section;
 use super::split::{ABOVE, BELOW, ON, Split};
 use crate::boolean::many::expressions::is_simple;
@@ -59,6 +60,8 @@ impl Solid {
 
 /// A triangle meets planes one after another, if they are parallel and ascend.
 const AT_ONCE: usize = 1 << 14;
+/// Layers that one thread makes with the same scratch memory, one bit of which is cleared for each triangle of the solid.
+const LAYERS_AT_ONCE: usize = 64;
 
 impl Sections {
     /// Default settings.
@@ -162,21 +165,26 @@ impl Sections {
         let met = runner.gather(mesh.triangles.len(), AT_ONCE, 0, meetings)?;
         let _met = runner.control.reserve((met.len() * size_of::<(u32, u32)>()) as u64)?;
         let met = Buckets::new(order.len(), met.into_iter());
-        // 3. Plane by plane, on all threads.
-        let work: Vec<(usize, usize)> = order.iter().copied().enumerate().collect();
-        let mut sections = runner.each(work, |(place, plane)| {
-            let split = Split::of_rank(
-                mesh,
-                &planes[plane],
-                &ranks,
-                2 * place as u32 + 1,
-                self.mark(),
-                met.get(place),
-            );
-            one(&split, merge, runner.serial()).map(|section| (plane, section))
+        // 3. Layers on all threads, so many at once that what a thread needs for one is of use for the others.
+        let twins = if met.total() >= mesh.triangles.len() { Twins::of(mesh) } else { None };
+        let found = runner.pieces(order.len(), LAYERS_AT_ONCE, |range| {
+            let mut walker = twins.as_ref().map(|twins| Walker::new(mesh, twins));
+            let layer = |place: usize| {
+                let plane = &planes[order[place]];
+                let rank = 2 * place as u32 + 1;
+                let split = Split::of_rank(mesh, plane, &ranks, rank, self.mark(), met.get(place));
+                if let Some(rings) = walker.as_mut().and_then(|walker| walker.rings(&split, merge)) {
+                    return Ok(of_rings(plane, rings));
+                }
+                one(&split, merge, runner.serial())
+            };
+            range.map(layer).collect::<Result<Vec<Section>, Error>>()
         })?;
-        sections.sort_by_key(|section| section.as_ref().map_or(0, |(plane, _)| *plane));
-        sections.into_iter().map(|section| section.map(|(_, section)| section)).collect()
+        let found: Vec<Vec<Section>> = found.into_iter().collect::<Result<_, Error>>()?;
+        let mut sections: Vec<(usize, Section)> =
+            order.iter().copied().zip(found.into_iter().flatten()).collect();
+        sections.sort_by_key(|(plane, _)| *plane);
+        Ok(sections.into_iter().map(|(_, section)| section).collect())
     }
 }
 
@@ -193,6 +201,20 @@ fn levels(planes: &[Plane]) -> Option<(usize, Vec<usize>)> {
     order.windows(2).all(|pair| at[pair[0]] != at[pair[1]]).then_some((axis, order))
 }
 
+/// The section that outlines make.
+fn of_rings(plane: &Plane, rings: Rings) -> Section {
+    let Rings { points: places, loops } = rings;
+    let projection = plane.projection();
+    let flat: Vec<[f64; 2]> = places.iter().map(|place| projection.project(place)).collect();
+    Section::new(*plane, &in_space(polygon::polygons_of_loops(&flat, loops), &places))
+}
+
+/// Polygons by the numbers of their corners, with their places.
+fn in_space(polygons: Vec<Vec<Vec<u32>>>, places: &[[f64; 3]]) -> Vec<Vec<Vec<[f64; 3]>>> {
+    let ring = |ring: Vec<u32>| ring.into_iter().map(|number| places[number as usize]).collect();
+    polygons.into_iter().map(|polygon| polygon.into_iter().map(ring).collect()).collect()
+}
+
 /// The section at one plane.
 fn one(split: &Split<'_>, merge: bool, runner: Runner<'_>) -> Result<Section, Error> {
     // (Outlines have no attributes: faces of all classes are one.)
@@ -201,13 +223,7 @@ fn one(split: &Split<'_>, merge: bool, runner: Runner<'_>) -> Result<Section, Er
     let places: Vec<[f64; 3]> = points.iter().map(|&point| nodes.position(split, point)).collect();
     let projection = split.plane.projection();
     let flat: Vec<[f64; 2]> = places.iter().map(|place| projection.project(place)).collect();
-    let polygons: Vec<Vec<Vec<[f64; 3]>>> = polygon::polygons(&flat, &edges)
-        .into_iter()
-        .map(|polygon| {
-            let ring = |ring: Vec<u32>| ring.into_iter().map(|number| places[number as usize]).collect();
-            polygon.into_iter().map(ring).collect()
-        })
-        .collect();
+    let polygons = in_space(polygon::polygons(&flat, &edges), &places);
     Ok(Section::new(*split.plane, &polygons))
 }
 

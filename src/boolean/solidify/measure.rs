@@ -9,8 +9,7 @@ use crate::Mesh;
 use crate::boolean::complex::ids::FaceId;
 use crate::boolean::general::arrangement::General;
 use crate::boolean::general::cells::{Beside, CellCount};
-use crate::boolean::general::face_view::FaceView;
-use crate::mesh::cross;
+use crate::boolean::general::strips::visit_strips;
 use crate::parallel::Runner;
 use crate::spatial::{FastWinding, TriangleTree};
 
@@ -18,8 +17,6 @@ use crate::spatial::{FastWinding, TriangleTree};
 const AT_ONCE: usize = 512;
 /// Of a cell no more samples than so many are used, evenly chosen: their mean is known to a few hundredths then.
 const MOST_SAMPLES: usize = 512;
-/// Lines that are laid across a cut face, at most. (Faces with more regions than that across are rare, and each has others.)
-const MOST_LINES: usize = 48;
 /// How far beside its face a sample lies, in parts of the extent of what it stands for: near enough to be in the cell, and far enough
 /// for the face's own solid angle to be half of all.
 const BESIDE: f64 = 1e-3;
@@ -37,7 +34,7 @@ struct Sample {
 ///
 /// # Errors
 /// Only limits.
-pub(super) fn mean_winding(
+pub(in crate::boolean) fn mean_winding(
     general: &General,
     cells: CellCount,
     given: &Mesh,
@@ -77,53 +74,12 @@ fn evenly(of_cell: &[Sample]) -> impl Iterator<Item = &Sample> {
 /// Adds samples on both sides of a face.
 fn add_samples(beside: &Beside<'_>, face: FaceId, samples: &mut Vec<Sample>) {
     let corners = beside.ground.surfaces.positions(face);
-    let edge = |k: usize| std::array::from_fn(|axis| corners[k][axis] - corners[0][axis]);
-    let across = cross(edge(1), edge(2));
-    let twice_area = across.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if !(twice_area > 0.0 && twice_area.is_finite()) {
-        return;
-    }
-    let normal = across.map(|x| x / twice_area);
     let size = corners.iter().flatten().fold(0.0f64, |size, x| size.max(x.abs()));
-    let mut add = |cells: [u32; 2], at: [f64; 3], weight: f64, extent: f64| {
-        let off = (BESIDE * extent).max(64.0 * f64::EPSILON * size);
-        for (cell, sign) in cells.into_iter().zip([1.0, -1.0]) {
-            let at = std::array::from_fn(|axis| at[axis] + sign * off * normal[axis]);
-            samples.push(Sample { cell, at, weight });
+    visit_strips(beside, face, |strip| {
+        let off = (BESIDE * strip.extent).max(64.0 * f64::EPSILON * size);
+        for (cell, sign) in strip.beside.into_iter().zip([1.0, -1.0]) {
+            let at = std::array::from_fn(|axis| strip.at[axis] + sign * off * strip.normal[axis]);
+            samples.push(Sample { cell, at, weight: strip.area });
         }
-    };
-    if beside.ground.crossings.of_face(face).is_empty() {
-        let middle = std::array::from_fn(|axis| (0..3).map(|k| corners[k][axis]).sum::<f64>() / 3.0);
-        add(beside.side(face, 0, 0), middle, 0.5 * twice_area, twice_area.sqrt());
-        return;
-    }
-    // Lines across the face through the middles of all pieces, each for the strip around it.
-    let view = FaceView::new(beside, face);
-    let (axis, seen) = (view.projection.axis(), view.projection);
-    let steep = normal[axis].abs();
-    let heights = heights(&view);
-    let mut found = Vec::new();
-    for (i, &y) in heights.iter().enumerate() {
-        let strip = 0.5 * (heights[(i + 1).min(heights.len() - 1)] - heights[i.saturating_sub(1)]);
-        view.crossings_at(y, &mut found);
-        for pair in found.windows(2) {
-            let Some(cells) = view.after(pair[0]).or_else(|| view.before(pair[1])) else { continue };
-            let (x, width) = (0.5 * (pair[0].x + pair[1].x), pair[1].x - pair[0].x);
-            let mut at = [0.0; 3];
-            (at[seen.x], at[seen.y]) = (x, y);
-            let off = normal[seen.x] * (x - corners[0][seen.x]) + normal[seen.y] * (y - corners[0][seen.y]);
-            at[axis] = corners[0][axis] - off / normal[axis];
-            let strip = if strip > 0.0 { strip } else { width };
-            add(cells, at, width * strip / steep, width.min(strip));
-        }
-    }
-}
-
-/// Second coordinates of lines across a face: through the middle of every piece, or of some evenly chosen.
-fn heights(view: &FaceView) -> Vec<f64> {
-    let mut all: Vec<f64> = view.pieces.iter().map(|piece| 0.5 * (piece.from[1] + piece.to[1])).collect();
-    all.sort_unstable_by(f64::total_cmp);
-    all.dedup();
-    let step = all.len().div_ceil(MOST_LINES);
-    all.into_iter().step_by(step.max(1)).collect()
+    });
 }

@@ -7,7 +7,7 @@
 //! 4. the boundary between in and out is the result. Whatever the answers are, it is closed: a face between two cells that are both
 //!    in, or both out, is left out, whether it was given or made.
 
-mod measure;
+pub(super) mod measure;
 
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::arrangement::{Crossed, General};

@@ -121,7 +121,9 @@ fn neighbours(positions: &[[f64; 3]], loops: &[Vec<u32>]) -> Vec<(usize, usize, 
                 }
             }
         }
-        found.map(|(_, other, [i, j])| if ring < other { (ring, other, [i, j]) } else { (other, ring, [j, i]) })
+        found.map(
+            |(_, other, [i, j])| if ring < other { (ring, other, [i, j]) } else { (other, ring, [j, i]) },
+        )
     };
     let mut pairs: Vec<(usize, usize, [usize; 2])> = (0..loops.len()).filter_map(nearest).collect();
     pairs.sort_unstable();

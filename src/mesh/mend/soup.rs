@@ -88,7 +88,8 @@ impl Soup {
         sew::sew(&mut surface, sewing);
         done.split_edges = surface.report.split_edges.count;
         done.joined += surface.report.seams.count;
-        let copies = surface.source.iter().map(|source| copies_of.get(source).copied().unwrap_or(1)).collect();
+        let copies =
+            surface.source.iter().map(|source| copies_of.get(source).copied().unwrap_or(1)).collect();
         let mut working = Working { given, triangles: surface.triangles, source: surface.source, copies };
         working.clean(&mut done);
         // 3. Turned alike.
@@ -198,10 +199,12 @@ impl Working<'_> {
             let place = *place_of.entry(unordered(triangle)).or_insert(kept);
             if place < kept {
                 done.copies += 1;
-                self.copies[place] += if is_same_way(self.triangles[place], triangle) { copies } else { -copies };
+                self.copies[place] +=
+                    if is_same_way(self.triangles[place], triangle) { copies } else { -copies };
                 continue;
             }
-            (self.triangles[kept], self.source[kept], self.copies[kept]) = (triangle, self.source[index], copies);
+            (self.triangles[kept], self.source[kept], self.copies[kept]) =
+                (triangle, self.source[index], copies);
             kept += 1;
         }
         self.triangles.truncate(kept);
@@ -260,8 +263,9 @@ fn joining_distance(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Option<f6
         .map(|distance| (distance, left(distance)))
         .collect();
     let fewest = tried.iter().map(|tried| tried.1).min()?;
-    let gain = edges.len().saturating_sub(fewest);
-    if 10 * gain < edges.len() {
+    let now = left(0.0);
+    let gain = now.saturating_sub(fewest);
+    if gain == 0 || 10 * gain < now {
         return None;
     }
     tried.into_iter().find(|&(_, left)| 20 * (left - fewest) <= gain).map(|tried| tried.0)
@@ -315,8 +319,7 @@ fn flattest_first(
     for (_, a, b, agrees) in edges {
         sets.join(a, b, i32::from(!agrees));
     }
-    let mut reverse: Vec<bool> =
-        (0..triangles.len() as u32).map(|t| sets.root(t).1 % 2 != 0).collect();
+    let mut reverse: Vec<bool> = (0..triangles.len() as u32).map(|t| sets.root(t).1 % 2 != 0).collect();
     // 3. The fewer give way.
     for members in patches.triangles.each() {
         let reversed = members.iter().filter(|&&t| reverse[t as usize]).count();
@@ -347,8 +350,7 @@ impl Closing {
             });
         }
         let has_edge = |u: u32, v: u32| at_edge.contains_key(&(u, v)) || at_edge.contains_key(&(v, u));
-        let mut all =
-            Self { filling: Vec::new(), of_loops: 0, beside: Vec::new(), loops: loops.len() };
+        let mut all = Self { filling: Vec::new(), of_loops: 0, beside: Vec::new(), loops: loops.len() };
         for (number, found) in fill::fillings(positions, &loops, has_edge).into_iter().enumerate() {
             let [u, v] = found.rim;
             let beside = at_edge.get(&(u, v)).copied().unwrap_or(0);
