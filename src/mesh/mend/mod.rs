@@ -24,8 +24,8 @@ mod sew;
 mod soup;
 mod splits;
 
-pub use report::Mending;
 pub(super) use refine::refine;
+pub use report::Mending;
 pub use soup::Readied;
 pub(crate) use soup::Soup;
 pub(crate) use splits::fan_around_splits;

@@ -83,7 +83,8 @@ impl Around {
         for (&at, others) in &mut neighbours {
             others.sort_unstable();
             others.dedup();
-            let sum: f64 = others.iter().map(|&v| apart(&positions[at as usize], &positions[v as usize])).sum();
+            let sum: f64 =
+                others.iter().map(|&v| apart(&positions[at as usize], &positions[v as usize])).sum();
             lengths.insert(at, sum / others.len() as f64);
         }
         Self { lengths, edges, neighbours }
