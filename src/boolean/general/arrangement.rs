@@ -4,14 +4,15 @@ use super::cells::{Beside, CellCount, Cells, Ground};
 use super::crossings::Crossings;
 use super::edges::{Edges, MOST_FACES};
 use super::lines::Lines;
-use super::pairs::FaceBoxes;
+use super::locality::Locality;
+use super::pairs::{self, FaceBoxes};
 use super::segment_labels::SegmentLabels;
 use super::surfaces::Surfaces;
 use super::walk::FaceLabels;
 use super::{seeds, sheets, triples};
 use crate::boolean::arrangement::identify::Identification;
 use crate::boolean::arrangement::sheets::Sheet;
-use crate::boolean::complex::ids::FaceId;
+use crate::boolean::complex::ids::{FaceId, VertexId};
 use crate::boolean::complex::planes::look_same_way;
 use crate::control::Reservation;
 use crate::mesh::Bounds;
@@ -43,8 +44,36 @@ pub(crate) struct Crossed {
     crossings: Crossings,
     contacts: u64,
     bounds: Bounds,
-    boxes: FaceBoxes,
+    /// Where they were needed already.
+    boxes: Option<FaceBoxes>,
+    locality: Locality,
+    /// By piece of surface, its last vertex in x.
+    last: Vec<Option<VertexId>>,
     _memory: Reservation,
+}
+
+/// What crossings are found on.
+struct Ready {
+    surfaces: Surfaces,
+    edges: Edges,
+    bounds: Bounds,
+    boxes: Option<FaceBoxes>,
+    locality: Locality,
+    last: Vec<Option<VertexId>>,
+    memory: Reservation,
+}
+
+/// Memory for the tables whose size the operands give.
+fn reserve(meshes: &[&Mesh], runner: Runner<'_>) -> Result<Reservation, Error> {
+    let triangles: usize = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+    let vertices: usize = meshes.iter().map(|mesh| mesh.positions.len()).sum();
+    if triangles >= MOST_FACES || vertices >= MOST_FACES {
+        return Err(Error::TooLarge {
+            what: format!("{triangles} triangles with {vertices} vertices in one arrangement"),
+        });
+    }
+    let bytes = vertices * BYTES_PER_VERTEX + triangles * BYTES_PER_TRIANGLE;
+    Ok(runner.control.reserve(bytes as u64)?)
 }
 
 impl Crossed {
@@ -53,51 +82,60 @@ impl Crossed {
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where faces or points cannot be numbered.
     pub(crate) fn new(operands: &[&Solid], groups: &[Vec<u32>], runner: Runner<'_>) -> Result<Self, Error> {
+        let meshes: Vec<&Mesh> = operands.iter().map(|solid| solid.mesh()).collect();
+        let memory = reserve(&meshes, runner)?;
+        // 1. All operands as one complex, in general position.
+        let mut surfaces = Surfaces::new(&meshes, groups);
         let bounds = operands.iter().filter_map(|solid| solid.bounds());
         let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
-        let meshes: Vec<&Mesh> = operands.iter().map(|solid| solid.mesh()).collect();
-        Self::of_meshes(&meshes, bounds, groups, false, runner)
+        let is_simple = |solid: &&Solid| solid.is_simple_complex();
+        let all_edges = (!operands.iter().all(is_simple)).then(|| surfaces.separate());
+        let boxes =
+            (all_edges.is_some() || !pairs::are_few(operands)).then(|| FaceBoxes::new(&surfaces, &bounds));
+        let pairs = match &boxes {
+            Some(boxes) => boxes.pairs(&surfaces, runner, |_| true)?,
+            None => pairs::of_manifolds(&surfaces, operands, runner)?,
+        };
+        let (locality, components) = match all_edges {
+            Some(_) => Locality::everywhere(&surfaces),
+            None => Locality::around(&surfaces, &pairs),
+        };
+        surfaces.set_components(components);
+        surfaces.set_near(&pairs);
+        let last = seeds::last_vertices(&surfaces);
+        let edges = all_edges.unwrap_or_else(|| {
+            surfaces.edges_of(&locality.walked_over(&surfaces, last.iter().copied().flatten()))
+        });
+        Self::cross(Ready { surfaces, edges, bounds, boxes, locality, last, memory }, &pairs, runner)
     }
 
-    /// The same of meshes that need not be closed.
+    /// The same of meshes that need not be closed. All their faces are walked over.
     ///
     /// # Errors
     /// As [`new`](Self::new).
     pub(crate) fn of_open(meshes: &[&Mesh], groups: &[Vec<u32>], runner: Runner<'_>) -> Result<Self, Error> {
+        let memory = reserve(meshes, runner)?;
+        let mut surfaces = Surfaces::new(meshes, groups);
         let bounds = meshes.iter().filter_map(|mesh| mesh.bounds());
         let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
-        Self::of_meshes(meshes, bounds, groups, true, runner)
+        let edges = surfaces.separate();
+        let boxes = FaceBoxes::new(&surfaces, &bounds);
+        let pairs = boxes.pairs(&surfaces, runner, |_| true)?;
+        let (locality, components) = Locality::everywhere(&surfaces);
+        surfaces.set_components(components);
+        surfaces.set_near(&pairs);
+        surfaces.extend_borders(&edges);
+        let (boxes, last) = (Some(boxes), Vec::new());
+        Self::cross(Ready { surfaces, edges, bounds, boxes, locality, last, memory }, &pairs, runner)
     }
 
-    fn of_meshes(
-        meshes: &[&Mesh],
-        bounds: Bounds,
-        groups: &[Vec<u32>],
-        may_be_open: bool,
-        runner: Runner<'_>,
-    ) -> Result<Self, Error> {
-        let triangles: usize = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
-        let vertices: usize = meshes.iter().map(|mesh| mesh.positions.len()).sum();
-        if triangles >= MOST_FACES || vertices >= MOST_FACES {
-            return Err(Error::TooLarge {
-                what: format!("{triangles} triangles with {vertices} vertices in one arrangement"),
-            });
-        }
-        let bytes = vertices * BYTES_PER_VERTEX + triangles * BYTES_PER_TRIANGLE;
-        let memory = runner.control.reserve(bytes as u64)?;
-        // 1. All operands as one complex, in general position.
-        let (mut surfaces, mut edges) = Surfaces::new(meshes, groups);
-        let boxes = FaceBoxes::new(&surfaces, &bounds);
-        let pairs = boxes.pairs(&surfaces, runner)?;
-        surfaces.set_near(&pairs);
-        if may_be_open {
-            surfaces.extend_borders(&edges);
-        }
+    /// 2. Which faces cross.
+    fn cross(ready: Ready, pairs: &[[FaceId; 2]], runner: Runner<'_>) -> Result<Self, Error> {
+        let Ready { surfaces, mut edges, bounds, boxes, locality, last, memory } = ready;
         let contacts = seeds::sort_radially(&surfaces, &mut edges);
-        // 2. Which faces cross.
-        let crossings = Crossings::find(&surfaces, &edges, &pairs, runner)?;
+        let crossings = Crossings::find(&surfaces, &edges, pairs, runner)?;
         let contacts = contacts + crossings.contacts;
-        Ok(Self { surfaces, edges, crossings, contacts, bounds, boxes, _memory: memory })
+        Ok(Self { surfaces, edges, crossings, contacts, bounds, boxes, locality, last, _memory: memory })
     }
 
     /// The faces that cross others or lie on others, ascending, as triangles of their operands.
@@ -116,14 +154,14 @@ impl General {
     ///
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where points cannot be numbered.
-    pub(crate) fn new(crossed: Crossed, fuse: bool, runner: Runner<'_>) -> Result<Self, Error> {
-        let (bounds, boxes) = (crossed.bounds, &crossed.boxes);
+    pub(crate) fn new(mut crossed: Crossed, fuse: bool, runner: Runner<'_>) -> Result<Self, Error> {
         let placed = Placed::new(&crossed, runner)?;
-        let Crossed { surfaces, edges, crossings, .. } = &crossed;
+        let boxes = crossed.boxes.take();
+        let Crossed { surfaces, edges, crossings, bounds, locality, last, .. } = &crossed;
         // 5. Labels.
-        let (seeds, contacts_of_seeds) = seeds::find(surfaces, edges, &bounds, boxes, runner)?;
+        let (seeds, contacts_of_seeds) = seeds::find(surfaces, edges, bounds, last, boxes, runner)?;
         let (lines, control) = (&placed.lines, runner.control);
-        let mut faces = FaceLabels::new(surfaces, edges, crossings, lines, &seeds, control)?;
+        let mut faces = FaceLabels::new(surfaces, edges, locality, crossings, lines, &seeds, control)?;
         let segment_labels = SegmentLabels::new(surfaces, edges, crossings, lines, &mut faces, control)?;
         let contacts = placed.contacts + contacts_of_seeds;
         Self::finish(crossed, Placed { contacts, ..placed }, faces, segment_labels, fuse, runner)
@@ -135,10 +173,12 @@ impl General {
     /// # Errors
     /// As [`new`](Self::new).
     pub(crate) fn with_cells(
-        crossed: Crossed,
+        mut crossed: Crossed,
         fuse: bool,
         runner: Runner<'_>,
     ) -> Result<(Self, CellCount), Error> {
+        let boxes = crossed.boxes.take();
+        let boxes = boxes.unwrap_or_else(|| FaceBoxes::new(&crossed.surfaces, &crossed.bounds));
         let placed = Placed::new(&crossed, runner)?;
         let ground = Ground {
             surfaces: &crossed.surfaces,
@@ -146,7 +186,7 @@ impl General {
             crossings: &crossed.crossings,
             lines: &placed.lines,
         };
-        let Cells { faces, segments, count } = Cells::new(&ground, &crossed.bounds, &crossed.boxes, runner)?;
+        let Cells { faces, segments, count } = Cells::new(&ground, &crossed.bounds, &boxes, runner)?;
         let general = Self::finish(crossed, placed, faces, segments, fuse, runner)?;
         Ok((general, count))
     }

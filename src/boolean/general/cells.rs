@@ -68,7 +68,7 @@ impl Cells {
         runner.control.check()?;
         let joins = cell_neighbours::find(&sectors.all(), bounds, boxes, runner)?;
         joins.into_iter().for_each(|[x, y]| sectors.sets.join(x, y));
-        let Sectors { sets, mut faces, mut segments, .. } = sectors;
+        let Sectors { mut sets, mut faces, mut segments, .. } = sectors;
         let (count, cells) = sets.labels();
         let to_cell = |sector: &mut LabelId| *sector = LabelId::new(cells[sector.index()]);
         for face in ground.surfaces.faces().filter(|&face| ground.crossings.of_face(face).is_empty()) {
