@@ -98,9 +98,10 @@ pub mod spatial;
 pub mod subdivision;
 
 pub use boolean::{
-    BooleanOptions, Certificate, Contact, CornerOrigin, CutFaces, Embed, Embedding, Expression,
-    ExpressionError, Grid, NearContact, NearContacts, OperandState, Operation, Origin, Outcome, PlaneCut,
-    Rule, Section, SectionSide, Sections, Snapping, TrimSide, Trimmed, UnknownName, boolean,
+    BooleanOptions, Cell, Certificate, Contact, CornerOrigin, CutFaces, Embed, Embedding, Expression,
+    ExpressionError, Grid, Imprinted, NearContact, NearContacts, OperandState, Operation, Origin, Outcome,
+    PlaneCut, Rule, Section, SectionSide, Sections, Snapping, Solidified, Solidify, SolidifyReport, TrimSide,
+    Trimmed, UnknownName, boolean,
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};
