@@ -80,6 +80,7 @@ pub mod exact;
 pub mod field;
 #[cfg(feature = "formats")]
 pub mod io;
+pub mod making;
 pub mod mesh;
 #[cfg(feature = "model")]
 pub mod model;
