@@ -21,10 +21,17 @@ use super::words;
 pub(crate) fn run(arguments: &Cut, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
     let mut requests = requests::requests(matches, arguments.inputs.reading.format)?;
     if arguments.plane.is_empty() {
-        return Err(Fault::usage(
+        let names: Vec<String> = requests.iter().map(requests::Request::name).collect();
+        return Err(Fault::usage(if names.len() > 1 {
+            format!(
+                "cut cuts at planes (--plane z=12.5); to take files off the first one: `trisect difference {} -o OUTPUT`",
+                names.join(" ")
+            )
+        } else {
             "cut needs a plane to cut at (--plane z=12.5); to take files off the first one, see `difference`, and for sections \
-             `section` and `slice`",
-        ));
+             `section` and `slice`"
+                .into()
+        }));
     }
     if requests.len() > 1 {
         return Err(Fault::usage("cut takes one input; cut others by runs of their own"));

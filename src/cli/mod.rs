@@ -26,12 +26,17 @@ mod field_arguments;
 mod freeform;
 mod grid;
 mod held;
+mod hull;
 mod info;
 mod json;
 mod limits;
+mod made;
+mod making_arguments;
+mod measure;
 mod mended;
 mod operands;
 mod output;
+mod points;
 mod progress;
 mod reading;
 mod recenter;
@@ -43,6 +48,7 @@ mod scenes;
 mod section;
 mod selection;
 mod session;
+mod shell;
 mod slice;
 mod source;
 mod split;
@@ -52,6 +58,7 @@ mod stream;
 mod subdivide;
 mod surface;
 mod task;
+mod transforms;
 mod trim;
 mod usable;
 mod values;
@@ -122,7 +129,7 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
     let mut session = match Session::begin(&arguments.common, arguments.verb.name()) {
         Ok(session) => session,
         Err(fault) => {
-            let _ = writeln!(std::io::stderr(), "trisect: {}", fault.message);
+            let _ = writeln!(std::io::stderr(), "{PREFIX} {}", fault.message);
             return fault.exit;
         }
     };
@@ -144,6 +151,12 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Section(section) => section::run(section, matches, &mut session),
             Verb::Split(split) => split::run(split, matches, &mut session),
             Verb::Trim(trim) => trim::run(trim, matches, &mut session),
+            Verb::Hull(hull) => hull::run(hull, matches, &mut session),
+            Verb::Minkowski(sum) => hull::run_minkowski(sum, matches, &mut session),
+            Verb::Measure(measure) => measure::run(measure, matches, &mut session),
+            Verb::Distance(distance) => measure::run_distance(distance, matches, &mut session),
+            Verb::Completions(completions) => shell::run_completions(completions),
+            Verb::Man(man) => shell::run_man(man, &mut session),
             Verb::Check(check) => check::run(check, matches, &mut session),
             Verb::Info(info) => info::run(info, matches, &mut session),
             Verb::Convert(convert) => convert::run(convert, matches, &mut session),

@@ -1,55 +1,17 @@
 //! Inputs as the command line names them: which transforms belong to which file, and its format.
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ArgMatches;
 use trisect::io::Format;
-use trisect::{Mesh, MeshError, Rule};
+use trisect::Rule;
 
 use super::chosen::{self, Chosen};
 use super::fault::Fault;
 use super::repairs::Repairs;
 use super::stream::STANDARD;
-
-/// A transform of an input.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Transform {
-    Translate([f64; 3]),
-    /// Degrees about x, then y, then z.
-    Rotate([f64; 3]),
-    Scale([f64; 3]),
-    /// Rows of an affine map.
-    Matrix([[f64; 4]; 4]),
-}
-
-impl Transform {
-    /// The mesh, moved.
-    pub(crate) fn apply(&self, mesh: Mesh) -> Result<Mesh, MeshError> {
-        match self {
-            Self::Translate(by) => Ok(mesh.translated(*by)),
-            Self::Rotate([x, y, z]) => {
-                mesh.rotated([1.0, 0.0, 0.0], *x)?.rotated([0.0, 1.0, 0.0], *y)?.rotated([0.0, 0.0, 1.0], *z)
-            }
-            Self::Scale(by) => mesh.scaled(*by),
-            Self::Matrix(rows) => mesh.transformed(rows.as_flattened()),
-        }
-    }
-}
-
-impl fmt::Display for Transform {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (name, values) = match self {
-            Self::Translate(by) => ("translate", by.as_slice()),
-            Self::Rotate(degrees) => ("rotate", degrees.as_slice()),
-            Self::Scale(by) => ("scale", by.as_slice()),
-            Self::Matrix(rows) => ("matrix", rows.as_flattened()),
-        };
-        let values: Vec<String> = values.iter().map(ToString::to_string).collect();
-        write!(f, "{name} {}", values.join(","))
-    }
-}
+use super::transforms::{self, Transform};
 
 /// An input as the command line names it.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,6 +41,16 @@ impl Request {
         }
     }
 
+    /// What the result's groups are called by: the name of the part, or else of the file without folders and ending.
+    pub(crate) fn short_name(&self) -> String {
+        let chosen = self.chosen.as_ref().and_then(|chosen| chosen.name.as_ref());
+        if let Some(part) = chosen.or(self.part.as_ref()) {
+            return part.clone();
+        }
+        let stem = self.path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        stem.filter(|stem| !stem.is_empty() && stem != STANDARD).unwrap_or_else(|| "input".into())
+    }
+
     /// Whether this is standard input.
     pub(crate) fn is_standard(&self) -> bool {
         self.path == Path::new(STANDARD)
@@ -105,16 +77,7 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
     }
     let mut items: Vec<(usize, Item)> =
         placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(path))).collect();
-    let mut transforms = |name, values: Vec<(usize, Transform)>| {
-        items.extend(values.into_iter().map(|(at, transform)| (at, Item::Transform(name, transform))));
-    };
-    transforms(
-        "--translate",
-        placed(matches, "translate").map(|(at, v)| (at, Transform::Translate(v))).collect(),
-    );
-    transforms("--rotate", placed(matches, "rotate").map(|(at, v)| (at, Transform::Rotate(v))).collect());
-    transforms("--scale", placed(matches, "scale").map(|(at, v)| (at, Transform::Scale(v))).collect());
-    transforms("--matrix", placed(matches, "matrix").map(|(at, v)| (at, Transform::Matrix(v))).collect());
+    items.extend(transforms::all(matches).into_iter().map(|(at, name, what)| (at, Item::Transform(name, what))));
     items.extend(placed_repairs(matches).into_iter().map(|(at, repairs)| (at, Item::Repair(repairs))));
     if matches.try_contains_id("rule").is_ok() {
         items.extend(placed(matches, "rule").map(|(at, rule)| (at, Item::Rule(rule))));
@@ -182,7 +145,7 @@ fn placed_repairs(matches: &ArgMatches) -> Vec<(usize, Repairs)> {
 }
 
 /// The values of an argument, each with its place on the command line.
-fn placed<T: Clone + Send + Sync + 'static>(
+pub(crate) fn placed<T: Clone + Send + Sync + 'static>(
     matches: &ArgMatches,
     id: &str,
 ) -> impl Iterator<Item = (usize, T)> {

@@ -1,20 +1,34 @@
 //! Words that people type for verbs, and where what they mean is found.
 
+use std::path::Path;
+
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use trisect::io::Format;
 
 /// What a word that is no verb should have been.
-const MEANT: [(&[&str], &str); 8] = [
-    (&["subtract", "minus", "diff", "carve"], "see `difference`"),
+const MEANT: &[(&[&str], &str)] = &[
+    (&["minus", "diff", "carve", "sub", "less", "engrave", "drill"], "see `difference`"),
     (&["clip", "halve", "bisect"], "see `cut` for planes, `intersection` and `difference` for solids"),
     (&["layers", "contour", "contours"], "see `section`"),
-    (&["merge", "add", "join", "unite"], "see `union`"),
+    (&["join", "unite", "combine-all", "plus", "or", "weld", "fuse"], "see `union`"),
     (&["and", "common", "overlap"], "see `intersection`"),
     (&["explode", "separate", "parts"], "see `split`"),
+    (&["volume", "area", "centroid", "inertia", "mass", "thickness", "weigh"], "see `measure`"),
+    (&["gap", "clearance", "interference", "collide", "collision"], "see `distance`"),
+    (&["convex-hull", "convexhull", "chull", "wrap"], "see `hull`"),
+    (&["thicken", "dilate", "round"], "see `minkowski`"),
+    (&["render", "draw", "picture", "png", "view", "show"], "see `convert`, whose --png FILE draws a picture"),
+    (&["export", "save", "write", "import", "translate", "rotate", "scale", "move", "mirror", "center"], "see `convert`"),
+    (&["array", "repeat", "copy", "pattern"], "see --pattern, an option of every verb that takes meshes"),
+    (&["validate", "verify", "test", "lint"], "see `check`"),
+    (&["show-info", "stat", "stats", "ls", "inspect", "describe"], "see `info`"),
+    (&["version"], "see `--version`"),
+    (&["formats"], "see `info --formats`"),
     (
         &["repair", "fix", "heal"],
         "see `check`, which says what is wrong, `resolve` for what crosses itself, and the options --weld, --orient, --fill-holes and --closed-parts of every verb",
     ),
-    (&["hull", "offset", "minkowski", "decimate"], "there is no such operation"),
+    (&["decimate", "simplify", "remesh", "smooth"], "there is no such operation"),
 ];
 
 /// One line for a verb that does not exist but is meant to; `None` for other errors.
@@ -23,8 +37,18 @@ pub(super) fn hint(error: &clap::Error) -> Option<String> {
         return None;
     }
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else { return None };
-    let (_, meant) = MEANT.iter().find(|(words, _)| words.contains(&word.as_str()))?;
-    Some(format!("'{word}' is no verb: {meant} (`trisect --help` lists all)"))
+    if let Some((_, meant)) = MEANT.iter().find(|(words, _)| words.contains(&word.to_lowercase().as_str())) {
+        return Some(format!("'{word}' is no verb: {meant} (`trisect --help` lists all)"));
+    }
+    // A file where the verb should be.
+    let path = Path::new(word);
+    let is_file = Format::from_path(path).is_some() || path.exists();
+    is_file.then(|| {
+        format!(
+            "'{word}' is a file, and a verb comes first: `trisect union {word} ... -o OUTPUT`, or difference, intersection, convert, \
+             info, check (`trisect --help` lists all)"
+        )
+    })
 }
 
 #[cfg(test)]
@@ -40,8 +64,9 @@ mod tests {
 
     #[test]
     fn common_words_get_a_hint_and_typos_that_of_clap() {
-        assert!(hint_for("subtract").unwrap().contains("see `difference`"));
-        assert!(hint_for("merge").unwrap().contains("see `union`"));
+        assert!(hint_for("minus").unwrap().contains("see `difference`"));
+        assert!(hint_for("Unite").unwrap().contains("see `union`"));
+        assert!(hint_for("part.stl").unwrap().contains("a verb comes first"));
         assert_eq!(hint_for("differense"), None);
     }
 
