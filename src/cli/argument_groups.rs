@@ -7,6 +7,7 @@ use clap::{Args, ColorChoice, ValueEnum};
 use trisect::io::Format;
 use trisect::mesh::Welding;
 
+use super::shapes::Justify;
 use super::surface::{self, Normals};
 use super::transforms::{self, Alignment, Repetition};
 use super::values;
@@ -131,6 +132,26 @@ pub(crate) struct Placing {
     /// along:FILE:COUNT[:turn]
     #[arg(long, value_name = "PATTERN", value_parser = transforms::repetition, allow_hyphen_values = true)]
     pattern: Vec<Repetition>,
+    #[command(flatten)]
+    texts: Texts,
+}
+
+/// How inputs that are text are set. The values are taken from the matches together with their positions.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Text, of the input text:... just before them, or of all before the first input")]
+pub(crate) struct Texts {
+    /// The font: a file *.ttf, *.otf or *.ttc
+    #[arg(long, value_name = "FILE")]
+    font: Vec<PathBuf>,
+    /// The size of the font, its em: capitals are about 0.7 of it [default: 10]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    size: Vec<f64>,
+    /// How far text is extruded, from z = 0 upwards [default: 1]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    depth: Vec<f64>,
+    /// To which side lines are flush [default: left]
+    #[arg(long, value_name = "SIDE", value_enum)]
+    justify: Vec<Justify>,
 }
 
 /// What is mended in inputs where it is asked for. Each applies to the input just before it, or to all inputs if it stands

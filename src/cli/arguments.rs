@@ -12,7 +12,7 @@ use super::cut_arguments::{Cut, Section, Split, Trim};
 #[cfg(feature = "parametric")]
 use super::field_arguments::CurveVerb;
 use super::field_arguments::{Eval, SampleGrid, Slice};
-use super::making_arguments::{Completions, Distance, Hull, Man, Measure, Minkowski};
+use super::making_arguments::{Completions, Distance, Hull, Man, Measure, Minkowski, Text};
 use super::surface::{self, CutUv};
 use super::values;
 
@@ -105,6 +105,12 @@ pub(crate) enum Verb {
     /// The convex hull of all inputs together
     #[command(after_help = "Example:\n  trisect hull a.stl b.obj -o hull.stl")]
     Hull(Hull),
+    /// Text in a TrueType or OpenType font, as a solid
+    #[command(
+        after_help = "Examples:\n  trisect text 'No 42' --font DejaVuSans.ttf --size 8 --depth 2 -o text.stl\n  trisect difference \
+                            part.stl 'text:No 42' --font DejaVuSans.ttf --size 8 --translate 5,5,9 -o engraved.stl"
+    )]
+    Text(Text),
     /// What a convex tool sweeps while its origin goes through all of a solid
     #[command(after_help = "Example:\n  trisect minkowski body.stl ball.stl -o rounded.stl")]
     Minkowski(Minkowski),
@@ -188,6 +194,7 @@ impl Verb {
             Self::Split(_) => "split",
             Self::Trim(_) => "trim",
             Self::Hull(_) => "hull",
+            Self::Text(_) => "text",
             Self::Minkowski(_) => "minkowski",
             Self::Measure(_) => "measure",
             Self::Distance(_) => "distance",

@@ -1,5 +1,6 @@
-//! `hull` and `minkowski`.
+//! `hull`, `text` and `minkowski`.
 
+use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ArgMatches;
@@ -9,7 +10,7 @@ use trisect::{Error, Solid, making};
 use super::combine;
 use super::fault::{Exit, Fault};
 use super::made;
-use super::making_arguments::{Hull, Minkowski};
+use super::making_arguments::{Hull, Minkowski, Text};
 use super::operands;
 use super::reading;
 use super::requests;
@@ -52,6 +53,21 @@ pub(crate) fn run(arguments: &Hull, matches: &ArgMatches, session: &mut Session<
     let solid = Solid::try_from(hull).map_err(Error::from)?;
     let seconds = session.took("run", start);
     made::deliver(&solid, &arguments.results, &targets, format, seconds, session)?;
+    Ok(Exit::Fine)
+}
+
+/// Sets text.
+pub(crate) fn run_text(arguments: &Text, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    let control = session.control();
+    let start = Instant::now();
+    let named = |text: PathBuf| format!("text:{}", text.display()).into();
+    let mut requests = requests::placed_inputs(matches, named)?;
+    let Some(request) = requests.pop() else { return Err(Fault::usage("a text is needed")) };
+    let targets = made::targets(&arguments.results, session)?;
+    let mesh = reading::read(&request, &session.limits, &control)?.mesh;
+    let solid = Solid::try_from(mesh).map_err(Error::from)?;
+    let seconds = session.took("run", start);
+    made::deliver(&solid, &arguments.results, &targets, None, seconds, session)?;
     Ok(Exit::Fine)
 }
 

@@ -22,6 +22,18 @@ pub(crate) struct Hull {
     pub(crate) results: Results,
 }
 
+/// Text as a solid.
+#[derive(Debug, Args)]
+pub(crate) struct Text {
+    /// The text; \n begins a new line
+    #[arg(value_name = "TEXT", required = true, num_args = 1)]
+    pub(crate) files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) placing: Placing,
+    #[command(flatten)]
+    pub(crate) results: Results,
+}
+
 /// Minkowski sums.
 #[derive(Debug, Args)]
 pub(crate) struct Minkowski {

@@ -48,6 +48,7 @@ mod scenes;
 mod section;
 mod selection;
 mod session;
+mod shapes;
 mod shell;
 mod slice;
 mod source;
@@ -152,6 +153,7 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Split(split) => split::run(split, matches, &mut session),
             Verb::Trim(trim) => trim::run(trim, matches, &mut session),
             Verb::Hull(hull) => hull::run(hull, matches, &mut session),
+            Verb::Text(text) => hull::run_text(text, matches, &mut session),
             Verb::Minkowski(sum) => hull::run_minkowski(sum, matches, &mut session),
             Verb::Measure(measure) => measure::run(measure, matches, &mut session),
             Verb::Distance(distance) => measure::run_distance(distance, matches, &mut session),

@@ -10,6 +10,7 @@ use trisect::Rule;
 use super::chosen::{self, Chosen};
 use super::fault::Fault;
 use super::repairs::Repairs;
+use super::shapes::{self, Setting};
 use super::stream::STANDARD;
 use super::transforms::{self, Transform};
 
@@ -69,34 +70,51 @@ pub(crate) fn requests(matches: &ArgMatches, format: Option<Format>) -> Result<V
 /// clap numbers every value by its place on the command line ([`ArgMatches::indices_of`]); sorting files and
 /// transforms by that number restores the order in which they were written.
 pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Fault> {
+    placed_inputs(matches, |path| path)
+}
+
+/// The same with other names for the inputs.
+pub(crate) fn placed_inputs(
+    matches: &ArgMatches,
+    name: impl Fn(PathBuf) -> PathBuf,
+) -> Result<Vec<Request>, Fault> {
     enum Item {
         File(PathBuf),
         Transform(&'static str, Transform),
         Repair(Repairs),
         Rule(Rule),
+        Setting(Setting),
     }
     let mut items: Vec<(usize, Item)> =
-        placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(path))).collect();
+        placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(name(path)))).collect();
     items.extend(transforms::all(matches).into_iter().map(|(at, name, what)| (at, Item::Transform(name, what))));
     items.extend(placed_repairs(matches).into_iter().map(|(at, repairs)| (at, Item::Repair(repairs))));
     if matches.try_contains_id("rule").is_ok() {
         items.extend(placed(matches, "rule").map(|(at, rule)| (at, Item::Rule(rule))));
     }
+    items.extend(placed_settings(matches).into_iter().map(|(at, setting)| (at, Item::Setting(setting))));
     items.sort_by_key(|&(at, _)| at);
 
     let expansion = matches.try_get_one::<u64>("expansion").ok().flatten().copied();
     let mut requests: Vec<Request> = Vec::new();
     let (mut for_all, mut rule_for_all) = (Repairs::default(), Rule::default());
+    let (mut settings, mut setting_for_all) = (Vec::<Setting>::new(), Setting::default());
     for (_, item) in items {
         match (item, requests.last_mut()) {
             (Item::File(path), _) => {
-                let (path, part) = chosen::split(path);
+                let (path, part) =
+                    if shapes::named(&path).is_some() { (path, None) } else { chosen::split(path) };
+                settings.push(Setting::default());
                 let (format, chosen, transforms) = (None, None, Vec::new());
                 let (repairs, rule) = (Repairs::default(), rule_for_all);
                 requests.push(Request { path, part, chosen, format, expansion, transforms, repairs, rule });
             }
             (Item::Rule(rule), Some(request)) => request.rule = rule,
             (Item::Rule(rule), None) => rule_for_all = rule,
+            (Item::Setting(setting), _) => match settings.last_mut() {
+                Some(last) => *last = setting.or(last),
+                None => setting_for_all = setting.or(&setting_for_all),
+            },
             (Item::Transform(_, transform), Some(request)) => request.transforms.push(transform),
             (Item::Repair(repairs), Some(request)) => request.repairs = repairs.with(request.repairs),
             (Item::Repair(repairs), None) => for_all = repairs.with(for_all),
@@ -107,7 +125,16 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
             }
         }
     }
-    for request in &mut requests {
+    for (request, setting) in requests.iter_mut().zip(settings) {
+        if shapes::named(&request.path).is_some() {
+            let made = shapes::made(&request.path, &setting.or(&setting_for_all))?;
+            request.chosen = Some(Arc::new(made));
+        } else if setting.is_some() {
+            return Err(Fault::usage(format!(
+                "{}: --font, --size, --depth and --justify are for inputs text:...",
+                request.name()
+            )));
+        }
         request.repairs = request.repairs.with(for_all);
         if let Some(other) = request.repairs.contradiction() {
             return Err(Fault::usage(format!(
@@ -142,6 +169,20 @@ fn placed_repairs(matches: &ArgMatches) -> Vec<(usize, Repairs)> {
         repairs.extend(placed(matches, "weld").map(|(at, weld)| (at, Repairs { weld, ..none })));
     }
     repairs
+}
+
+/// How texts are to be set, each option with its place on the command line.
+fn placed_settings(matches: &ArgMatches) -> Vec<(usize, Setting)> {
+    let none = Setting::default;
+    let mut settings: Vec<(usize, Setting)> = Vec::new();
+    if matches.try_contains_id("font").is_ok() {
+        settings.extend(placed(matches, "font").map(|(at, font)| (at, Setting { font: Some(font), ..none() })));
+        settings.extend(placed(matches, "size").map(|(at, size)| (at, Setting { size: Some(size), ..none() })));
+        settings.extend(placed(matches, "depth").map(|(at, depth)| (at, Setting { depth: Some(depth), ..none() })));
+        let justified = placed(matches, "justify");
+        settings.extend(justified.map(|(at, justify)| (at, Setting { justify: Some(justify), ..none() })));
+    }
+    settings
 }
 
 /// The values of an argument, each with its place on the command line.

@@ -1,4 +1,4 @@
-//! Making things: convex hulls, Minkowski sums, patterns of copies.
+//! Making things: convex hulls, Minkowski sums, patterns of copies, text.
 //!
 //! Every function gives a closed mesh, or a solid, that is an operand again.
 //!
@@ -19,7 +19,11 @@
 mod hull;
 mod minkowski;
 mod pattern;
+#[cfg(feature = "text")]
+mod text;
 
 pub use hull::convex_hull;
 pub use minkowski::minkowski_sum;
 pub use pattern::Pattern;
+#[cfg(feature = "text")]
+pub use text::{Font, Lettering, TextAlign};

@@ -6,7 +6,7 @@ use crate::{Error, Mesh, MeshError};
 /// Where copies of a mesh go. The first place is always that of the mesh itself, but for points and lines.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase", deny_unknown_fields))]
 #[non_exhaustive]
 pub enum Pattern {
     /// Along a direction.
@@ -27,11 +27,15 @@ pub enum Pattern {
     Circular {
         /// How many copies.
         count: u32,
-        /// The direction of the axis.
+        /// The direction of the axis; z unless it is said.
+        #[cfg_attr(feature = "serde", serde(default = "upwards"))]
         axis: [f64; 3],
-        /// A point on it.
+        /// A point on it; the origin unless it is said.
+        #[cfg_attr(feature = "serde", serde(default))]
         center: [f64; 3],
-        /// From the first to the last, counter-clockwise seen against the axis; 360 or more (or -360 or less) is a full turn.
+        /// From the first to the last, counter-clockwise seen against the axis; 360 or more (or -360 or less) is a full turn, and
+        /// what is meant if it is not said.
+        #[cfg_attr(feature = "serde", serde(default = "full_turn"))]
         degrees: f64,
     },
     /// The mesh's origin moved to each point.
@@ -43,8 +47,19 @@ pub enum Pattern {
         /// How many copies.
         count: u32,
         /// Whether the mesh's x axis turns with the line (about z, for a line that climbs also up and down).
+        #[cfg_attr(feature = "serde", serde(default))]
         turn: bool,
     },
+}
+
+#[cfg(feature = "serde")]
+fn upwards() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
+
+#[cfg(feature = "serde")]
+fn full_turn() -> f64 {
+    360.0
 }
 
 /// The most copies: what is more is a slip of the pen.

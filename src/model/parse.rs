@@ -12,7 +12,7 @@ use super::contour::PlaneRegion;
 use super::half_space::HalfSpace;
 #[cfg(feature = "parametric")]
 use super::parametric::{self, Curves, Described, Parametric};
-use super::{Defaults, Kind, Mode, Model, Node, contour, fault, primitive, references, transform};
+use super::{Defaults, Kind, Mode, Model, Node, contour, fault, made, primitive, references, transform};
 use crate::Error;
 use crate::boolean::Operation;
 use crate::field::{Formula, System, named_system};
@@ -24,7 +24,7 @@ const CUSTOM: &str = "x-";
 const PARAMETRIC: [&str; 4] = ["patches", "extrusion", "revolution", "sweep"];
 const KINDS: &str = "union, intersection, difference, xor, complement, mesh, box, sphere, cylinder, cone, torus, half_space, \
                      formula, contour, region, patches, extrusion, revolution, sweep, parametric, \
-                     freeform";
+                     freeform, hull, minkowski, pattern, text";
 
 struct ModelReader<'a> {
     nodes: Vec<Node>,
@@ -297,6 +297,15 @@ impl ModelReader<'_> {
             "parametric" => {
                 let file = file_of(&mut object).map_err(within(label))?;
                 self.described(&file).map_err(within(label))?
+            }
+            kind if made::KINDS.contains(&kind) => {
+                let (made, operands) = made::parse(kind, &mut object).map_err(within(label))?;
+                let path = path.trim_end_matches('/');
+                let operands = operands
+                    .into_iter()
+                    .map(|(place, value)| self.add(value, &format!("{path}/{place}")))
+                    .collect::<Result<Vec<usize>, Error>>()?;
+                Kind::Made(made, operands)
             }
             "freeform" => self.cage(std::mem::take(&mut object)).map_err(within(label))?,
             kind if PARAMETRIC.contains(&kind) => {
