@@ -138,7 +138,9 @@ pub(crate) struct Placing {
 
 /// How inputs that are text are set. The values are taken from the matches together with their positions.
 #[derive(Debug, Args)]
-#[command(next_help_heading = "Text, of the input text:... just before them, or of all before the first input")]
+#[command(
+    next_help_heading = "Text, of the input text:... just before them, or of all before the first input"
+)]
 pub(crate) struct Texts {
     /// The font: a file *.ttf, *.otf or *.ttc
     #[arg(long, value_name = "FILE")]

@@ -12,7 +12,7 @@ use super::cut_arguments::{Cut, Section, Split, Trim};
 #[cfg(feature = "parametric")]
 use super::field_arguments::CurveVerb;
 use super::field_arguments::{Eval, SampleGrid, Slice};
-use super::making_arguments::{Completions, Distance, Hull, Man, Measure, Minkowski, Text};
+use super::making_arguments::{Completions, Distance, Hollow, Hull, Man, Measure, Minkowski, Offset, Text};
 use super::surface::{self, CutUv};
 use super::values;
 
@@ -114,6 +114,14 @@ pub(crate) enum Verb {
     /// What a convex tool sweeps while its origin goes through all of a solid
     #[command(after_help = "Example:\n  trisect minkowski body.stl ball.stl -o rounded.stl")]
     Minkowski(Minkowski),
+    /// A solid grown by a distance, or shrunk
+    #[command(
+        after_help = "Examples:\n  trisect offset part.stl --distance 0.5 -o larger.stl\n  trisect offset part.stl --distance -0.2 -o smaller.stl"
+    )]
+    Offset(Offset),
+    /// A solid made hollow, with a wall of even thickness and drain holes
+    #[command(after_help = "Example:\n  trisect hollow bust.stl --wall 2 --drain 0,0,0:1.5 -o hollow.stl")]
+    Hollow(Hollow),
     /// Volume, area, centroid and moments of inertia of solids, and what is at points
     #[command(
         after_help = "Examples:\n  trisect measure part.stl --json\n  trisect measure part.stl --at 0,0,5 --points probes.csv"
@@ -175,7 +183,9 @@ pub(crate) enum Verb {
     )]
     Completions(Completions),
     /// Print a page of the manual, for `man`
-    #[command(after_help = "Examples:\n  trisect man | man -l -\n  trisect man --folder /usr/local/share/man/man1")]
+    #[command(
+        after_help = "Examples:\n  trisect man | man -l -\n  trisect man --folder /usr/local/share/man/man1"
+    )]
     Man(Man),
 }
 
@@ -196,6 +206,8 @@ impl Verb {
             Self::Hull(_) => "hull",
             Self::Text(_) => "text",
             Self::Minkowski(_) => "minkowski",
+            Self::Offset(_) => "offset",
+            Self::Hollow(_) => "hollow",
             Self::Measure(_) => "measure",
             Self::Distance(_) => "distance",
             Self::Completions(_) => "completions",

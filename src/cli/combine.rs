@@ -5,7 +5,9 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::Value;
 use trisect::io::{Format, WriteOptions};
-use trisect::{BooleanOptions, Control, Embed, FaceGroup, Grid, OperandState, Operation, Outcome, Rule, Solid};
+use trisect::{
+    BooleanOptions, Control, Embed, FaceGroup, Grid, OperandState, Operation, Outcome, Rule, Solid,
+};
 
 use super::argument_groups::{Colours, Results, Writing};
 use super::arguments::{Combination, Combine};

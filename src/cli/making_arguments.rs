@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap_complete::Shell;
+use trisect::making::Drain;
 
 use super::argument_groups::{Inputs, Placing, Reading, Results};
 use super::values;
@@ -41,6 +42,45 @@ pub(crate) struct Minkowski {
     pub(crate) inputs: Inputs,
     #[command(flatten)]
     pub(crate) results: Results,
+}
+
+/// Offsets.
+#[derive(Debug, Args)]
+pub(crate) struct Offset {
+    #[command(flatten)]
+    pub(crate) inputs: Inputs,
+    /// How far the surface moves outwards; inwards if it is negative
+    #[arg(long, value_name = "LENGTH", value_parser = values::number, allow_hyphen_values = true, required = true)]
+    pub(crate) distance: f64,
+    /// Largest distance from the true offset [default: a twentieth of the distance, but no less than 1/2000 of the diagonal]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(crate) tolerance: Option<f64>,
+    #[command(flatten)]
+    pub(crate) results: Results,
+}
+
+/// Shells.
+#[derive(Debug, Args)]
+pub(crate) struct Hollow {
+    #[command(flatten)]
+    pub(crate) inputs: Inputs,
+    /// The thickness of the wall
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true, required = true)]
+    pub(crate) wall: f64,
+    /// A hole through the wall, square to the surface at the place nearest to a point; may be repeated
+    #[arg(long, value_name = "X,Y,Z:RADIUS", value_parser = drain, allow_hyphen_values = true)]
+    pub(crate) drain: Vec<Drain>,
+    /// Largest distance of the cavity from the true one [default: a twentieth of the wall, but no less than 1/2000 of the diagonal]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    pub(crate) tolerance: Option<f64>,
+    #[command(flatten)]
+    pub(crate) results: Results,
+}
+
+/// `X,Y,Z:RADIUS`.
+fn drain(text: &str) -> Result<Drain, String> {
+    let (at, radius) = text.rsplit_once(':').ok_or("expected a point and a radius, such as 0,0,0:1.5")?;
+    Ok(Drain { at: values::vector(at)?, radius: values::length(radius)? })
 }
 
 /// Measuring solids.

@@ -22,7 +22,11 @@ use super::stream;
 use super::words::short;
 
 /// Measures every input.
-pub(crate) fn run(arguments: &Measure, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
+pub(crate) fn run(
+    arguments: &Measure,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
     let control = session.control();
     let requests = requests::requests(matches, arguments.inputs.reading.format)?;
     let requests = selection::each(requests, &session.limits, &control)?;
@@ -75,7 +79,13 @@ fn at_points(solid: &Solid, points: &[[f64; 3]]) -> Vec<Place> {
     let walls = tree.thickness_at_all(points);
     let found = points.iter().zip(sides).zip(walls).filter_map(|((&point, side), thickness)| {
         let closest = tree.closest(point)?;
-        Some(Place { point, side, distance: closest.squared_distance.sqrt(), nearest: closest.point, thickness })
+        Some(Place {
+            point,
+            side,
+            distance: closest.squared_distance.sqrt(),
+            nearest: closest.point,
+            thickness,
+        })
     });
     found.collect()
 }
@@ -183,7 +193,10 @@ pub(crate) fn run_distance(
             text.push_str(&format!("overlap  {} (volume in both)\n", short(overlap)));
         }
         if found.encloses {
-            text.push_str(&format!("surfaces {} apart: one lies inside the other\n", short(found.surfaces.distance)));
+            text.push_str(&format!(
+                "surfaces {} apart: one lies inside the other\n",
+                short(found.surfaces.distance)
+            ));
         }
         text.push_str(&format!("from     {}\nto       {}\n", three(p), three(q)));
         session.console.pause(|| stream::print(&text))?;

@@ -26,11 +26,11 @@ mod field_arguments;
 mod freeform;
 mod grid;
 mod held;
-mod hull;
 mod info;
 mod json;
 mod limits;
 mod made;
+mod making;
 mod making_arguments;
 mod measure;
 mod mended;
@@ -152,9 +152,11 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Section(section) => section::run(section, matches, &mut session),
             Verb::Split(split) => split::run(split, matches, &mut session),
             Verb::Trim(trim) => trim::run(trim, matches, &mut session),
-            Verb::Hull(hull) => hull::run(hull, matches, &mut session),
-            Verb::Text(text) => hull::run_text(text, matches, &mut session),
-            Verb::Minkowski(sum) => hull::run_minkowski(sum, matches, &mut session),
+            Verb::Hull(hull) => making::run(hull, matches, &mut session),
+            Verb::Text(text) => making::run_text(text, matches, &mut session),
+            Verb::Minkowski(sum) => making::run_minkowski(sum, matches, &mut session),
+            Verb::Offset(offset) => making::run_offset(offset, matches, &mut session),
+            Verb::Hollow(hollow) => making::run_hollow(hollow, matches, &mut session),
             Verb::Measure(measure) => measure::run(measure, matches, &mut session),
             Verb::Distance(distance) => measure::run_distance(distance, matches, &mut session),
             Verb::Completions(completions) => shell::run_completions(completions),

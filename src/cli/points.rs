@@ -30,7 +30,8 @@ fn of_text(text: &str) -> Result<Vec<[f64; 3]>, String> {
         match (next(), next(), next()) {
             (Some(x), Some(y), Some(z)) => points.push([x, y, z]),
             // Names of columns.
-            (None, None, None) if points.is_empty() && line.starts_with(|c: char| c.is_alphabetic() || c == '"') => {}
+            (None, None, None)
+                if points.is_empty() && line.starts_with(|c: char| c.is_alphabetic() || c == '"') => {}
             _ => return Err(format!("line {number}: expected three numbers, x y z, not '{line}'")),
         }
     }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ArgMatches;
-use trisect::io::Format;
 use trisect::Rule;
+use trisect::io::Format;
 
 use super::chosen::{self, Chosen};
 use super::fault::Fault;
@@ -87,7 +87,9 @@ pub(crate) fn placed_inputs(
     }
     let mut items: Vec<(usize, Item)> =
         placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(name(path)))).collect();
-    items.extend(transforms::all(matches).into_iter().map(|(at, name, what)| (at, Item::Transform(name, what))));
+    items.extend(
+        transforms::all(matches).into_iter().map(|(at, name, what)| (at, Item::Transform(name, what))),
+    );
     items.extend(placed_repairs(matches).into_iter().map(|(at, repairs)| (at, Item::Repair(repairs))));
     if matches.try_contains_id("rule").is_ok() {
         items.extend(placed(matches, "rule").map(|(at, rule)| (at, Item::Rule(rule))));
@@ -176,9 +178,13 @@ fn placed_settings(matches: &ArgMatches) -> Vec<(usize, Setting)> {
     let none = Setting::default;
     let mut settings: Vec<(usize, Setting)> = Vec::new();
     if matches.try_contains_id("font").is_ok() {
-        settings.extend(placed(matches, "font").map(|(at, font)| (at, Setting { font: Some(font), ..none() })));
-        settings.extend(placed(matches, "size").map(|(at, size)| (at, Setting { size: Some(size), ..none() })));
-        settings.extend(placed(matches, "depth").map(|(at, depth)| (at, Setting { depth: Some(depth), ..none() })));
+        settings
+            .extend(placed(matches, "font").map(|(at, font)| (at, Setting { font: Some(font), ..none() })));
+        settings
+            .extend(placed(matches, "size").map(|(at, size)| (at, Setting { size: Some(size), ..none() })));
+        settings.extend(
+            placed(matches, "depth").map(|(at, depth)| (at, Setting { depth: Some(depth), ..none() })),
+        );
         let justified = placed(matches, "justify");
         settings.extend(justified.map(|(at, justify)| (at, Setting { justify: Some(justify), ..none() })));
     }

@@ -30,7 +30,11 @@ pub(crate) fn run_man(arguments: &Man, session: &mut Session<'_>) -> Result<Exit
         }
         return Ok(Exit::Fine);
     }
-    let name = ["trisect".to_owned()].into_iter().chain(arguments.verb.iter().cloned()).collect::<Vec<_>>().join("-");
+    let name = ["trisect".to_owned()]
+        .into_iter()
+        .chain(arguments.verb.iter().cloned())
+        .collect::<Vec<_>>()
+        .join("-");
     let Some((_, command)) = pages.into_iter().find(|(other, _)| *other == name) else {
         return Err(Fault::usage(format!(
             "'{}' is no verb: `trisect --help` lists all",

@@ -76,9 +76,10 @@ impl Transform {
     pub(crate) fn apply(&self, mesh: Mesh) -> Result<Mesh, Error> {
         Ok(match self {
             Self::Translate(by) => mesh.translated(*by),
-            Self::Rotate([x, y, z]) => {
-                mesh.rotated([1.0, 0.0, 0.0], *x)?.rotated([0.0, 1.0, 0.0], *y)?.rotated([0.0, 0.0, 1.0], *z)?
-            }
+            Self::Rotate([x, y, z]) => mesh
+                .rotated([1.0, 0.0, 0.0], *x)?
+                .rotated([0.0, 1.0, 0.0], *y)?
+                .rotated([0.0, 0.0, 1.0], *z)?,
             Self::Scale(by) => mesh.scaled(*by)?,
             Self::Matrix(rows) => mesh.transformed(rows.as_flattened())?,
             Self::Center(axes) => mesh.centered(*axes),
@@ -184,7 +185,8 @@ pub(crate) fn axes(text: &str) -> Result<[bool; 3], String> {
 
 /// `AXIS=SIDE` or `AXIS=SIDE:AT`.
 pub(crate) fn alignment(text: &str) -> Result<Alignment, String> {
-    let expected = "expected an axis, a side of the bounds (low, middle, high) and where it goes, such as z=low:10";
+    let expected =
+        "expected an axis, a side of the bounds (low, middle, high) and where it goes, such as z=low:10";
     let (name, rest) = text.split_once('=').ok_or(expected)?;
     let (side, at) = rest.split_once(':').unwrap_or((rest, "0"));
     let side = match side.trim() {
@@ -220,9 +222,11 @@ pub(crate) fn repetition(text: &str) -> Result<Repetition, String> {
     let expected = "expected linear:COUNT:X,Y,Z, grid:NXxNYxNZ:X,Y,Z, circular:COUNT[:AXIS[:DEGREES]], points:FILE or \
                     along:FILE:COUNT[:turn]";
     let count = |text: &str| {
-        text.trim().parse::<u32>().ok().filter(|&count| count > 0).ok_or_else(|| {
-            format!("'{text}' is no number of copies; {expected}")
-        })
+        text.trim()
+            .parse::<u32>()
+            .ok()
+            .filter(|&count| count > 0)
+            .ok_or_else(|| format!("'{text}' is no number of copies; {expected}"))
     };
     let (kind, rest) = text.split_once(':').ok_or(expected)?;
     let words: Vec<&str> = rest.split(':').collect();
@@ -295,11 +299,16 @@ mod tests {
         }
         assert_eq!(told("grid:3x4:1,2"), "pattern grid:3x4x1:1,2,0");
         assert_eq!(told("circular:4"), "pattern circular:4:z:360");
-        for bad in ["", "5", "linear:5", "linear:0:1,0,0", "grid:2x2x2x2:1", "circular:x", "points:", "along:f"] {
+        for bad in
+            ["", "5", "linear:5", "linear:0:1,0,0", "grid:2x2x2x2:1", "circular:x", "points:", "along:f"]
+        {
             assert!(repetition(bad).unwrap_err().contains("expected"), "{bad}");
         }
         let align = |text: &str| Transform::Align(alignment(text).unwrap()).to_string();
-        assert_eq!((align("z=low").as_str(), align("x=max:2.5").as_str()), ("align z=low:0", "align x=high:2.5"));
+        assert_eq!(
+            (align("z=low").as_str(), align("x=max:2.5").as_str()),
+            ("align z=low:0", "align x=high:2.5")
+        );
         assert!(alignment("z").is_err() && alignment("z=up").is_err() && alignment("w=low").is_err());
     }
 }

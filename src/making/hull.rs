@@ -9,6 +9,7 @@
 use rustc_hash::FxHashMap;
 
 use crate::exact::{Sign, collinear, orient3d};
+use crate::spatial::{Closest, TriangleTree};
 use crate::{Error, Mesh, Solid};
 
 /// Marks a facet that is no more.
@@ -66,29 +67,28 @@ pub fn convex_hull(points: &[[f64; 3]]) -> Result<Mesh, Error> {
 
 /// Here and not with [`Solid`], which lies below, because users look for it at the solid.
 impl Solid {
-    /// Whether the solid is convex: one closed surface without handles, no edge of which is concave, by exact signs, and which
-    /// winds around its hull once (which is told by its volume). O(n log n).
+    /// Whether the solid is convex, to rounding: one manifold surface without handles, all of whose vertices lie on its convex
+    /// hull, within 32 units in the last place of its largest coordinate, and which encloses the same volume. (Flat faces that
+    /// are triangulated after rounding are nowhere flat to the last bit.) O(n log n).
     #[must_use]
     pub fn is_convex(&self) -> bool {
-        // Surfaces that wind around something several times enclose a multiple of its hull's volume, and others less.
-        const ONCE: f64 = 1e-9;
+        // What rounding of coordinates by half a unit comes to where planes of small faces are far from their corners.
+        const ROUNDING: f64 = 32.0 * f64::EPSILON;
+        // Volumes are right to this; a dent between vertices that lie on the hull is far larger.
+        const SAME: f64 = 1e-9;
         if self.components() != 1 || self.genus() != Some(0) || !self.is_manifold() {
             return false;
         }
-        let mesh = self.mesh();
-        let at = |corner: u32| &mesh.positions[corner as usize];
-        let opposite: FxHashMap<[u32; 2], u32> =
-            mesh.triangles.iter().flat_map(|&[a, b, c]| [([a, b], c), ([b, c], a), ([c, a], b)]).collect();
-        let is_concave = |&[a, b, c]: &[u32; 3]| {
-            [[b, a], [c, b], [a, c]].iter().filter_map(|edge| opposite.get(edge)).any(|&over| {
-                orient3d(at(a), at(b), at(c), at(over)) == Sign::Negative
-            })
-        };
-        if mesh.triangles.iter().any(is_concave) {
+        let positions = &self.mesh().positions;
+        let Ok(hull) = convex_hull(positions) else { return false };
+        let volume = hull.volume();
+        if !((self.volume() - volume).abs() <= SAME * volume) {
             return false;
         }
-        let hull = convex_hull(&mesh.positions).map_or(f64::NAN, |hull| hull.volume());
-        (self.volume() - hull).abs() <= ONCE * hull
+        let largest = positions.iter().flatten().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let tree = TriangleTree::new(&hull);
+        let is_near = |closest: Closest| closest.squared_distance.sqrt() <= ROUNDING * largest;
+        positions.iter().all(|&vertex| tree.closest(vertex).is_some_and(is_near))
     }
 }
 
@@ -97,8 +97,10 @@ fn tetrahedron(points: &[[f64; 3]]) -> Option<[u32; 4]> {
     let indices = || 0..points.len();
     let squared = |a: usize, b: usize| (0..3).map(|k| (points[a][k] - points[b][k]).powi(2)).sum::<f64>();
     // 1. Far from each other, so that the first tetrahedron is a large one; decisions are exact all the same.
-    let first = indices().min_by(|&a, &b| points[a].partial_cmp(&points[b]).unwrap_or(std::cmp::Ordering::Equal))?;
-    let second = indices().max_by(|&a, &b| squared(a, first).total_cmp(&squared(b, first)).then(b.cmp(&a)))?;
+    let first =
+        indices().min_by(|&a, &b| points[a].partial_cmp(&points[b]).unwrap_or(std::cmp::Ordering::Equal))?;
+    let second =
+        indices().max_by(|&a, &b| squared(a, first).total_cmp(&squared(b, first)).then(b.cmp(&a)))?;
     let second = if points[second] == points[first] {
         // (Where squares underflow or overflow, any other point will do.)
         indices().find(|&k| points[k] != points[first])?
@@ -240,7 +242,8 @@ impl<'a> Hull<'a> {
         }
         // 2. A new facet for each edge of the rim. It is a simple closed walk, so each corner begins one edge.
         let first = self.facets.len() as u32;
-        let begins: FxHashMap<u32, u32> = rim.iter().zip(first..).map(|(&([a, _], _), new)| (a, new)).collect();
+        let begins: FxHashMap<u32, u32> =
+            rim.iter().zip(first..).map(|(&([a, _], _), new)| (a, new)).collect();
         let ends: FxHashMap<u32, u32> = rim.iter().zip(first..).map(|(&([_, b], _), new)| (b, new)).collect();
         for (&([a, b], other), new) in rim.iter().zip(first..) {
             let across = &mut self.facets[other as usize];
@@ -249,7 +252,12 @@ impl<'a> Hull<'a> {
             }
             let side = |found: Option<&u32>| found.copied().unwrap_or(new);
             let over = [other, side(begins.get(&b)), side(ends.get(&a))];
-            self.facets.push(Facet { corners: [a, b, point], over, beyond: Vec::new(), seen_by: (GONE, false) });
+            self.facets.push(Facet {
+                corners: [a, b, point],
+                over,
+                beyond: Vec::new(),
+                seen_by: (GONE, false),
+            });
         }
         // 3. What was beyond the seen facets is beyond a new one, or inside.
         let mut left = Vec::new();
@@ -278,7 +286,8 @@ fn extreme_vertices(points: &[[f64; 3]], facets: &[[u32; 3]]) -> Vec<u32> {
             }
         }
     }
-    let mut extreme: Vec<u32> = bent.into_iter().filter(|&(_, count)| count >= 3).map(|(vertex, _)| vertex).collect();
+    let mut extreme: Vec<u32> =
+        bent.into_iter().filter(|&(_, count)| count >= 3).map(|(vertex, _)| vertex).collect();
     extreme.sort_unstable();
     extreme
 }
@@ -372,8 +381,19 @@ mod tests {
         let solid = |mesh: Mesh| Solid::try_from(mesh).unwrap();
         assert!(solid(primitives::cuboid([0.0; 3], [1.0; 3]).unwrap()).is_convex());
         assert!(solid(primitives::cylinder(1.0, 2.0, 17).unwrap()).is_convex());
+        // Its quadrangles are not flat to the last bit.
+        assert!(solid(primitives::uv_sphere(0.7, 24, 12).unwrap().translated([3.0, 0.1, 0.2])).is_convex());
+        let dented = {
+            let mut mesh = primitives::icosphere(1.0, 3).unwrap();
+            mesh.positions[100] = mesh.positions[100].map(|x| x * 0.999);
+            mesh
+        };
+        assert!(!solid(dented).is_convex());
         assert!(!solid(primitives::torus(2.0, 0.5, 9, 9).unwrap()).is_convex());
-        let (a, b) = (primitives::cuboid([0.0; 3], [1.0; 3]).unwrap(), primitives::cuboid([0.5; 3], [2.0; 3]).unwrap());
+        let (a, b) = (
+            primitives::cuboid([0.0; 3], [1.0; 3]).unwrap(),
+            primitives::cuboid([0.5; 3], [2.0; 3]).unwrap(),
+        );
         assert!(!solid(a.clone()).union(&solid(b)).unwrap().solid().is_convex());
         let apart = Mesh::merged([&a, &a.clone().translated([9.0; 3])]).unwrap();
         assert!(!solid(apart).is_convex());

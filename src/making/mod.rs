@@ -1,4 +1,4 @@
-//! Making things: convex hulls, Minkowski sums, patterns of copies, text.
+//! Making things: convex hulls, Minkowski sums, patterns of copies, text, offsets and shells.
 //!
 //! Every function gives a closed mesh, or a solid, that is an operand again.
 //!
@@ -18,12 +18,16 @@
 
 mod hull;
 mod minkowski;
+#[cfg(feature = "field")]
+mod offset;
 mod pattern;
 #[cfg(feature = "text")]
 mod text;
 
 pub use hull::convex_hull;
 pub use minkowski::minkowski_sum;
+#[cfg(feature = "field")]
+pub use offset::{Drain, Offset, hollow, offset};
 pub use pattern::Pattern;
 #[cfg(feature = "text")]
 pub use text::{Font, Lettering, TextAlign};

@@ -88,8 +88,12 @@ impl Pattern {
     #[must_use]
     pub fn count(&self) -> u64 {
         match self {
-            Self::Linear { count, .. } | Self::Circular { count, .. } | Self::Along { count, .. } => (*count).into(),
-            Self::Grid { counts, .. } => counts.iter().fold(1, |all, &count| u64::from(count).saturating_mul(all)),
+            Self::Linear { count, .. } | Self::Circular { count, .. } | Self::Along { count, .. } => {
+                (*count).into()
+            }
+            Self::Grid { counts, .. } => {
+                counts.iter().fold(1, |all, &count| u64::from(count).saturating_mul(all))
+            }
             Self::Points(points) => points.len() as u64,
         }
     }
@@ -144,7 +148,9 @@ impl Pattern {
                     let degrees = whole * f64::from(k) / f64::from(parts);
                     Some(Turn { axis: *axis, center: *center, degrees })
                 };
-                (0..*count).map(|k| Place { by: [0.0; 3], turns: [turn(k).filter(|_| k > 0), None] }).collect()
+                (0..*count)
+                    .map(|k| Place { by: [0.0; 3], turns: [turn(k).filter(|_| k > 0), None] })
+                    .collect()
             }
             Self::Points(points) => {
                 finite(points.as_flattened())?;
@@ -233,7 +239,8 @@ impl<'a> Copies<'a> {
         all.positions.extend(copy.positions);
         all.triangles.extend(copy.triangles.iter().map(|triangle| triangle.map(|corner| corner + first)));
         all.groups.of_triangle.extend(copy.groups.of_triangle);
-        for ((whole, copy), original) in all.attributes.iter_mut().zip(copy.attributes).zip(&self.original.attributes)
+        for ((whole, copy), original) in
+            all.attributes.iter_mut().zip(copy.attributes).zip(&self.original.attributes)
         {
             // Values that turning has not changed are shared.
             let offset = if copy.values == original.values {
@@ -243,7 +250,8 @@ impl<'a> Copies<'a> {
                 whole.values.extend(copy.values);
                 offset
             };
-            let moved = |value: u32| if value == Attribute::NONE { value } else { value.saturating_add(offset) };
+            let moved =
+                |value: u32| if value == Attribute::NONE { value } else { value.saturating_add(offset) };
             whole.of_corner.extend(copy.of_corner.into_iter().map(moved));
         }
         let count = copy.triangles.len();
@@ -281,7 +289,8 @@ mod tests {
     #[test]
     fn full_turns_and_parts_of_one() {
         let at = peg().translated([2.0, 0.0, 0.0]);
-        let circular = |count, degrees| Pattern::Circular { count, axis: [0.0, 0.0, 1.0], center: [0.0; 3], degrees };
+        let circular =
+            |count, degrees| Pattern::Circular { count, axis: [0.0, 0.0, 1.0], center: [0.0; 3], degrees };
         let whole = circular(4, 360.0).repeat(&at).unwrap();
         let bounds = whole.bounds().unwrap();
         assert_eq!((bounds.low, bounds.high), ([-2.25, -2.25, -0.25], [2.25, 2.25, 0.25]));
@@ -290,7 +299,8 @@ mod tests {
         // Normals turn with the copies.
         let normals = whole.attribute("NORMAL").unwrap();
         assert_eq!(normals.len(), 4 * peg().attribute("NORMAL").unwrap().len());
-        let about = Pattern::Circular { count: 2, axis: [0.0, 0.0, 5.0], center: [2.0, 1.0, 0.0], degrees: 360.0 };
+        let about =
+            Pattern::Circular { count: 2, axis: [0.0, 0.0, 5.0], center: [2.0, 1.0, 0.0], degrees: 360.0 };
         assert_eq!(about.repeat(&at).unwrap().bounds().unwrap().high[1], 2.25);
     }
 
@@ -302,7 +312,9 @@ mod tests {
         let middles = |mesh: &Mesh| -> Vec<[f64; 3]> {
             mesh.positions
                 .chunks(8)
-                .map(|copy| [0, 1, 2].map(|k| (copy.iter().map(|p| p[k]).sum::<f64>() / 8.0 * 64.0).round() / 64.0))
+                .map(|copy| {
+                    [0, 1, 2].map(|k| (copy.iter().map(|p| p[k]).sum::<f64>() / 8.0 * 64.0).round() / 64.0)
+                })
                 .collect()
         };
         let plain = along(5, false).repeat(&rod).unwrap();
@@ -313,7 +325,8 @@ mod tests {
         let last = Mesh::new(turned.positions[32..].to_vec(), rod.triangles.clone()).bounds().unwrap();
         assert!((last.size()[1] - 1.0).abs() < 1e-15, "the rod lies along y there: {last:?}");
         // A closed line has no place twice.
-        let ring: Vec<[f64; 3]> = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]].map(|[x, y]| [x, y, 0.0]).to_vec();
+        let ring: Vec<[f64; 3]> =
+            [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]].map(|[x, y]| [x, y, 0.0]).to_vec();
         let closed = Pattern::Along { line: ring, count: 4, turn: false }.repeat(&rod).unwrap();
         assert_eq!(middles(&closed), [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]);
     }
@@ -325,7 +338,9 @@ mod tests {
         assert!(refused(Pattern::Linear { count: 0, step: [1.0; 3] }).contains("0 copies"));
         assert!(refused(Pattern::Grid { counts: [u32::MAX; 3], steps: [1.0; 3] }).contains("copies"));
         assert!(refused(Pattern::Linear { count: 2, step: [f64::NAN; 3] }).contains("finite"));
-        assert!(refused(Pattern::Along { line: vec![[1.0; 3]; 3], count: 2, turn: true }).contains("no length"));
+        assert!(
+            refused(Pattern::Along { line: vec![[1.0; 3]; 3], count: 2, turn: true }).contains("no length")
+        );
         assert!(refused(Pattern::Points(vec![[0.0; 3]; 10_000_001])).contains("10000001 copies"));
         let axis = Pattern::Circular { count: 3, axis: [0.0; 3], center: [0.0; 3], degrees: 360.0 };
         assert!(refused(axis).contains("axis"));

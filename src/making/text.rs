@@ -181,10 +181,13 @@ fn letter(loops: &[Vec<[f64; 2]>], depth: f64, character: char) -> Result<Mesh, 
     let mut all = Mesh::default();
     for outline in loops {
         let one = prism(std::slice::from_ref(outline), 0.0, depth).map_err(|error| {
-            Error::InvalidArgument(format!("text: an outline of the letter '{character}' crosses itself: {error}"))
+            Error::InvalidArgument(format!(
+                "text: an outline of the letter '{character}' crosses itself: {error}"
+            ))
         })?;
         let next = |k: usize| outline[(k + 1) % outline.len()];
-        let doubled: f64 = (0..outline.len()).map(|k| outline[k][0] * next(k)[1] - outline[k][1] * next(k)[0]).sum();
+        let doubled: f64 =
+            (0..outline.len()).map(|k| outline[k][0] * next(k)[1] - outline[k][1] * next(k)[0]).sum();
         // (TrueType's outlines run clockwise.)
         all.append(&if doubled < 0.0 { one } else { one.reversed() })?;
     }
@@ -286,7 +289,9 @@ mod tests {
 
     #[test]
     fn letters_are_closed_and_have_their_holes() {
-        for (text, shells, genus) in [("I", 1, 0), ("O", 1, 1), ("B8", 2, 4), ("i", 2, 0), ("Abc 42%", 6 + 2, 8)] {
+        for (text, shells, genus) in
+            [("I", 1, 0), ("O", 1, 1), ("B8", 2, 4), ("i", 2, 0), ("Abc 42%", 6 + 2, 8)]
+        {
             let solid = solid(text);
             assert!(solid.is_manifold(), "{text}");
             assert_eq!((solid.components(), solid.genus()), (shells, Some(genus)), "{text}");
@@ -314,7 +319,8 @@ mod tests {
             let mesh = Lettering::new(10.0, 1.0).align(align).mesh("III\nI", &font()).unwrap();
             mesh.bounds().unwrap()
         };
-        let (left, center, right) = (bounds(TextAlign::Left), bounds(TextAlign::Center), bounds(TextAlign::Right));
+        let (left, center, right) =
+            (bounds(TextAlign::Left), bounds(TextAlign::Center), bounds(TextAlign::Right));
         assert!(left.low[0] > 0.0 && right.high[0] < 0.0 && (center.center()[0]).abs() < 1e-6);
         assert!(left.low[1] < -10.0 && left.high[1] > 7.0);
         // Pairs are nearer to each other than their letters by themselves.

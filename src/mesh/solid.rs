@@ -6,7 +6,9 @@ use super::edges::EdgeTable;
 use super::measure::{area, signed_volume};
 use super::patches::Patches;
 use super::topology::{self, Shape};
-use super::{Attribute, Bounds, FaceGroup, FaceGroups, Fault, Links, Mending, Mesh, Polygons, SelfCrossings, chain};
+use super::{
+    Attribute, Bounds, FaceGroup, FaceGroups, Fault, Links, Mending, Mesh, Polygons, SelfCrossings, chain,
+};
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
 /// often as it occurs. Every vertex belongs to a triangle, no triangle has a repeated corner, and the enclosed

@@ -1,15 +1,15 @@
-//! Nodes made of other nodes as meshes: hulls, Minkowski sums, patterns; and text.
+//! Nodes made of other nodes as meshes: hulls, Minkowski sums, patterns, offsets, shells; and text.
 
 use std::path::Path;
 
 use serde_json::{Map, Value};
 
 use super::fault;
-use crate::making::{self, Pattern};
+use crate::making::{self, Drain, Pattern};
 use crate::{Control, Error, Mesh, Solid};
 
 /// The kinds read here.
-pub(super) const KINDS: [&str; 4] = ["hull", "minkowski", "pattern", "text"];
+pub(super) const KINDS: [&str; 6] = ["hull", "minkowski", "pattern", "text", "offset", "hollow"];
 
 /// What is made of the operands.
 #[derive(Clone, Debug)]
@@ -20,6 +20,10 @@ pub(super) enum Made {
     Minkowski,
     /// Copies.
     Pattern(Pattern),
+    /// Grown or shrunk.
+    Offset(f64),
+    /// With a wall of this thickness, and holes through it.
+    Hollow(f64, Vec<Drain>),
     /// Text, of no operand.
     #[cfg_attr(not(feature = "text"), allow(dead_code, reason = "such a build has no text"))]
     Text(Text),
@@ -46,7 +50,9 @@ pub(super) fn parse(
     if kind == "text" {
         let keys = Value::Object(std::mem::take(object));
         let text: Text = serde_json::from_value(keys).map_err(|error| fault(error.to_string()))?;
-        if let Some(align) = text.align.as_deref().filter(|align| !["left", "center", "right"].contains(align)) {
+        if let Some(align) =
+            text.align.as_deref().filter(|align| !["left", "center", "right"].contains(align))
+        {
             return Err(fault(format!("`align` is `left`, `center` or `right`, not `{align}`")));
         }
         return Ok((Made::Text(text), Vec::new()));
@@ -57,11 +63,20 @@ pub(super) fn parse(
         }
         (None, Some(value)) => vec![("operand".to_owned(), value)],
         (None, None) => return Err(fault("`operands`, a list of nodes, or `operand`, one node, is missing")),
-        _ => return Err(fault("`operands` is a list of nodes; `operand`, which is one, does not go with it")),
+        _ => {
+            return Err(fault("`operands` is a list of nodes; `operand`, which is one, does not go with it"));
+        }
     };
     let made = match kind {
         "hull" => Made::Hull,
         "minkowski" => Made::Minkowski,
+        "offset" => Made::Offset(length(object, "distance")?),
+        "hollow" => {
+            let drains = object.remove("drains").unwrap_or_else(|| Value::Array(Vec::new()));
+            let drains =
+                serde_json::from_value(drains).map_err(|error| fault(format!("`drains`: {error}")))?;
+            Made::Hollow(length(object, "wall")?, drains)
+        }
         _ => {
             let pattern = object.remove("pattern").ok_or_else(|| fault("`pattern` is missing"))?;
             Made::Pattern(serde_json::from_value(pattern).map_err(|error| {
@@ -72,13 +87,19 @@ pub(super) fn parse(
     let (least, most) = match made {
         Made::Hull | Made::Text(_) => (1, usize::MAX),
         Made::Minkowski => (2, 2),
-        Made::Pattern(_) => (1, 1),
+        Made::Pattern(_) | Made::Offset(_) | Made::Hollow(..) => (1, 1),
     };
     if !(least..=most).contains(&operands.len()) {
         let wanted = if most > 2 { "at least one operand".to_owned() } else { format!("{least}") };
         return Err(fault(format!("`{kind}` takes {wanted}, and there are {}", operands.len())));
     }
     Ok((made, operands))
+}
+
+/// A number of a node.
+fn length(object: &mut Map<String, Value>, key: &str) -> Result<f64, Error> {
+    let value = object.remove(key).and_then(|value| value.as_f64());
+    value.ok_or_else(|| fault(format!("`{key}`, a number, is missing")))
 }
 
 impl Made {
@@ -102,6 +123,14 @@ impl Made {
                 Ok(making::minkowski_sum(body, tool, control)?.into_mesh())
             }
             Self::Pattern(pattern) => pattern.repeat(operands.first().ok_or_else(missing)?.mesh()),
+            Self::Offset(distance) => {
+                let operand = operands.first().ok_or_else(missing)?;
+                Ok(making::offset(operand, *distance, tolerance, control)?.solid.into_mesh())
+            }
+            Self::Hollow(wall, drains) => {
+                let operand = operands.first().ok_or_else(missing)?;
+                Ok(making::hollow(operand, *wall, drains, tolerance, control)?.solid.into_mesh())
+            }
             Self::Text(text) => text.mesh(tolerance, folder),
         }
     }

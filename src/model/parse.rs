@@ -24,7 +24,7 @@ const CUSTOM: &str = "x-";
 const PARAMETRIC: [&str; 4] = ["patches", "extrusion", "revolution", "sweep"];
 const KINDS: &str = "union, intersection, difference, xor, complement, mesh, box, sphere, cylinder, cone, torus, half_space, \
                      formula, contour, region, patches, extrusion, revolution, sweep, parametric, \
-                     freeform, hull, minkowski, pattern, text";
+                     freeform, hull, minkowski, offset, hollow, pattern, text";
 
 struct ModelReader<'a> {
     nodes: Vec<Node>,

@@ -136,7 +136,8 @@ impl TriangleTree {
 fn gap([a, b]: &[Part; 2]) -> f64 {
     // Boxes were brought back from their frames, each step rounded once.
     const ROUNDING: f64 = 8.0 * f64::EPSILON;
-    let largest = [a.low, a.high, b.low, b.high].map(|x| x.abs().max_element()).into_iter().fold(0.0, f64::max);
+    let largest =
+        [a.low, a.high, b.low, b.high].map(|x| x.abs().max_element()).into_iter().fold(0.0, f64::max);
     let apart = (a.low - b.high).max(b.low - a.high) - ROUNDING * largest;
     apart.max(DVec3::ZERO).length() * (1.0 - ROUNDING)
 }
@@ -278,7 +279,11 @@ mod tests {
         let mut random = ChaCha8Rng::seed_from_u64(20);
         for round in 0..60 {
             let a = soup(random.random_range(1..30), 2.0, &mut random);
-            let b = soup(random.random_range(1..30), 2.0, &mut random).translated([f64::from(round % 4), 0.0, 0.0]);
+            let b = soup(random.random_range(1..30), 2.0, &mut random).translated([
+                f64::from(round % 4),
+                0.0,
+                0.0,
+            ]);
             let trees = [TriangleTree::new(&a), TriangleTree::new(&b)];
             let found = trees[0].nearest(&trees[1]).unwrap();
             let mut least = f64::INFINITY;

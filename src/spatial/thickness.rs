@@ -51,8 +51,10 @@ impl TriangleTree {
     /// [`thickness`](Self::thickness) at many points, in their order, on all threads.
     #[must_use]
     pub fn thickness_at_all(&self, points: &[[f64; 3]]) -> Vec<Option<Thickness>> {
-        map_chunks(points, CHUNK, |chunk| chunk.iter().map(|&point| self.thickness(point)).collect::<Vec<_>>())
-            .concat()
+        map_chunks(points, CHUNK, |chunk| {
+            chunk.iter().map(|&point| self.thickness(point)).collect::<Vec<_>>()
+        })
+        .concat()
     }
 
     /// How far a ray goes until it leaves the surface: through a triangle that faces its way. The lowest triangle of those at
@@ -89,7 +91,8 @@ impl Ray {
     /// Whether the ray may meet a box, which is widened by more than any rounding here.
     fn meets(&self, aabb: &obvhs::aabb::Aabb) -> bool {
         const ROOM: f64 = 1e-6;
-        let corner = |corner: Vec3A, room: f64| (corner.as_dvec3() + DVec3::splat(room) - self.from) * self.inverse;
+        let corner =
+            |corner: Vec3A, room: f64| (corner.as_dvec3() + DVec3::splat(room) - self.from) * self.inverse;
         let (a, b) = (corner(aabb.min, -ROOM), corner(aabb.max, ROOM));
         let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
         for axis in 0..3 {

@@ -1,16 +1,18 @@
-//! `hull`, `text` and `minkowski`.
+//! `hull`, `text`, `minkowski`, `offset` and `hollow`.
 
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::{Value, json};
-use trisect::{Error, Solid, making};
+use trisect::making as library;
+use trisect::{Control, Error, Solid};
 
+use super::argument_groups::{Inputs, Results};
 use super::combine;
 use super::fault::{Exit, Fault};
 use super::made;
-use super::making_arguments::{Hull, Minkowski, Text};
+use super::making_arguments::{Hollow, Hull, Minkowski, Offset, Text};
 use super::operands;
 use super::reading;
 use super::requests;
@@ -43,13 +45,15 @@ pub(crate) fn run(arguments: &Hull, matches: &ArgMatches, session: &mut Session<
         format.get_or_insert(input.format);
         let triangles = input.mesh.triangles.len();
         session.console.say(&format!("{name}: {}", words::counted(triangles, "triangle")));
-        described.push(json!({ "operand": index + 1, "file": name, "triangles": triangles, "points": used.len() }));
+        described.push(
+            json!({ "operand": index + 1, "file": name, "triangles": triangles, "points": used.len() }),
+        );
     }
     session.took("read", start);
     session.note("operands", described);
 
     let start = Instant::now();
-    let hull = making::convex_hull(&points).map_err(unusable)?;
+    let hull = library::convex_hull(&points).map_err(unusable)?;
     let solid = Solid::try_from(hull).map_err(Error::from)?;
     let seconds = session.took("run", start);
     made::deliver(&solid, &arguments.results, &targets, format, seconds, session)?;
@@ -57,7 +61,11 @@ pub(crate) fn run(arguments: &Hull, matches: &ArgMatches, session: &mut Session<
 }
 
 /// Sets text.
-pub(crate) fn run_text(arguments: &Text, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
+pub(crate) fn run_text(
+    arguments: &Text,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
     let control = session.control();
     let start = Instant::now();
     let named = |text: PathBuf| format!("text:{}", text.display()).into();
@@ -103,9 +111,67 @@ pub(crate) fn run_minkowski(
     }
     let start = Instant::now();
     session.console.stage("summing up", 0.0);
-    let solid = making::minkowski_sum(&body.solid, &tool.solid, &control)?;
+    let solid = library::minkowski_sum(&body.solid, &tool.solid, &control)?;
     let seconds = session.took("run", start);
     made::deliver(&solid, &arguments.results, &targets, Some(body.format), seconds, session)?;
+    Ok(Exit::Fine)
+}
+
+/// Grows or shrinks one input.
+pub(crate) fn run_offset(
+    arguments: &Offset,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let of = |solid: &Solid, control: &Control| {
+        library::offset(solid, arguments.distance, arguments.tolerance, control)
+    };
+    from_distance("offset", &arguments.inputs, &arguments.results, matches, session, of)
+}
+
+/// Hollows one input.
+pub(crate) fn run_hollow(
+    arguments: &Hollow,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let of = |solid: &Solid, control: &Control| {
+        library::hollow(solid, arguments.wall, &arguments.drain, arguments.tolerance, control)
+    };
+    from_distance("hollow", &arguments.inputs, &arguments.results, matches, session, of)
+}
+
+/// Makes something of the distance field of one input.
+fn from_distance(
+    verb: &str,
+    inputs: &Inputs,
+    results: &Results,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+    make: impl Fn(&Solid, &Control) -> Result<library::Offset, Error>,
+) -> Result<Exit, Fault> {
+    let control = session.control();
+    let requests = requests::requests(matches, inputs.reading.format)?;
+    let requests = selection::joined(requests, &session.limits, &control)?;
+    if requests.len() != 1 {
+        return Err(Fault::usage(format!("{verb} takes one input, not {}", requests.len())));
+    }
+    let targets = made::targets(results, session)?;
+    let start = Instant::now();
+    let operands =
+        operands::operands(requests, inputs.using.assume_clean, &session.limits, &control, &session.console)?;
+    session.took("read", start);
+    combine::describe(&operands, Some(&results.writing), session);
+    let [operand] = &*operands else { return Err(Fault::internal("one operand")) };
+    let start = Instant::now();
+    session.console.stage(verb, 0.0);
+    let made = make(&operand.solid, &control).map_err(unusable)?;
+    let seconds = session.took("run", start);
+    session.note("tolerance", made.tolerance);
+    session.note("deviation", made.deviation);
+    made::deliver(&made.solid, results, &targets, Some(operand.format), seconds, session)?;
+    let (deviation, tolerance) = (words::short(made.deviation), words::short(made.tolerance));
+    session.console.say(&format!("within {deviation} of the true {verb} (tolerance {tolerance})"));
     Ok(Exit::Fine)
 }
 
