@@ -47,7 +47,7 @@
 //!
 //! | Feature | Default | Adds | Crates (30 without any) |
 //! |---|---|---|---|
-//! | `cli` | yes | the program; brings `field`, `formats`, `model`, `render`, `serde` | 51 |
+//! | `cli` | yes | the program; brings `field`, `formats`, `model`, `render`, `serde` | 56 |
 //! | `field` | yes | the module `field`: signed distances, formulas, R-functions, and their surfaces as meshes | 1 |
 //! | `formats` | yes | the module `io`, `Mesh::load` and `Mesh::save`: OBJ, glTF, STL, PLY, OFF | 16 |
 //! | `model` | yes | the module `model`: trees of operations in JSON; brings `field` and `formats` | 17 |
@@ -55,6 +55,7 @@
 //! | `parametric` | yes | the module `parametric`: curves, regions, patches, solids of them | 31 |
 //! | `render` | with `cli` | the module `render`: pictures of meshes as PNG | 11 |
 //! | `serde` | with `cli` | `Serialize` and `Deserialize` for meshes, settings and reports | 3 |
+//! | `text` | yes | text in TrueType and OpenType fonts as solids, in the module `making` | 1 |
 //! | `subdivision` | yes | the module `subdivision`: subdivision surfaces given by cages, and their booleans as cages | none |
 //!
 //! For the engine alone: `default-features = false`, with `parallel` or not.
@@ -63,7 +64,7 @@
 //!
 //! In the package, `docs/semantics.md` has the whole of what is promised, `docs/algorithm.md` the algorithm, `docs/guide.md`
 //! the way from the first cut to chains; `examples/` has programs to start from. Modules: [`mesh`], [`primitives`],
-//! [`control`], [`spatial`], [`exact`].
+//! [`making`], [`control`], [`spatial`], [`exact`].
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 // Where a room is left out, what only that room uses of the rooms below is not used. The whole set is checked.

@@ -261,6 +261,39 @@ mod tests {
     }
 
     #[test]
+    fn every_option_of_the_page_is_one_of_the_program() {
+        let text = include_str!("../../docs/program.md");
+        let mut known: std::collections::BTreeSet<String> =
+            ["help", "version"].into_iter().map(str::to_owned).collect();
+        let mut verbs = vec![Arguments::command()];
+        while let Some(verb) = verbs.pop() {
+            known.extend(verb.get_arguments().filter_map(clap::Arg::get_long).map(str::to_owned));
+            known.extend(
+                verb.get_arguments().filter_map(clap::Arg::get_all_aliases).flatten().map(str::to_owned),
+            );
+            verbs.extend(verb.get_subcommands().cloned());
+        }
+        for (at, _) in text.match_indices("--") {
+            let word: String =
+                text[at + 2..].chars().take_while(|c| c.is_ascii_alphabetic() || *c == '-').collect();
+            let begins = at == 0 || !text[..at].ends_with(['-', '|']);
+            // (Rules of tables, and dashes between words, are no options.)
+            if begins && word.starts_with(|c: char| c.is_ascii_lowercase()) {
+                assert!(known.contains(&word), "the page has --{word}, which no verb takes");
+            }
+        }
+        // Verbs in tables and examples.
+        for line in text.lines().filter_map(|line| line.strip_prefix("    trisect ")) {
+            let word: String = line.chars().take_while(|c| c.is_ascii_lowercase()).collect();
+            let command = Arguments::command();
+            let is_known = command
+                .get_subcommands()
+                .any(|verb| verb.get_name() == word || verb.get_all_aliases().any(|alias| alias == word));
+            assert!(is_known || word.is_empty() || word == "help", "the page has the verb {word}");
+        }
+    }
+
+    #[test]
     fn a_panic_becomes_an_internal_fault_that_says_how_to_report_it() {
         let fault = guarded(|| -> Result<(), Fault> { panic!("broken {}", "invariant") }).unwrap_err();
         assert_eq!(fault.exit, Exit::Internal);

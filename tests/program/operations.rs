@@ -84,11 +84,11 @@ fn a_transform_that_overflows_is_a_usage_error_of_its_input() {
 fn unreadable_inputs_say_which_and_where() {
     let folder = workshop();
     let before = folder.names();
-    folder.run("union a.obj none.obj -o c.obj").exits(2).says("trisect: operand 2 (none.obj): cannot");
+    folder.run("union a.obj none.obj -o c.obj").exits(2).says("trisect: error: operand 2 (none.obj): cannot");
     folder
         .run("union damaged.obj a.obj -o c.obj")
         .exits(2)
-        .says("trisect: operand 1 (damaged.obj): damaged OBJ file, line 4");
+        .says("trisect: error: operand 1 (damaged.obj): damaged OBJ file, line 4");
     folder.run("convert damaged.obj c.off").exits(2).says("line 4");
     folder.run("info a.obj none.obj").exits(2).says("operand 2 (none.obj)");
     folder.run("union a.obj b.obj -o none/c.obj").exits(2).says("none/c.obj");
