@@ -67,6 +67,7 @@ mod verbs;
 mod words;
 
 use std::any::Any;
+use std::ffi::OsString;
 use std::io::Write as _;
 use std::panic::{self, AssertUnwindSafe};
 use std::process::ExitCode;
@@ -92,13 +93,13 @@ pub(crate) fn run() -> ExitCode {
     });
     let exit = match parsed {
         Ok((arguments, matches)) => run_verb(&arguments, &matches),
-        Err(error) => usage(&error, json, color),
+        Err(error) => usage(&error, &line, json, color),
     };
     ExitCode::from(exit.code())
 }
 
 /// Help, version, and command lines that clap refuses.
-fn usage(error: &clap::Error, json: bool, color: ColorChoice) -> Exit {
+fn usage(error: &clap::Error, line: &[OsString], json: bool, color: ColorChoice) -> Exit {
     // Nobody is left to tell if a stream is closed.
     if !error.use_stderr() {
         let _ = error.print();
@@ -107,7 +108,7 @@ fn usage(error: &clap::Error, json: bool, color: ColorChoice) -> Exit {
     let text = error.render();
     let plain = text.to_string();
     let plain = plain.trim_start_matches("error: ");
-    let hint = verbs::hint(error);
+    let hint = verbs::hint(error, line);
     let message = hint.as_deref().or(plain.lines().next()).unwrap_or_default();
     let is_help = error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
     let _ = match (&hint, color::is_on(color)) {

@@ -128,14 +128,16 @@ pub(crate) fn placed_inputs(
         }
     }
     for (request, setting) in requests.iter_mut().zip(settings) {
-        if shapes::named(&request.path).is_some() {
-            let made = shapes::made(&request.path, &setting.or(&setting_for_all))?;
-            request.chosen = Some(Arc::new(made));
-        } else if setting.is_some() {
+        let kind = shapes::named(&request.path).map(|(kind, _)| kind.to_owned());
+        if setting.is_some() && kind.as_deref() != Some("text") {
             return Err(Fault::usage(format!(
                 "{}: --font, --size, --depth and --justify are for inputs text:...",
                 request.name()
             )));
+        }
+        if kind.is_some() {
+            let made = shapes::made(&request.path, &setting.or(&setting_for_all))?;
+            request.chosen = Some(Arc::new(made));
         }
         request.repairs = request.repairs.with(for_all);
         if let Some(other) = request.repairs.contradiction() {

@@ -1,5 +1,6 @@
 //! Words that people type for verbs, and where what they mean is found.
 
+use std::ffi::OsString;
 use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -39,8 +40,24 @@ const MEANT: &[(&[&str], &str)] = &[
     (&["decimate", "simplify", "remesh", "smooth"], "there is no such operation"),
 ];
 
-/// One line for a verb that does not exist but is meant to; `None` for other errors.
-pub(super) fn hint(error: &clap::Error) -> Option<String> {
+/// What an option should have been that a verb does not take.
+const MEANT_OPTIONS: &[(&[&str], &str)] = &[
+    (&["--at", "--height", "--level", "--z"], "--plane z=12.5 says where to cut"),
+    (&["--move", "--position", "--shift"], "--translate X,Y,Z moves the input before it"),
+    (&["--turn", "--angle"], "--rotate DEGREES turns the input before it"),
+    (&["--resize", "--factor"], "--scale FACTOR scales the input before it, --fit SIZE to a size"),
+    (&["--repeat", "--array", "--copies", "--count"], "--pattern grid:10x10:5,5 repeats the input before it"),
+    (
+        &["--tolerance", "--epsilon", "--eps"],
+        "it is exact; --snap UNITS of booleans makes the same what is no further apart",
+    ),
+];
+
+/// One line for a verb or an option that does not exist but is meant to; `None` for other errors.
+pub(super) fn hint(error: &clap::Error, line: &[OsString]) -> Option<String> {
+    if error.kind() == ErrorKind::UnknownArgument {
+        return option_hint(error, line);
+    }
     if error.kind() != ErrorKind::InvalidSubcommand {
         return None;
     }
@@ -59,6 +76,18 @@ pub(super) fn hint(error: &clap::Error) -> Option<String> {
     })
 }
 
+fn option_hint(error: &clap::Error, line: &[OsString]) -> Option<String> {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return None };
+    let first = line.get(1)?.to_string_lossy();
+    if first.starts_with('-') && first.starts_with(word.as_str()) {
+        return Some(format!(
+            "{word} stands before the verb, and the verb comes first: `trisect union A B -o OUTPUT` (`trisect --help` lists all)"
+        ));
+    }
+    let (_, meant) = MEANT_OPTIONS.iter().find(|(words, _)| words.contains(&word.as_str()))?;
+    Some(format!("{first} has no option {word}: {meant} (`trisect {first} --help` lists all)"))
+}
+
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory as _;
@@ -67,7 +96,19 @@ mod tests {
     use crate::cli::arguments::Arguments;
 
     fn hint_for(word: &str) -> Option<String> {
-        hint(&Arguments::command().try_get_matches_from(["trisect", word]).unwrap_err())
+        hint(&Arguments::command().try_get_matches_from(["trisect", word]).unwrap_err(), &[])
+    }
+
+    #[test]
+    fn options_in_the_wrong_place_or_of_other_programs_get_a_hint() {
+        let hint_for = |line: &str| {
+            let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
+            hint(&Arguments::command().try_get_matches_from(&words).unwrap_err(), &words)
+        };
+        assert!(hint_for("trisect -o c.stl a.stl b.stl").unwrap().contains("the verb comes first"));
+        assert!(hint_for("trisect cut a.stl --at 3").unwrap().contains("--plane"));
+        assert!(hint_for("trisect union a.stl b.stl --eps 1").unwrap().contains("--snap"));
+        assert_eq!(hint_for("trisect union a.stl --ouput b.stl"), None);
     }
 
     #[test]

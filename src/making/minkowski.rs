@@ -1,7 +1,7 @@
 //! Minkowski sums: what a convex tool sweeps while its origin goes through all of a solid.
 
 use super::convex_hull;
-use crate::boolean::BooleanOptions;
+use crate::boolean::{BooleanOptions, Embed, Grid};
 use crate::{Control, Error, Mesh, Operation, Solid};
 
 /// Bodies of triangles that are united at once before all unions are: more make one arrangement too deep (a few dozen lie on each
@@ -66,8 +66,12 @@ fn general(solid: &Solid, tool: &[[f64; 3]], control: &Control) -> Result<Solid,
     bodies.push(Solid::try_from(Mesh::new(sums(&mesh.positions, &tool[..1]), mesh.triangles.clone()))?);
     // 3. Unions of a few neighbours at a time, and of those again.
     while bodies.len() > 1 {
+        // Each round rounds again; what that makes cross is resolved at last.
+        let is_last = bodies.len() <= AT_ONCE;
+        let embed = if is_last { Embed::OnGrid(Grid::Double) } else { Embed::WhereNeeded };
+        let options = options.clone().embed(embed);
         let groups = bodies.chunks(AT_ONCE).map(|group| {
-            let outcome = options.run(Operation::Union, group.iter())?;
+            let outcome = options.run(Operation::Union, group)?;
             Ok(outcome.into_solid())
         });
         bodies = groups.collect::<Result<_, Error>>()?;

@@ -39,20 +39,20 @@ fn sums_need_a_convex_tool() {
 #[test]
 fn offsets_and_shells_say_how_near_they_are() {
     let folder = Folder::new();
-    let grown = folder.run("offset box:4 --distance 1 --tolerance 0.1 -o grown.off --json").exits(0).json();
+    let grown = folder.run("offset box:4 --distance 1 --tolerance 0.3 -o grown.off --json").exits(0).json();
     let steiner = 64.0 + 96.0 + std::f64::consts::PI * (12.0 + 4.0 / 3.0);
-    assert!((volume(&grown) - steiner).abs() < 0.1 * 150.0, "{grown}");
+    assert!((volume(&grown) - steiner).abs() < 0.3 * 150.0, "{grown}");
     assert!(grown["deviation"].as_f64() <= grown["tolerance"].as_f64());
-    folder.run("offset box:4 --distance=-3 -o none.off --json").exits(0);
+    folder.run("offset box:4 --distance=-3 --tolerance 0.5 -o none.off --json").exits(0);
     let hollow = folder
-        .run("hollow box:20 --wall 2 --drain 0,0,-10:1.5 --tolerance 0.3 -o hollow.stl --json")
+        .run("hollow box:20 --wall 2 --drain 0,0,-10:1.5 --tolerance 0.8 -o hollow.stl --json")
         .exits(0);
     let result = &hollow.json()["result"];
     assert_eq!((result["shells"].as_u64(), result["manifold"].as_bool()), (Some(1), Some(true)));
     let found = folder.run("measure hollow.stl --at 0,0,10 --at 10,0,0 --json").exits(0).json();
     for point in found["files"][0]["points"].as_array().expect("points") {
         let wall = point["thickness"].as_f64().expect("a wall");
-        assert!((wall - 2.0).abs() < 0.6, "{point}");
+        assert!((wall - 2.0).abs() < 0.8, "{point}");
     }
     folder.run("hollow box:2 --wall 2 -o x.stl").exits(3).says("no room inside");
     folder.run("hollow box:2 -o x.stl").exits(1).says("--wall");
@@ -215,13 +215,13 @@ fn model_nodes_make_the_same() {
     );
     assert_eq!(row.exits(0).json()["result"]["shells"], 4);
     let shell = model(
-        r#"{"kind": "hollow", "operand": {"kind": "box", "size": [10, 10, 10]}, "wall": 1.5, "tolerance": 0.3}"#,
+        r#"{"kind": "hollow", "operand": {"kind": "box", "size": [10, 10, 10]}, "wall": 1.5, "tolerance": 0.6}"#,
     );
     assert_eq!(shell.exits(0).json()["result"]["shells"], 2);
     let grown = model(
-        r#"{"kind": "offset", "operand": {"kind": "box", "size": [4, 4, 4]}, "distance": -1, "tolerance": 0.1}"#,
+        r#"{"kind": "offset", "operand": {"kind": "box", "size": [4, 4, 4]}, "distance": -1, "tolerance": 0.3}"#,
     );
-    assert!((volume(&grown.exits(0).json()) - 8.0).abs() < 1.0);
+    assert!((volume(&grown.exits(0).json()) - 8.0).abs() < 3.0);
     let text = format!(r#"{{"kind": "text", "text": "O", "font": "{FONT}", "size": 5, "depth": 1}}"#);
     assert_eq!(model(&text).exits(0).json()["result"]["genus"], 1);
     model(r#"{"kind": "pattern", "operand": {"kind": "box", "size": [1, 1, 1]}, "pattern": {"spiral": 3}}"#)
