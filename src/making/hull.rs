@@ -82,7 +82,8 @@ impl Solid {
         let positions = &self.mesh().positions;
         let Ok(hull) = convex_hull(positions) else { return false };
         let volume = hull.volume();
-        if !((self.volume() - volume).abs() <= SAME * volume) {
+        let is_same = (self.volume() - volume).abs() <= SAME * volume;
+        if !is_same {
             return false;
         }
         let largest = positions.iter().flatten().fold(0.0, |largest: f64, x| largest.max(x.abs()));

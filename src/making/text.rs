@@ -113,7 +113,7 @@ impl Lettering {
             }
         }
         if letters.is_empty() {
-            return invalid("there is nothing to be seen of it".into());
+            return invalid("there is nothing to be seen of it");
         }
         Ok(Mesh::merged(&letters)?)
     }
@@ -146,12 +146,15 @@ impl Font {
     }
 }
 
-fn invalid<T>(what: String) -> Result<T, Error> {
-    Err(Error::InvalidArgument(format!("text: {what}")))
+fn invalid<T>(what: impl Into<String>) -> Result<T, Error> {
+    Err(Error::InvalidArgument(format!("text: {}", what.into())))
 }
 
-/// The glyphs of a line, each with its character and where it begins, and how wide all are, in units of the font.
-fn set(line: &str, face: &Face<'_>) -> Result<(Vec<(GlyphId, char, f64)>, f64), Error> {
+/// A glyph with its character, and where it begins in its line, in units of the font.
+type Placed = (GlyphId, char, f64);
+
+/// The glyphs of a line, and how wide all are, in units of the font.
+fn set(line: &str, face: &Face<'_>) -> Result<(Vec<Placed>, f64), Error> {
     let (mut glyphs, mut x) = (Vec::new(), 0.0);
     let mut before: Option<GlyphId> = None;
     for character in line.chars().filter(|&character| character != '\r') {

@@ -43,7 +43,7 @@ impl Mesh {
     pub fn mass_properties(&self) -> Option<MassProperties> {
         let volume = self.volume();
         let centroid = self.centroid()?;
-        if !(volume > 0.0) {
+        if volume.is_nan() || volume <= 0.0 {
             return None;
         }
         // 1. Second moments about the centroid itself: nothing is taken off again, so far-away bodies lose nothing.
