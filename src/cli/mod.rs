@@ -285,7 +285,7 @@ mod tests {
         }
         // Verbs in tables and examples.
         for line in text.lines().filter_map(|line| line.strip_prefix("    trisect ")) {
-            let word: String = line.chars().take_while(|c| c.is_ascii_lowercase()).collect();
+            let word: String = line.chars().take_while(char::is_ascii_lowercase).collect();
             let command = Arguments::command();
             let is_known = command
                 .get_subcommands()

@@ -78,30 +78,11 @@ pub(crate) fn placed_inputs(
     matches: &ArgMatches,
     name: impl Fn(PathBuf) -> PathBuf,
 ) -> Result<Vec<Request>, Fault> {
-    enum Item {
-        File(PathBuf),
-        Transform(&'static str, Transform),
-        Repair(Repairs),
-        Rule(Rule),
-        Setting(Setting),
-    }
-    let mut items: Vec<(usize, Item)> =
-        placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(name(path)))).collect();
-    items.extend(
-        transforms::all(matches).into_iter().map(|(at, name, what)| (at, Item::Transform(name, what))),
-    );
-    items.extend(placed_repairs(matches).into_iter().map(|(at, repairs)| (at, Item::Repair(repairs))));
-    if matches.try_contains_id("rule").is_ok() {
-        items.extend(placed(matches, "rule").map(|(at, rule)| (at, Item::Rule(rule))));
-    }
-    items.extend(placed_settings(matches).into_iter().map(|(at, setting)| (at, Item::Setting(setting))));
-    items.sort_by_key(|&(at, _)| at);
-
     let expansion = matches.try_get_one::<u64>("expansion").ok().flatten().copied();
     let mut requests: Vec<Request> = Vec::new();
     let (mut for_all, mut rule_for_all) = (Repairs::default(), Rule::default());
     let (mut settings, mut setting_for_all) = (Vec::<Setting>::new(), Setting::default());
-    for (_, item) in items {
+    for item in items(matches, name) {
         match (item, requests.last_mut()) {
             (Item::File(path), _) => {
                 let (path, part) =
@@ -128,17 +109,7 @@ pub(crate) fn placed_inputs(
         }
     }
     for (request, setting) in requests.iter_mut().zip(settings) {
-        let kind = shapes::named(&request.path).map(|(kind, _)| kind.to_owned());
-        if setting.is_some() && kind.as_deref() != Some("text") {
-            return Err(Fault::usage(format!(
-                "{}: --font, --size, --depth and --justify are for inputs text:...",
-                request.name()
-            )));
-        }
-        if kind.is_some() {
-            let made = shapes::made(&request.path, &setting.or(&setting_for_all))?;
-            request.chosen = Some(Arc::new(made));
-        }
+        make_shape(request, setting, &setting_for_all)?;
         request.repairs = request.repairs.with(for_all);
         if let Some(other) = request.repairs.contradiction() {
             return Err(Fault::usage(format!(
@@ -148,6 +119,46 @@ pub(crate) fn placed_inputs(
         }
     }
     Ok(requests)
+}
+
+/// An input, or something that is said of one.
+enum Item {
+    File(PathBuf),
+    Transform(&'static str, Transform),
+    Repair(Repairs),
+    Rule(Rule),
+    Setting(Setting),
+}
+
+/// All inputs and what is said of them, in the order of the command line.
+fn items(matches: &ArgMatches, name: impl Fn(PathBuf) -> PathBuf) -> Vec<Item> {
+    let mut items: Vec<(usize, Item)> =
+        placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(name(path)))).collect();
+    let transforms = transforms::all(matches).into_iter();
+    items.extend(transforms.map(|(at, name, what)| (at, Item::Transform(name, what))));
+    items.extend(placed_repairs(matches).into_iter().map(|(at, repairs)| (at, Item::Repair(repairs))));
+    if matches.try_contains_id("rule").is_ok() {
+        items.extend(placed(matches, "rule").map(|(at, rule)| (at, Item::Rule(rule))));
+    }
+    items.extend(placed_settings(matches).into_iter().map(|(at, setting)| (at, Item::Setting(setting))));
+    items.sort_by_key(|&(at, _)| at);
+    items.into_iter().map(|(_, item)| item).collect()
+}
+
+/// Makes the mesh of an input that is no file; refuses options for text at inputs that are none.
+fn make_shape(request: &mut Request, setting: Setting, for_all: &Setting) -> Result<(), Fault> {
+    let kind = shapes::named(&request.path).map(|(kind, _)| kind);
+    if setting.is_some() && kind != Some("text") {
+        return Err(Fault::usage(format!(
+            "{}: --font, --size, --depth and --justify are for inputs text:...",
+            request.name()
+        )));
+    }
+    if kind.is_some() {
+        let made = shapes::made(&request.path, &setting.or(for_all))?;
+        request.chosen = Some(Arc::new(made));
+    }
+    Ok(())
 }
 
 /// What is asked to be mended, each with its place on the command line. Not every verb takes such options.

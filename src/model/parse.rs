@@ -298,15 +298,7 @@ impl ModelReader<'_> {
                 let file = file_of(&mut object).map_err(within(label))?;
                 self.described(&file).map_err(within(label))?
             }
-            kind if made::KINDS.contains(&kind) => {
-                let (made, operands) = made::parse(kind, &mut object).map_err(within(label))?;
-                let path = path.trim_end_matches('/');
-                let operands = operands
-                    .into_iter()
-                    .map(|(place, value)| self.add(value, &format!("{path}/{place}")))
-                    .collect::<Result<Vec<usize>, Error>>()?;
-                Kind::Made(made, operands)
-            }
+            kind if made::KINDS.contains(&kind) => self.made(kind, &mut object, label, path)?,
             "freeform" => self.cage(std::mem::take(&mut object)).map_err(within(label))?,
             kind if PARAMETRIC.contains(&kind) => {
                 solid_of(kind, std::mem::take(&mut object)).map_err(within(label))?
@@ -321,6 +313,20 @@ impl ModelReader<'_> {
             Some(key) => Err(fault(format!("unknown key `{key}` for the kind `{name}`")).in_node(label)),
             None => Ok(kind),
         }
+    }
+
+    /// What is made of other nodes, or of text.
+    fn made(
+        &mut self,
+        kind: &str,
+        object: &mut Map<String, Value>,
+        label: &str,
+        path: &str,
+    ) -> Result<Kind, Error> {
+        let (made, operands) = made::parse(kind, object).map_err(within(label))?;
+        let path = path.trim_end_matches('/');
+        let operands = operands.into_iter().map(|(place, value)| self.add(value, &format!("{path}/{place}")));
+        Ok(Kind::Made(made, operands.collect::<Result<Vec<usize>, Error>>()?))
     }
 
     /// The solid or region described by a JSON file.
