@@ -7,7 +7,7 @@ use trisect::{Mesh, Solid};
 
 use super::argument_groups::{Colours, Results};
 use super::fault::Fault;
-use super::output::{self, Product, Target};
+use super::output::{self, Product, Shown, Target};
 use super::recenter;
 use super::report::Measures;
 use super::session::Session;
@@ -47,7 +47,8 @@ pub(crate) fn deliver(
         trisect::render::mesh(mesh, &output::view(drawing, format), colours.as_deref())
     };
     let options = output::write_options(&results.writing, &session.limits);
-    let product = Product { mesh, options, picture: &picture, documents: &[] };
+    let shown = Shown::new(drawing, format, None);
+    let product = Product { mesh, options, picture: &picture, documents: &[], shown };
     let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
     for warning in warnings {
         session.warn(warning);

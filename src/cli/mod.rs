@@ -36,6 +36,8 @@ mod measure;
 mod mended;
 mod operands;
 mod output;
+#[cfg(feature = "viewer")]
+mod page;
 mod points;
 mod progress;
 mod reading;
