@@ -184,7 +184,7 @@ mod tests {
         // V + A d + M d^2 + 4/3 pi d^3, with M half the sum of edge lengths times outer angles.
         let [a, b, c] = [3.0, 2.0, 1.5];
         let block = solid(primitives::cuboid([0.0; 3], [a, b, c]).unwrap());
-        let (d, tolerance) = (0.5, 0.02);
+        let (d, tolerance) = (0.5, 0.08);
         let grown = offset(&block, d, Some(tolerance), &Control::new()).unwrap();
         let area = 2.0 * (a * b + b * c + c * a);
         let wanted = a * b * c + area * d + PI * (a + b + c) * d * d + 4.0 / 3.0 * PI * d.powi(3);
@@ -203,11 +203,11 @@ mod tests {
     #[test]
     fn shrinking_keeps_edges_sharp_and_ends_in_nothing() {
         let cube = solid(primitives::cuboid([0.0; 3], [4.0; 3]).unwrap());
-        let smaller = offset(&cube, -0.5, Some(0.05), &Control::new()).unwrap().solid;
+        let smaller = offset(&cube, -0.5, Some(0.1), &Control::new()).unwrap().solid;
         let bounds = smaller.bounds().unwrap();
-        assert!((0..3).all(|k| (bounds.low[k] - 0.5).abs() < 0.05 && (bounds.high[k] - 3.5).abs() < 0.05));
-        assert!((smaller.volume() - 27.0).abs() < 0.05 * 54.0, "{}", smaller.volume());
-        assert!(offset(&cube, -2.5, Some(0.05), &Control::new()).unwrap().solid.is_empty());
+        assert!((0..3).all(|k| (bounds.low[k] - 0.5).abs() < 0.1 && (bounds.high[k] - 3.5).abs() < 0.1));
+        assert!((smaller.volume() - 27.0).abs() < 0.1 * 54.0, "{}", smaller.volume());
+        assert!(offset(&cube, -2.5, Some(0.2), &Control::new()).unwrap().solid.is_empty());
         assert!(offset(&cube, 0.0, None, &Control::new()).is_err());
         assert!(offset(&cube, 1.0, Some(-1.0), &Control::new()).is_err());
     }
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn hollow_bodies_have_walls_as_thick_as_asked_for() {
         let can = solid(primitives::cylinder(5.0, 12.0, 32).unwrap());
-        let (wall, tolerance) = (1.0, 0.05);
+        let (wall, tolerance) = (1.0, 0.2);
         let closed = hollow(&can, wall, &[], Some(tolerance), &Control::new()).unwrap().solid;
         assert_eq!(closed.components(), 2);
         let drain = Drain { at: [0.0, 0.0, -3.0], radius: 0.8 };
