@@ -27,11 +27,16 @@ fn rows<T: Element + Copy>(
     if columns != 3 {
         return Err(failures::shape(what, array.shape()));
     }
-    if let Ok(numbers) = array.as_slice() {
+    if let Some(numbers) = in_rows(array) {
         return Ok(numbers.as_chunks::<3>().0.iter().map(|row| [0, 1, 2].map(|k| number(row[k]))).collect());
     }
     let view = array.as_array();
     Ok((0..count).map(|i| [0, 1, 2].map(|k| number(view[[i, k]]))).collect())
+}
+
+/// The numbers row by row, if they lie so. (NumPy's columns one after the other are in one piece too.)
+fn in_rows<'a, T: Element>(array: &'a PyReadonlyArray2<'_, T>) -> Option<&'a [T]> {
+    if array.is_c_contiguous() { array.as_slice().ok() } else { None }
 }
 
 /// Faces from an array of integers of shape (m, k), `k` corners each, in any memory order: the corners one after the other, and
@@ -56,7 +61,7 @@ fn corners<T: Element + Copy>(
 ) -> PyResult<(Vec<u32>, usize)> {
     let &[count, columns] = array.shape() else { return Err(failures::shape("faces", array.shape())) };
     let mut found = Vec::with_capacity(count * columns);
-    if let Ok(numbers) = array.as_slice() {
+    if let Some(numbers) = in_rows(array) {
         found.extend(numbers.iter().map(|&corner| number(corner) as u32));
     } else {
         found.extend(array.as_array().iter().map(|&corner| number(corner) as u32));
@@ -64,9 +69,9 @@ fn corners<T: Element + Copy>(
     // (A number that is no index, negative or larger than 32 bits, is looked for by itself: the loop above stays fast.)
     let limit = vertices.min(u32::MAX as usize) as i64;
     let is_off = |&corner: &T| !(0..limit).contains(&number(corner));
-    let off = match array.as_slice() {
-        Ok(numbers) => numbers.iter().position(is_off),
-        Err(_) => array.as_array().iter().position(is_off),
+    let off = match in_rows(array) {
+        Some(numbers) => numbers.iter().position(is_off),
+        None => array.as_array().iter().position(is_off),
     };
     if let Some(place) = off {
         let (face, corner) = (place / columns.max(1), place % columns.max(1));

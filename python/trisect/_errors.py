@@ -11,6 +11,7 @@ exception               when                                                 dat
 ``NotFiniteError``      a coordinate is infinite or not a number             ``vertex``
 ``TooLargeError``       more than 32-bit indices can name
 ``FileError``           the system refuses to read or write a file           ``filename``, ``errno``; also an ``OSError``
+``MissingFileError``    there is no such file                                also a ``FileNotFoundError``
 ``FormatError``         a file is not what its format says                   ``format``, ``place``; also a ``ValueError``
 ``FormulaError``        a formula that cannot be read                        ``line``, ``column``
 ``ModelError``          a model file says something without meaning          ``node``
@@ -27,6 +28,7 @@ Where an operand of several is at fault, ``operand`` is its place among them, co
 
 from __future__ import annotations
 
+import errno
 import json
 from typing import Any, Dict, Optional, Type
 
@@ -142,6 +144,10 @@ class FileError(Error, OSError):
         self.strerror = self._data.get("strerror")
 
 
+class MissingFileError(FileError, FileNotFoundError):
+    """There is no such file."""
+
+
 class FormatError(Error, ValueError):
     """A file is not what its format says, or a format cannot hold a mesh."""
 
@@ -235,4 +241,7 @@ _KINDS: Dict[str, Type[Error]] = {
 
 def make(kind: str, message: str, data: str) -> Error:
     """The exception of a kind; what the compiled half calls."""
-    return _KINDS.get(kind, Error)(message, json.loads(data))
+    found = json.loads(data)
+    if kind == "file" and found.get("errno") == errno.ENOENT:
+        return MissingFileError(message, found)
+    return _KINDS.get(kind, Error)(message, found)

@@ -168,12 +168,12 @@ def _plane(given: PlaneLike) -> Tuple[List[float], float]:
         if isinstance(given, str):
             axis, at = given.split("=")
             return _axis(axis.strip()), float(at)
-        listed = list(given)
+        listed: List[Any] = list(given)
         if len(listed) == 2 and isinstance(listed[0], str):
             return _axis(listed[0]), float(listed[1])
         if len(listed) == 2:
-            listed = [*listed[0], listed[1]]  # type: ignore[misc]
-        numbers = [float(number) for number in listed]  # type: ignore[arg-type]
+            listed = [*listed[0], listed[1]]
+        numbers = [float(number) for number in listed]
         if len(numbers) == 4:
             return numbers[:3], numbers[3]
     except (TypeError, ValueError):
@@ -272,11 +272,11 @@ def _planes(given: Any) -> Sequence[PlaneLike]:
         return [given]
     listed = list(given)
     try:
-        _plane(listed)  # type: ignore[arg-type]
+        _plane(listed)
     except ArgumentError:
         return listed
     # Two planes across axes look like none: this is one.
-    return [listed]  # type: ignore[list-item]
+    return [listed]
 
 
 def _draw(made: Sequence[Section], path: str) -> None:

@@ -41,7 +41,7 @@ class Place(Record):
     triangles: List[int] = field(default_factory=list)
     vertices: List[int] = field(default_factory=list)
     position: Tuple[float, float, float] = field(
-        default=(float("nan"),) * 3,
+        default=(float("nan"), float("nan"), float("nan")),
         metadata={"of": lambda xs: tuple(float("nan") if x is None else x for x in xs)},
     )
 

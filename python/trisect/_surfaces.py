@@ -222,7 +222,8 @@ class Mesh(_Surface):
         which = np.asarray(which).reshape(-1)
         balance = np.bincount(which, weights=np.where(ends[:, 0] == low, 1, -1))
         open_ones = (balance[which] != 0) & (low != high)
-        return edges[open_ones]
+        found: NDArray[np.int64] = edges[open_ones]
+        return found
 
     def with_attribute(self, name: str, values: ArrayLike, corners: Optional[ArrayLike] = None) -> Mesh:
         """The same with an attribute; see :meth:`Solid.with_attribute`."""
@@ -427,8 +428,8 @@ class Solid(_Surface):
     def mending(self) -> Mending:
         """What was mended when the solid was made; false if nothing was."""
         _, mending, text = self._core.mending()
-        made = Mending.of(json.loads(mending))
-        return Mending.of({**made.__dict__, "text": text if _anything(json.loads(mending)) else ""})
+        data = json.loads(mending)
+        return Mending.of({**data, "text": text if _anything(data) else ""})
 
     @property
     def cleaning(self) -> Cleaning:
@@ -523,10 +524,10 @@ class Solid(_Surface):
     def __rxor__(self, other: SolidLike) -> Solid:
         return self._combined("xor", other, True)
 
-    def _combined(self, operation: str, other: SolidLike, turned: bool) -> Any:
+    def _combined(self, operation: str, other: SolidLike, turned: bool) -> Solid:
         core = core_of(other)
         if core is None:
-            return NotImplemented
+            return NotImplemented  # type: ignore[no-any-return]
         operands = [core, self._core] if turned else [self._core, core]
         return self._of(_trisect.combine(operation, operands))
 

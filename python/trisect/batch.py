@@ -15,7 +15,7 @@ import sys
 import threading
 import time
 from dataclasses import dataclass, field
-from typing import IO, Any, Callable, Dict, Iterable, Iterator, List, Optional, Set, Tuple, Union
+from typing import IO, Any, Callable, Dict, Iterable, Iterator, List, Optional, Set, Sized, Tuple, Union
 
 from ._errors import ArgumentError
 from ._jobs import Job, Report, run_job
@@ -127,8 +127,8 @@ def numbered_jobs(jobs: Union[PathLike, Iterable[Job]]) -> Tuple[Optional[int], 
         with open(path, "rb") as file:
             total = sum(1 for line in file if line.strip())
         return total, _read(path)
-    total = len(jobs) if hasattr(jobs, "__len__") else None
-    return total, _named(jobs)
+    known = len(jobs) if isinstance(jobs, Sized) else None
+    return known, _named(jobs)
 
 
 def _read(path: str) -> Iterator[Job]:

@@ -147,6 +147,7 @@ class Field:
     """
 
     __slots__ = ("_core",)
+    _core: _trisect.Field
 
     def __init__(self, formula: str, **names: Union[float, "Field"]) -> None:
         numbers = [(name, float(value)) for name, value in names.items() if not isinstance(value, Field)]

@@ -13,7 +13,7 @@ operand is looked at anyway, and refused with a reason if it is not closed. With
 
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, Optional, Sequence
+from typing import Any, Optional, Sequence
 
 import numpy as np
 import trimesh
@@ -22,7 +22,7 @@ import trimesh.boolean
 from ._operations import run
 from ._surfaces import Solid
 
-_ENGINES: Dict[Optional[str], Callable[..., Any]] = trimesh.boolean._engines
+_ENGINES: Any = trimesh.boolean._engines
 
 
 def engine(meshes: Sequence[Any], operation: str, check_volume: bool = True, **given: Any) -> trimesh.Trimesh:
