@@ -14,8 +14,8 @@ def surface_of(source: Any) -> Optional[_trisect.Surface]:
     """A mesh of anything that is one; ``None`` for what is none."""
     if isinstance(source, (str, os.PathLike)):
         return load(source)[0]
-    if isinstance(source, tuple) and len(source) == 2:
-        return of_arrays(*source)
+    if isinstance(source, tuple):
+        return of_arrays(*source) if len(source) == 2 else None
     for reader in (_trimesh, _scene, _pyvista, _open3d, _open3d_tensor, _manifold3d, _meshio):
         found = reader(source)
         if found is not None:

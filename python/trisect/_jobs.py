@@ -13,6 +13,8 @@ import traceback
 import warnings
 from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence
 
+import numpy as np
+
 from . import _operations
 from ._errors import ArgumentError, Error, FileError, FormatError, LimitError
 from ._surfaces import Solid
@@ -28,11 +30,10 @@ _SETTINGS = {
     "memory": "memory",
     "threads": "threads",
     "rule": "rule",
-    "contact": "contact",
     "snap": "snap",
     "embed": "embed",
     "assume-clean": "assume_clean",
-    "cut-faces": "cut_faces",
+    "cut-material": "cut_faces",
 }
 
 
@@ -107,6 +108,11 @@ def _done(job: Job, folder: str) -> Report:
         if key not in _SETTINGS:
             raise ArgumentError(f"unknown option {key!r}: known are {', '.join([*_SETTINGS, *_MENDING, 'expr', 'plane', 'keep'])}")
         given[_SETTINGS[key]] = value
+    if given.get("cut_faces") == "keep":
+        given["cut_faces"] = "tool"
+    if given.get("embed") is True and str(job.get("output")).lower().endswith((".stl", ".glb", ".gltf")):
+        # What the file can hold, as the program does.
+        given["embed"] = "single"
     operands = [_operand(entry, mending, folder, place, given) for place, entry in enumerate(inputs)]
     result = act(operands, own, given)
     return _written(result, job.get("output"), folder)
@@ -144,7 +150,7 @@ def _placed(solid: Solid, how: str, value: Any) -> Solid:
     if how == "scale":
         return solid.scaled(value)
     if how == "matrix":
-        return solid.transformed(value)
+        return solid.transformed(np.asarray(value, dtype=float).reshape(-1, 4))
     # Angles about the axes, x first, as `--rotate` has them.
     for axis, degrees in zip("xyz", value):
         solid = solid.rotated(axis, degrees)

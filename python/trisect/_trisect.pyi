@@ -1,10 +1,11 @@
 """Types of the compiled half."""
 
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple, final
 
 import numpy as np
 from numpy.typing import NDArray
 
+__all__: List[str]
 __version__: str
 
 _Settings = Optional[Dict[str, Any]]
@@ -13,10 +14,12 @@ _Table = Tuple[str, NDArray[np.float64], NDArray[np.uint32]]
 _Parts = Tuple[NDArray[np.float64], NDArray[np.uint32], List[_Table], str, str]
 _Rings = List[List[NDArray[np.float64]]]
 
+@final
 class View:
     @property
     def __array_interface__(self) -> Dict[str, Any]: ...
 
+@final
 class Surface:
     @staticmethod
     def of_arrays(vertices: NDArray[Any], faces: NDArray[Any], sizes: Optional[Sequence[int]] = None) -> Surface: ...
@@ -33,6 +36,7 @@ class Surface:
     def diagnosis(self, settings: _Settings = None) -> Tuple[str, str]: ...
     def parts(self) -> _Parts: ...
 
+@final
 class Core:
     @staticmethod
     def of_arrays(
@@ -70,6 +74,7 @@ class Core:
     def hash(self) -> int: ...
     def parts(self) -> _Parts: ...
 
+@final
 class Distance:
     @staticmethod
     def of_solid(core: Core, settings: _Settings = None) -> Distance: ...
@@ -87,6 +92,7 @@ class Distance:
         settings: _Settings = None,
     ) -> NDArray[np.float32]: ...
 
+@final
 class Field:
     @staticmethod
     def of_formula(
