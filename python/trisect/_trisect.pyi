@@ -5,7 +5,27 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple, final
 import numpy as np
 from numpy.typing import NDArray
 
-__all__: List[str]
+__all__ = [
+    "Core",
+    "Distance",
+    "Field",
+    "Surface",
+    "View",
+    "__version__",
+    "combine",
+    "cut",
+    "drawing",
+    "evaluate",
+    "extract",
+    "load",
+    "model",
+    "picture",
+    "save_mesh",
+    "save_solid",
+    "sections",
+    "shape",
+    "trim",
+]
 __version__: str
 
 _Settings = Optional[Dict[str, Any]]

@@ -75,7 +75,8 @@ def batch(
     tell = _progress(progress, total, start)
     options: Dict[str, Any] = {"num_cpus": 1, "max_retries": attempts - 1, **(task or {})}
     remote: Any = ray.remote(**options)(_run)
-    most = in_flight or _AHEAD * max(1, int(ray.cluster_resources().get("CPU", 1)))
+    cluster: Any = ray
+    most = in_flight or _AHEAD * max(1, int(cluster.cluster_resources().get("CPU", 1)))
     try:
         for report in _reports(remote, _waiting(numbered, reported, summary), base, most):
             reported.write(report)
