@@ -20,7 +20,7 @@ pub(super) mod location;
 mod neighbours;
 pub(super) mod plane_faces;
 pub(super) mod points;
-mod self_crossings;
+pub(in crate::boolean) mod self_crossings;
 mod self_pairs;
 pub(super) mod sheets;
 mod unrounded;

@@ -48,21 +48,81 @@ impl Solid {
         if let Some(known) = self.known_self_crossings() {
             return Ok(known);
         }
-        let found = find(self, Runner::new(control, true))?;
+        let found = find(self, Runner::new(control, true), |_| true)?;
         Ok(self.remember_self_crossings(found))
     }
 }
 
-/// Finds all crossings of a surface with itself.
-fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
+/// The pairs of triangles of a solid that may cross or lie on each other, the lower one first. Computed once and remembered.
+///
+/// # Errors
+/// Only limits.
+pub(in crate::boolean) fn near_pairs<'a>(
+    solid: &'a Solid,
+    runner: Runner<'_>,
+) -> Result<&'a [[u32; 2]], Error> {
+    if let Some(known) = solid.known_near_pairs() {
+        return Ok(known);
+    }
+    let Some(bounds) = solid.bounds() else { return Ok(&[]) };
+    let frame = Frame::of(bounds.low, bounds.high);
+    let (pairs, _) = find_near(solid.mesh(), &bounds, &frame, runner)?;
+    Ok(solid.remember_near_pairs(pairs))
+}
+
+/// The same, looked for, and the boxes of all triangles.
+fn find_near(
+    mesh: &Mesh,
+    bounds: &Bounds,
+    frame: &Frame,
+    runner: Runner<'_>,
+) -> Result<(Vec<[u32; 2]>, BoxTree), Error> {
+    let (tree, neighbours) = runner.both(|| tree_of(mesh, frame), || Neighbours::new(mesh, bounds.largest()));
+    let may_meet = |pair: [u32; 2]| neighbours.may_meet(pair);
+    let pairs = self_pairs(mesh, &tree, frame, runner, &neighbours, may_meet)?;
+    Ok((pairs, tree))
+}
+
+/// Whether a solid crosses itself nowhere deeper than a few roundings, nor lies on itself. Stops at the first place that tells
+/// otherwise; what it then knows is not all, and not remembered.
+///
+/// # Errors
+/// Only limits.
+pub(in crate::boolean) fn is_nearly_simple(solid: &Solid, control: &Control) -> Result<bool, Error> {
+    if let Some(known) = solid.known_self_crossings() {
+        return Ok(known.is_nearly_simple());
+    }
+    let found = find(solid, Runner::new(control, true), SelfCrossings::is_nearly_simple)?;
+    let is_simple = found.is_nearly_simple();
+    if is_simple {
+        solid.remember_self_crossings(found);
+    }
+    Ok(is_simple)
+}
+
+/// Pairs that one thread examines before the limits are checked.
+const PAIRS_AT_ONCE: usize = 1024;
+/// Pairs that are examined before it is asked for the first time whether to go on; then four times as many, and so on.
+const PAIRS_AT_FIRST: usize = 256;
+
+/// Finds all crossings of a surface with itself, or some: as long as `go_on` accepts what was found so far.
+fn find(
+    solid: &Solid,
+    runner: Runner<'_>,
+    go_on: impl Fn(&SelfCrossings) -> bool,
+) -> Result<SelfCrossings, Error> {
     let mesh = solid.mesh();
     let Some(bounds) = solid.bounds() else { return Ok(SelfCrossings::default()) };
     let largest = bounds.largest();
     // 1. Pairs that are near one another and not plainly apart: none, nearly always.
     let frame = Frame::of(bounds.low, bounds.high);
-    let (tree, neighbours) = runner.both(|| tree_of(mesh, &frame), || Neighbours::new(mesh, largest));
-    let may_meet = |pair: [u32; 2]| neighbours.may_meet(pair);
-    let pairs = self_pairs(mesh, &tree, &frame, runner, &neighbours, may_meet)?;
+    let (pairs, tree) = match solid.known_near_pairs() {
+        Some(pairs) => (pairs, None),
+        None => {
+            let (pairs, tree) = find_near(mesh, &bounds, &frame, runner)?;
+            (solid.remember_near_pairs(pairs), Some(tree))
+        }
+    };
     let part = tolerance_of_one(&mesh.positions);
     let mut result = SelfCrossings { tolerance: part * largest, ..SelfCrossings::default() };
     if pairs.is_empty() {
@@ -71,21 +131,27 @@ fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     // 2. Those that cross or touch.
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
     let complex = Complex::alone(operand, largest);
+    let tree = tree.unwrap_or_else(|| tree_of(mesh, &frame));
     let surface = Surface::new(&complex, tree, frame, &bounds, part);
-    let found = runner.pieces(pairs.len(), 4096, |range| {
-        pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
-    })?;
-    for found in found.into_iter().flatten() {
-        let Found::Crossing(found) = found else {
-            result.touching += 1;
-            continue;
-        };
-        if found.real {
-            result.count += 1;
-            result.shallow += usize::from(found.shallow);
-            result.places.push(found.crossing);
-        } else {
-            result.tolerated += 1;
+    let (mut rest, mut next) = (pairs, PAIRS_AT_FIRST);
+    while !rest.is_empty() && go_on(&result) {
+        let (pairs, after) = rest.split_at(next.min(rest.len()));
+        (rest, next) = (after, 4 * next);
+        let found = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
+            pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
+        })?;
+        for found in found.into_iter().flatten() {
+            let Found::Crossing(found) = found else {
+                result.touching += 1;
+                continue;
+            };
+            if found.real {
+                result.count += 1;
+                result.shallow += usize::from(found.shallow);
+                result.places.push(found.crossing);
+            } else {
+                result.tolerated += 1;
+            }
         }
     }
     result.places.sort_by(|x, y| y.depth.total_cmp(&x.depth).then(x.triangles.cmp(&y.triangles)));
@@ -182,7 +248,7 @@ impl<'a> Surface<'a> {
                 return Some(Crossing { crossing, real: true, shallow: false });
             }
         };
-        let depth = depth(a, b).min(depth(b, a)).min(distance(&segment[0], &segment[1]));
+        let depth = overlap(a, b).min(distance(&segment[0], &segment[1]));
         let place = std::array::from_fn(|k| 0.5 * segment[0][k] + 0.5 * segment[1][k]);
         let own = largest_coordinate(&segment[0]).max(largest_coordinate(&segment[1]));
         let tolerance = self.part * size_at_hand(self.largest, own);
@@ -291,13 +357,28 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// How far a triangle reaches to the shorter side of another's plane.
-fn depth(t: &[Corner; 3], plane: &[Corner; 3]) -> f64 {
-    let Some(normal) = unit_normal(plane) else { return 0.0 };
-    let heights = [0, 1, 2].map(|k| height(&normal, &plane[0].position, &t[k].position));
-    let above = heights.iter().fold(0.0f64, |reach, &h| reach.max(h));
-    let below = heights.iter().fold(0.0f64, |reach, &h| reach.max(-h));
-    above.min(below)
+/// How far one of two triangles would have to be moved at most for them to come apart: the smallest overlap along their normals and
+/// along what is perpendicular to a side of each. (Normals alone say nothing of needles, which have any.)
+fn overlap(a: &[Corner; 3], b: &[Corner; 3]) -> f64 {
+    let sides = |t: &[Corner; 3]| [0, 1, 2].map(|k| difference(&t[(k + 1) % 3].position, &t[k].position));
+    let (of_a, of_b) = (sides(a), sides(b));
+    let across = of_a.iter().flat_map(|x| of_b.iter().filter_map(|y| unit_cross(x, y)));
+    let axes = [a, b].into_iter().filter_map(unit_normal).chain(across);
+    // (Two without area have no axis, and are nowhere apart from a line.)
+    axes.map(|axis| overlap_along(&axis, a, b)).reduce(f64::min).unwrap_or(0.0)
+}
+
+/// How far one of two triangles would have to be moved along an axis for them to come apart.
+fn overlap_along(axis: &[f64; 3], a: &[Corner; 3], b: &[Corner; 3]) -> f64 {
+    let reach = |t: &[Corner; 3]| {
+        let heights = [0, 1, 2].map(|k| height(axis, &a[0].position, &t[k].position));
+        (
+            heights.iter().copied().fold(f64::INFINITY, f64::min),
+            heights.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        )
+    };
+    let ((low, high), (other_low, other_high)) = (reach(a), reach(b));
+    (high - other_low).min(other_high - low).max(0.0)
 }
 
 fn height(normal: &[f64; 3], origin: &[f64; 3], point: &[f64; 3]) -> f64 {
@@ -313,15 +394,23 @@ fn distance(p: &[f64; 3], q: &[f64; 3]) -> f64 {
     norm(&std::array::from_fn(|k| q[k] - p[k]))
 }
 
+fn difference(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| p[k] - q[k])
+}
+
 fn unit_normal(t: &[Corner; 3]) -> Option<[f64; 3]> {
-    let edge = |i: usize| -> [f64; 3] { std::array::from_fn(|k| t[i].position[k] - t[0].position[k]) };
-    let (mut u, mut v) = (edge(1), edge(2));
-    let size = u.iter().chain(&v).fold(0.0f64, |size, x| size.max(x.abs()));
-    if size == 0.0 {
-        return None;
-    }
-    u = u.map(|x| x / size);
-    v = v.map(|x| x / size);
+    let edge = |i: usize| difference(&t[i].position, &t[0].position);
+    unit_cross(&edge(1), &edge(2))
+}
+
+/// The direction of a cross product; `None` where it vanishes.
+fn unit_cross(u: &[f64; 3], v: &[f64; 3]) -> Option<[f64; 3]> {
+    // Each by its own size, so that products neither overflow nor vanish.
+    let scaled = |v: &[f64; 3]| {
+        let size = v.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        (size > 0.0).then(|| v.map(|x| x / size))
+    };
+    let (u, v) = (scaled(u)?, scaled(v)?);
     let cross: [f64; 3] =
         std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
     let length = norm(&cross);
