@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import os
+import warnings
 from typing import Any, Optional, Tuple
 
 import numpy as np
 
 from . import _arrays, _trisect
+from ._errors import TrisectWarning
 
 
 def surface_of(source: Any) -> Optional[_trisect.Surface]:
     """A mesh of anything that is one; ``None`` for what is none."""
     if isinstance(source, (str, os.PathLike)):
-        return load(source)[0]
+        surface, warned = load(source)
+        for text in warned:
+            warnings.warn(f"{os.fspath(source)}: {text}", TrisectWarning, stacklevel=4)
+        return surface
     if isinstance(source, tuple):
         return of_arrays(*source) if len(source) == 2 else None
     for reader in (_trimesh, _scene, _pyvista, _open3d, _open3d_tensor, _manifold3d, _meshio):
