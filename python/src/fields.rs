@@ -24,6 +24,14 @@ fn size(points: usize) -> usize {
     points.saturating_mul(4)
 }
 
+/// Distances, gradients, nearest points, and the triangles that these are in.
+type Measured<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray1<i64>>,
+);
+
 /// The signed distance of a solid.
 #[pyclass(frozen, module = "trisect._trisect")]
 pub(crate) struct Distance {
@@ -67,12 +75,7 @@ impl Distance {
         py: Python<'py>,
         points: &Bound<'py, PyAny>,
         settings: Option<&Bound<'py, PyDict>>,
-    ) -> PyResult<(
-        Bound<'py, PyArray1<f64>>,
-        Bound<'py, PyArray2<f64>>,
-        Bound<'py, PyArray2<f64>>,
-        Bound<'py, PyArray1<i64>>,
-    )> {
+    ) -> PyResult<Measured<'py>> {
         let points = arrays::positions(points)?;
         let found = limits(settings)?
             .run(py, size(points.len()), |control| self.distance.measure_all(&points, control))?;

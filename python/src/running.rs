@@ -120,11 +120,10 @@ fn watched<T: Send>(
             }
         }
         let result = worker.join().unwrap_or_else(|payload| resume_unwind(payload));
-        // What was told last, the end among it.
-        let last = Python::attach(|py| tell(py, told, progress));
         match interruption {
             Some(error) => Err(error),
-            None => last.map(|()| result),
+            // What was told last, the end among it.
+            None => Python::attach(|py| tell(py, told, progress)).map(|()| result),
         }
     })
 }

@@ -46,6 +46,9 @@ pub(crate) struct Core {
     hash: OnceLock<u64>,
 }
 
+/// Operands, triangles, and whether they are reversed.
+type OriginTables<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<bool>>);
+
 impl From<Solid> for Core {
     fn from(solid: Solid) -> Self {
         Self { made: Arc::new(Made::Solid(Box::new(solid))), hash: OnceLock::new() }
@@ -219,10 +222,7 @@ impl Core {
     }
 
     /// Operand, triangle and whether it is reversed, for every triangle of a result.
-    fn origins<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<bool>>)> {
+    fn origins<'py>(&self, py: Python<'py>) -> PyResult<OriginTables<'py>> {
         let outcome = self.outcome()?;
         let origins = py.detach(|| outcome.origins());
         let operands: Vec<u32> = origins.iter().map(|origin| origin.operand).collect();
