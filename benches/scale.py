@@ -115,7 +115,7 @@ def same(folder: pathlib.Path) -> None:
 
 def infill(count: int) -> None:
     """A lattice of balls that overlap their neighbours."""
-    import trisect.ray
+    from trisect import ray as many
 
     side = round(count ** (1 / 3))
     ball = trisect.icosphere(0.56, level=1)
@@ -123,8 +123,8 @@ def infill(count: int) -> None:
     # Turned, so that nothing is aligned.
     turned = [ball.rotated([1, 2, 3], 7 * i) for i in range(16)]
     parts = [turned[sum(place) % 16].translated(place) for place in places]
-    _started(trisect.ray)
-    tiled = trisect.ray.union(parts)
+    _started(many)
+    tiled = many.union(parts)
     start = time.perf_counter()
     alone = trisect.union(parts, threads=1)
     _compare(f"infill of {len(parts)} balls", tiled, alone, time.perf_counter() - start)
@@ -132,12 +132,12 @@ def infill(count: int) -> None:
 
 def pair(level: int) -> None:
     """Two balls."""
-    import trisect.ray
+    from trisect import ray as many
 
     a = trisect.icosphere(1.0, level=level)
     b = a.rotated([1, 2, 3], 40).translated([0.5, 0.013, -0.007])
-    _started(trisect.ray)
-    slabs = trisect.ray.combine_large("union", a, b, slabs=4)
+    _started(many)
+    slabs = many.combine_large("union", a, b, slabs=4)
     start = time.perf_counter()
     alone = trisect.union(a, b, threads=1)
     _compare(f"two balls of {len(a.faces)} triangles", slabs, alone, time.perf_counter() - start)
@@ -176,10 +176,10 @@ def main() -> None:
             run(folder, "batch", trisect.batch, "trisect._worker")
         elif what == "ray":
             import ray
-            import trisect.ray
+            from trisect import ray as many
 
             ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
-            run(folder, "ray", trisect.ray.batch, "ray::")
+            run(folder, "ray", many.batch, "ray::")
         elif what == "same":
             same(folder)
 
