@@ -8,6 +8,7 @@ use trisect::exact::Plane;
 
 use super::argument_groups::{Inputs, Results};
 use super::field_arguments::Axis;
+use super::surface::{self, CutUv};
 use super::values::{self, Heights};
 
 /// Which halves of a cut are wanted.
@@ -39,6 +40,15 @@ pub(crate) struct Cut {
     /// The group of the new faces, with a colour if it ends with #RRGGBB
     #[arg(long, value_name = "MATERIAL", value_parser = values::material, help_heading = "Results")]
     pub(crate) cap: Option<FaceGroup>,
+    /// What the new faces show: nothing of their own, the group around them, or a material by its name, new or of the input
+    #[arg(
+        long, value_name = "keep|body|NAME", value_parser = surface::cut_material, conflicts_with = "cap",
+        help_heading = "Results"
+    )]
+    pub(crate) cut_material: Option<String>,
+    /// Texture coordinates of the new faces: planar or box, with how many to a unit of length, as box:0.5
+    #[arg(long, value_name = "KIND[:DENSITY]", value_parser = surface::cut_uv, help_heading = "Results")]
+    pub(crate) cut_uv: Option<CutUv>,
     #[command(flatten)]
     pub(crate) results: Results,
     /// Read and check the input, say what would be done, write nothing

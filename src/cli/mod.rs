@@ -33,6 +33,8 @@ mod limits;
 mod mended;
 mod operands;
 mod output;
+#[cfg(feature = "viewer")]
+mod page;
 mod progress;
 mod reading;
 mod recenter;

@@ -13,7 +13,7 @@ use super::combine;
 use super::cut_arguments::Split;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Operand};
-use super::output::{self, Product, Target};
+use super::output::{self, Product, Shown, Target};
 use super::recenter;
 use super::report::{self, Measures};
 use super::requests::{self, Request};
@@ -203,7 +203,8 @@ fn write(
             trisect::render::mesh(mesh, &output::view(&results.drawing, style.format), colours.as_deref())
         };
         let options = style.options.clone();
-        let product = Product { mesh, options, picture: &picture, documents: &[] };
+        let shown = Shown::new(&results.drawing, style.format, None);
+        let product = Product { mesh, options, picture: &picture, documents: &[], shown };
         let (written, warnings) = output::write_all(&targets, &product, &session.limits)?;
         warnings.into_iter().for_each(|warning| session.warn(warning));
         outputs.extend(written);

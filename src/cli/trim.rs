@@ -13,7 +13,7 @@ use super::cut_arguments::Trim;
 use super::fault::{Exit, Fault};
 use super::mended;
 use super::operands;
-use super::output::{self, Product};
+use super::output::{self, Product, Shown};
 use super::reading::{self, Input};
 use super::recenter;
 use super::report::Measures;
@@ -67,7 +67,8 @@ pub(crate) fn run(arguments: &Trim, matches: &ArgMatches, session: &mut Session<
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
         trisect::render::mesh(placed, &output::view(drawing, Some(sheet.format)), colours.as_deref())
     };
-    let product = Product { mesh: placed, options: write_options, picture: &picture, documents: &[] };
+    let shown = Shown::new(drawing, Some(sheet.format), None);
+    let product = Product { mesh: placed, options: write_options, picture: &picture, documents: &[], shown };
     let (outputs, warnings) = output::write_all(&targets, &product, &session.limits)?;
     warnings.into_iter().for_each(|warning| session.warn(warning));
     session.note("outputs", outputs);

@@ -165,3 +165,45 @@ fn an_open_surface_is_trimmed() {
     folder.run("trim torn.obj --weld 0.01 block.off --inside -o in.obj").exits(0).says("2 vertices welded");
     folder.run("trim sheet.obj --fill-holes block.off --inside -o in.obj").exits(0).says("stays open");
 }
+
+#[test]
+fn caps_show_what_is_asked_for() {
+    let folder = Folder::new();
+    let block = crate::common::program::cube([0.0; 3], [2.0; 3]);
+    folder.write("a.mtl", "newmtl red\nKd 1 0 0\n");
+    folder.write("a.obj", format!("mtllib a.mtl\nvn 0 0 1\no body\nusemtl red\n{block}"));
+    folder.run("convert a.obj --normals flat -o block.glb").exits(0);
+    let on_cap = |mesh: &Mesh| -> Vec<usize> {
+        let is_on = |triangle: &[u32; 3]| {
+            triangle.iter().all(|&v| (mesh.positions[v as usize][2] - 1.0).abs() < 1e-6)
+        };
+        (0..mesh.triangles.len()).filter(|&t| is_on(&mesh.triangles[t])).collect()
+    };
+    for (options, name, material) in [
+        ("", "", None),
+        ("--cut-material body", "body", Some("red")),
+        ("--cut-material brass --cut-uv planar:0.5", "brass", Some("brass")),
+        ("--cap lid", "lid", None),
+    ] {
+        folder.run(&format!("cut block.glb --plane z=1 --keep below {options} -o half.glb")).exits(0);
+        let mesh = Mesh::load(folder.path("half.glb")).expect("a mesh");
+        let cap = on_cap(&mesh);
+        assert_eq!(cap.len(), 2, "{options}");
+        for &triangle in &cap {
+            let group = &mesh.groups.list[mesh.groups.of_triangle[triangle] as usize];
+            assert_eq!(group.name, name, "{options}");
+            if name != "lid" {
+                assert_eq!(
+                    group.material.as_ref().map(|material| material.name.as_str()),
+                    material,
+                    "{options}"
+                );
+            }
+            let normals = mesh.attribute("NORMAL").expect("normals");
+            assert_eq!(normals.at(triangle, 0), Some(&[0.0, 0.0, 1.0][..]), "{options}");
+            let uv = mesh.attribute("TEXCOORD_0").and_then(|uv| uv.at(triangle, 1));
+            assert_eq!(uv.is_some(), options.contains("planar"), "{options}");
+        }
+    }
+    folder.run("cut block.glb --plane z=1 --cap lid --cut-material body -o half.glb").exits(1);
+}

@@ -403,18 +403,23 @@ fn unit_normal(t: &[Corner; 3]) -> Option<[f64; 3]> {
     unit_cross(&edge(1), &edge(2))
 }
 
-/// The direction of a cross product; `None` where it vanishes.
+/// The direction of a cross product; `None` where it vanishes. Perpendicular to both but for rounding of their own lengths, also
+/// where they are nearly parallel.
 fn unit_cross(u: &[f64; 3], v: &[f64; 3]) -> Option<[f64; 3]> {
-    // Each by its own size, so that products neither overflow nor vanish.
-    let scaled = |v: &[f64; 3]| {
-        let size = v.iter().fold(0.0f64, |size, x| size.max(x.abs()));
-        (size > 0.0).then(|| v.map(|x| x / size))
-    };
-    let (u, v) = (scaled(u)?, scaled(v)?);
+    let (u, v) = (unit(u)?, unit(v)?);
     let cross: [f64; 3] =
         std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
-    let length = norm(&cross);
-    (length > 0.0).then(|| cross.map(|x| x / length))
+    // Of nearly parallel vectors the product is mostly rounding; what of that lies along the first is taken off, and what is left
+    // is as good as perpendicular to the second.
+    let cross = unit(&cross)?;
+    let along: f64 = (0..3).map(|k| cross[k] * u[k]).sum();
+    unit(&std::array::from_fn(|k| cross[k] - along * u[k]))
+}
+
+/// A vector made one long; `None` for zero.
+fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
+    let length = norm(v);
+    (length > 0.0).then(|| v.map(|x| x / length))
 }
 
 /// Where a line passes a plane, roughly.

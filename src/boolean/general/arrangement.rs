@@ -48,6 +48,8 @@ pub(crate) struct Crossed {
     locality: Locality,
     /// By piece of surface, its last vertex in x.
     last: Vec<Option<VertexId>>,
+    /// The faces near crossings, ascending: all whose edges matter.
+    walked_over: Vec<FaceId>,
     _memory: Reservation,
 }
 
@@ -56,7 +58,7 @@ impl Crossed {
     ///
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where faces or points cannot be numbered.
-    pub(crate) fn new(operands: &[&Solid], groups: &[Vec<u32>], runner: Runner<'_>) -> Result<Self, Error> {
+    pub(crate) fn new(operands: &[&Solid], runner: Runner<'_>) -> Result<Self, Error> {
         let triangles: usize = operands.iter().map(|solid| solid.mesh().triangles.len()).sum();
         let vertices: usize = operands.iter().map(|solid| solid.mesh().positions.len()).sum();
         if triangles >= MOST_FACES || vertices >= MOST_FACES {
@@ -67,7 +69,7 @@ impl Crossed {
         let bytes = vertices * BYTES_PER_VERTEX + triangles * BYTES_PER_TRIANGLE;
         let memory = runner.control.reserve(bytes as u64)?;
         // 1. All operands as one complex, in general position.
-        let mut surfaces = Surfaces::new(operands, groups);
+        let mut surfaces = Surfaces::new(operands);
         let bounds = operands.iter().filter_map(|solid| solid.bounds());
         let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
         let is_simple = |solid: &&Solid| solid.is_simple_complex();
@@ -85,14 +87,40 @@ impl Crossed {
         surfaces.set_components(components);
         surfaces.set_near(&pairs);
         let last = seeds::last_vertices(&surfaces);
-        let mut edges = all_edges.unwrap_or_else(|| {
-            surfaces.edges_of(&locality.walked_over(&surfaces, last.iter().copied().flatten()))
-        });
+        let walked_over = match all_edges {
+            Some(_) => surfaces.faces().collect(),
+            None => locality.walked_over(&surfaces, last.iter().copied().flatten()),
+        };
+        let mut edges = all_edges.unwrap_or_else(|| surfaces.edges_of(&walked_over));
         let contacts = seeds::sort_radially(&surfaces, &mut edges);
         // 2. Which faces cross.
         let crossings = Crossings::find(&surfaces, &edges, &pairs, runner)?;
         let contacts = contacts + crossings.contacts;
-        Ok(Self { surfaces, edges, crossings, contacts, bounds, boxes, locality, last, _memory: memory })
+        Ok(Self {
+            surfaces,
+            edges,
+            crossings,
+            contacts,
+            bounds,
+            boxes,
+            locality,
+            last,
+            walked_over,
+            _memory: memory,
+        })
+    }
+
+    /// The triangles of an operand that are near crossings, ascending: others stay as they are.
+    pub(crate) fn near(&self, operand: u32) -> Vec<u32> {
+        let own = self.walked_over.iter().filter(|&&face| self.surfaces.owner(face) == operand);
+        own.map(|&face| self.surfaces.triangle(face)).collect()
+    }
+
+    /// Says which group of the result each triangle of each operand belongs to; empty lists where there are no groups. Only
+    /// those [near](Self::near) crossings are asked for theirs.
+    pub(crate) fn with_groups(mut self, groups: Vec<Vec<u32>>) -> Self {
+        self.surfaces.set_groups(groups);
+        self
     }
 
     /// The faces that cross others or lie on others, ascending, as triangles of their operands.
@@ -112,8 +140,9 @@ impl General {
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where points cannot be numbered.
     pub(crate) fn new(crossed: Crossed, fuse: bool, runner: Runner<'_>) -> Result<Self, Error> {
-        let Crossed { surfaces, edges, crossings, mut contacts, bounds, boxes, locality, last, _memory } =
-            crossed;
+        let Crossed {
+            surfaces, edges, crossings, mut contacts, bounds, boxes, locality, last, _memory, ..
+        } = crossed;
         let cut: Vec<FaceId> = surfaces.faces().filter(|&face| !crossings.of_face(face).is_empty()).collect();
         // 3. Three-face points.
         let (triples, contacts_of_triples) = triples::find(&surfaces, &edges, &crossings, &cut, runner)?;

@@ -28,8 +28,8 @@ pub(crate) struct Surfaces {
     owners: Vec<u32>,
     /// By face, which triangle of its owner it is (the first, where there were several).
     triangles: Vec<u32>,
-    /// By face, its group in the result; empty if there are no groups.
-    groups: Vec<u32>,
+    /// By owner, the group of each of its triangles in the result; empty if there are no groups.
+    groups: Vec<Vec<u32>>,
     /// By vertex, which piece of surface it belongs to.
     components: Vec<u32>,
     component_count: u32,
@@ -42,9 +42,8 @@ pub(crate) struct Surfaces {
 }
 
 impl Surfaces {
-    /// The surfaces of operands, with the result's group of each of their triangles (empty lists if there are no groups):
-    /// all arrays one after the other.
-    pub(crate) fn new(operands: &[&Solid], groups: &[Vec<u32>]) -> Self {
+    /// The surfaces of operands: all arrays one after the other.
+    pub(crate) fn new(operands: &[&Solid]) -> Self {
         let count = |of: fn(&Solid) -> usize| operands.iter().map(|solid| of(solid)).sum();
         let vertex_count: usize = count(|solid| solid.mesh().positions.len());
         let face_count: usize = count(|solid| solid.mesh().triangles.len());
@@ -54,7 +53,7 @@ impl Surfaces {
             steps: vec![1; face_count],
             owners: Vec::with_capacity(face_count),
             triangles: Vec::with_capacity(face_count),
-            groups: groups.concat(),
+            groups: Vec::new(),
             components: Vec::new(),
             component_count: 0,
             largest: 0.0,
@@ -120,7 +119,7 @@ impl Surfaces {
         let steps = std::mem::take(&mut self.steps);
         let mut keep = steps.iter().map(|&step| step != 0);
         self.corners.retain(|_| keep.next().unwrap_or_default());
-        for list in [&mut self.owners, &mut self.triangles, &mut self.groups] {
+        for list in [&mut self.owners, &mut self.triangles] {
             let mut keep = steps.iter().map(|&step| step != 0);
             list.retain(|_| keep.next().unwrap_or_default());
         }
@@ -168,6 +167,11 @@ impl Surfaces {
         if changed {
             edges.renumber(&self.corners);
         }
+    }
+
+    /// Says which group of the result each triangle of each operand belongs to; empty lists where there are no groups.
+    pub(crate) fn set_groups(&mut self, groups: Vec<Vec<u32>>) {
+        self.groups = groups;
     }
 
     /// Says which piece of surface each vertex belongs to, and how many there are.
@@ -274,7 +278,8 @@ impl Surfaces {
 
     /// The result's group of a face.
     pub(crate) fn group(&self, face: FaceId) -> u32 {
-        self.groups.get(face.index()).copied().unwrap_or(0)
+        let of_owner = self.groups.get(self.owner(face) as usize);
+        of_owner.and_then(|groups| groups.get(self.triangle(face) as usize)).copied().unwrap_or(0)
     }
 
     fn directions(&self) -> &Directions {
