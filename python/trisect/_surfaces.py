@@ -684,6 +684,10 @@ def core_of(source: SolidLike) -> Optional[_trisect.Core]:
         return core
     if isinstance(source, _Surface):
         return _passed(source._surface(), None, None)
+    if isinstance(source, tuple) and len(source) == 2:
+        # Read once: a mesh between would be a copy more.
+        corners, sizes = _arrays.faces(source[1])
+        return _trisect.Core.of_arrays(_arrays.points(source[0]), corners, sizes)
     surface = _convert.surface_of(source)
     return None if surface is None else _passed(surface, None, None)
 
