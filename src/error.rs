@@ -149,9 +149,12 @@ impl Error {
             #[cfg(feature = "formats")]
             Self::Format(_) => Failure::Unreadable,
             Self::InvalidArgument(_)
-            | Self::Mesh(MeshError::Groups(_) | MeshError::WeldingDistance(_) | MeshError::Transform(_)) => {
-                Failure::Usage
-            }
+            | Self::Mesh(
+                MeshError::Groups(_)
+                | MeshError::UnevenPolygons { .. }
+                | MeshError::WeldingDistance(_)
+                | MeshError::Transform(_),
+            ) => Failure::Usage,
             Self::Mesh(_) | Self::TooLarge { .. } => Failure::Unusable,
             #[cfg(feature = "field")]
             Self::Field(_) | Self::Formula(_) => Failure::Unusable,

@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use trisect::Operation;
 
 use super::argument_groups::{Common, Inputs, Placing, Reading, Repair, Results};
+use super::batch::Batch;
 #[cfg(feature = "subdivision")]
 use super::cage_arguments::{FreeFormVerb, Subdivide};
 use super::cut_arguments::{Cut, Imprint, Section, Solidify, Split, Trim};
@@ -164,6 +165,13 @@ pub(crate) enum Verb {
     /// Sample a model, a mesh's signed distance, or a formula on a grid
     #[command(after_help = "Example:\n  trisect grid part.stl --spacing 0.5 --band 2 -o part.npy")]
     Grid(SampleGrid),
+    /// Run many jobs from a file, each in a process of its own, and report each
+    #[command(
+        after_help = "A job: {\"id\": \"p7\", \"verb\": \"difference\", \"inputs\": [\"a.stl\", {\"file\": \"b.stl\", \"translate\": [1, 0, \
+                            0]}], \"output\": \"out/p7.ply\", \"options\": {\"weld\": \"auto\"}}\n\nExample:\n  trisect batch \
+                            jobs.jsonl -o reports.jsonl"
+    )]
+    Batch(Batch),
     /// Join, mesh, convert and draw curves
     #[cfg(feature = "parametric")]
     #[command(subcommand)]
@@ -226,6 +234,7 @@ impl Verb {
             Self::Eval(_) => "eval",
             Self::Slice(_) => "slice",
             Self::Grid(_) => "grid",
+            Self::Batch(_) => "batch",
             #[cfg(feature = "parametric")]
             Self::Curve(verb) => verb.name(),
             #[cfg(feature = "subdivision")]

@@ -2,6 +2,7 @@
 
 mod argument_groups;
 mod arguments;
+mod batch;
 #[cfg(feature = "subdivision")]
 mod cage_arguments;
 #[cfg(feature = "subdivision")]
@@ -175,6 +176,7 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Eval(eval) => eval::run(eval, &mut session),
             Verb::Slice(slice) => slice::run(slice, matches, &mut session),
             Verb::Grid(grid) => grid::run(grid, matches, &mut session),
+            Verb::Batch(batch) => batch::run(batch, &mut session),
             #[cfg(feature = "parametric")]
             Verb::Curve(verb) => curve::run(verb, &mut session),
             #[cfg(feature = "subdivision")]

@@ -55,6 +55,14 @@ pub enum MeshError {
         /// How many numbers there are.
         numbers: usize,
     },
+    /// Polygons whose sizes do not add up to the corners that are listed.
+    #[error("the polygons have {listed} corners by their sizes, but {corners} are listed")]
+    UnevenPolygons {
+        /// The sum of the sizes.
+        listed: u64,
+        /// How many corners there are.
+        corners: usize,
+    },
     /// The groups do not fit the triangles.
     #[error("face groups: {0}")]
     Groups(GroupFault),

@@ -18,6 +18,7 @@ mod duplicates;
 mod edges;
 mod error;
 mod fans;
+mod from_polygons;
 mod gate;
 mod groups;
 mod inertia;

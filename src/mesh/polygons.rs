@@ -23,7 +23,6 @@ impl Polygons {
     }
 
     /// The polygons of triangles, of each of which the face is known; triangles of one face follow each other.
-    #[cfg(feature = "formats")]
     pub(crate) fn of_faces(faces: &[u32]) -> Self {
         let mut polygons = Self::default();
         if faces.windows(2).all(|pair| pair[0] != pair[1]) {

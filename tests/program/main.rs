@@ -6,6 +6,7 @@
 mod common;
 
 mod attributes;
+mod batch;
 #[cfg(feature = "subdivision")]
 mod cages;
 mod curve;

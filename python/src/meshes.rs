@@ -1,0 +1,193 @@
+//! Meshes without promises: open surfaces, files as they are, what has to be looked at before it is a solid.
+
+use std::sync::Arc;
+
+use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use trisect::mesh::{Attribute, diagnose};
+use trisect::{Error, Mesh};
+
+use crate::settings::limits;
+use crate::views::{Owner, View};
+use crate::{arrays, failures};
+
+/// What stands behind a `trisect.Mesh`.
+#[pyclass(frozen, module = "trisect._trisect")]
+pub(crate) struct Surface {
+    pub(crate) mesh: Arc<Mesh>,
+}
+
+impl From<Mesh> for Surface {
+    fn from(mesh: Mesh) -> Self {
+        Self { mesh: Arc::new(mesh) }
+    }
+}
+
+/// The name of an attribute, its values, and the value of every corner.
+type Table<'py> = (String, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
+
+/// All that a mesh holds: positions, triangles, attributes; and groups and polygons as JSON.
+pub(crate) type Parts<'py> =
+    (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>, Vec<Table<'py>>, String, String);
+
+/// A mesh from arrays; with `sizes`, of polygons whose corners are listed one after the other.
+pub(crate) fn read_mesh(
+    vertices: &Bound<'_, PyAny>,
+    faces: &Bound<'_, PyAny>,
+    sizes: Option<Vec<u32>>,
+) -> PyResult<Mesh> {
+    let positions = arrays::positions(vertices)?;
+    let polygons = |positions: Vec<[f64; 3]>, corners: &[u32], sizes: &[u32]| {
+        Mesh::from_polygons(positions, corners, sizes)
+            .map_err(|error| failures::exception(&Error::from(error)))
+    };
+    if let Some(sizes) = sizes {
+        let corners = faces.cast::<PyArray1<i64>>()?;
+        let corners = arrays::ragged(corners, &sizes, positions.len())?;
+        return polygons(positions, &corners, &sizes);
+    }
+    let (corners, columns) = arrays::faces(faces, positions.len())?;
+    match columns {
+        3 => Ok(Mesh::new(positions, corners.as_chunks::<3>().0.to_vec())),
+        0..3 => Err(failures::shape("faces", &[corners.len() / columns.max(1), columns])),
+        _ => {
+            let sizes = vec![columns as u32; corners.len() / columns];
+            polygons(positions, &corners, &sizes)
+        }
+    }
+}
+
+/// What [`Surface::of_parts`] makes a mesh of.
+pub(crate) fn parts<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Parts<'py>> {
+    let table = |attribute: &Attribute| -> PyResult<Table<'py>> {
+        let values = PyArray1::from_slice(py, &attribute.values);
+        let corners = PyArray1::from_slice(py, &attribute.of_corner);
+        Ok((
+            attribute.name.clone(),
+            values.reshape([attribute.len(), attribute.components])?,
+            corners.reshape([attribute.of_corner.len() / 3, 3])?,
+        ))
+    };
+    let json = |value: Result<String, serde_json::Error>| value.unwrap_or_default();
+    Ok((
+        PyArray1::from_slice(py, mesh.positions.as_flattened()).reshape([mesh.positions.len(), 3])?,
+        PyArray1::from_slice(py, mesh.triangles.as_flattened()).reshape([mesh.triangles.len(), 3])?,
+        mesh.attributes.iter().map(table).collect::<PyResult<_>>()?,
+        json(serde_json::to_string(&mesh.groups)),
+        json(serde_json::to_string(&mesh.polygons)),
+    ))
+}
+
+#[pymethods]
+impl Surface {
+    /// A mesh from arrays.
+    #[staticmethod]
+    #[pyo3(signature = (vertices, faces, sizes=None))]
+    fn of_arrays(
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        sizes: Option<Vec<u32>>,
+    ) -> PyResult<Self> {
+        Ok(read_mesh(vertices, faces, sizes)?.into())
+    }
+
+    /// A mesh from all that it holds.
+    #[staticmethod]
+    fn of_parts(parts: Parts<'_>) -> PyResult<Self> {
+        let (positions, triangles, tables, groups, polygons) = parts;
+        let mut mesh = Mesh::new(
+            arrays::positions(positions.as_any())?,
+            triangles.try_readonly()?.to_vec()?.as_chunks::<3>().0.to_vec(),
+        );
+        for (name, values, corners) in tables {
+            mesh.attributes.push(attribute(name, &values, &corners)?);
+        }
+        let wrong = |error: serde_json::Error| failures::argument(&format!("a damaged pickle: {error}"));
+        mesh.groups = serde_json::from_str(&groups).map_err(wrong)?;
+        mesh.polygons = serde_json::from_str(&polygons).map_err(wrong)?;
+        Ok(mesh.into())
+    }
+
+    /// The same with an attribute more, or with another one in place of that of its name.
+    fn with_attribute(
+        &self,
+        name: String,
+        values: &Bound<'_, PyArray2<f64>>,
+        corners: &Bound<'_, PyArray2<u32>>,
+    ) -> PyResult<Self> {
+        let mut mesh = (*self.mesh).clone();
+        mesh.set_attribute(attribute(name, values, corners)?);
+        Ok(mesh.into())
+    }
+
+    /// The same without an attribute.
+    fn without_attribute(&self, name: &str) -> Self {
+        let mut mesh = (*self.mesh).clone();
+        mesh.attributes.retain(|attribute| attribute.name != name);
+        mesh.into()
+    }
+
+    /// The same with groups of triangles: their names, and for every triangle the number of one.
+    fn with_groups(&self, names: Vec<String>, of_triangle: Vec<u32>) -> Self {
+        let mut mesh = (*self.mesh).clone();
+        let group = |name| trisect::FaceGroup { name, material: None };
+        mesh.groups.list = names.into_iter().map(group).collect();
+        mesh.groups.of_triangle = of_triangle;
+        mesh.into()
+    }
+
+    /// A table of the mesh, for `numpy.asarray`.
+    #[pyo3(signature = (name, attribute=0))]
+    fn view(&self, name: &str, attribute: usize) -> PyResult<View> {
+        View::new(Owner::from(self), name, attribute)
+    }
+
+    /// The names of the attributes, in order.
+    fn attributes(&self) -> Vec<String> {
+        self.mesh.attributes.iter().map(|attribute| attribute.name.clone()).collect()
+    }
+
+    /// The groups as JSON.
+    fn groups(&self) -> String {
+        serde_json::to_string(&self.mesh.groups.list).unwrap_or_default()
+    }
+
+    /// Vertices, triangles.
+    fn counts(&self) -> (usize, usize) {
+        (self.mesh.positions.len(), self.mesh.triangles.len())
+    }
+
+    /// The area of the surface.
+    fn area(&self, py: Python<'_>) -> f64 {
+        py.detach(|| self.mesh.area())
+    }
+
+    /// What is wrong with it, as JSON, and in words.
+    #[pyo3(signature = (settings=None))]
+    fn diagnosis(&self, py: Python<'_>, settings: Option<&Bound<'_, PyDict>>) -> PyResult<(String, String)> {
+        limits(settings)?.run(py, self.mesh.triangles.len(), |control| {
+            control.check()?;
+            let found = diagnose(&self.mesh);
+            control.check()?;
+            Ok((serde_json::to_string(&found).unwrap_or_default(), found.to_string()))
+        })
+    }
+
+    /// All that the mesh holds.
+    fn parts<'py>(&self, py: Python<'py>) -> PyResult<Parts<'py>> {
+        parts(py, &self.mesh)
+    }
+}
+
+fn attribute(
+    name: String,
+    values: &Bound<'_, PyArray2<f64>>,
+    corners: &Bound<'_, PyArray2<u32>>,
+) -> PyResult<Attribute> {
+    let values = values.try_readonly()?;
+    let mut attribute = Attribute::new(name, values.as_array().ncols());
+    attribute.values = values.as_array().iter().copied().collect();
+    attribute.of_corner = corners.try_readonly()?.as_array().iter().copied().collect();
+    Ok(attribute)
+}

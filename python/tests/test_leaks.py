@@ -1,0 +1,68 @@
+"""Memory stays flat over many calls, whether they succeed or fail."""
+
+from __future__ import annotations
+
+import gc
+import tracemalloc
+from typing import Any, Callable
+
+import numpy as np
+import pytest
+
+import trisect
+
+PAGE = 4096
+
+
+def resident() -> int:
+    """Bytes of memory that this process has in use."""
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * PAGE
+
+
+def refused(call: Callable[[], Any]) -> None:
+    """Calls what is to be refused."""
+    try:
+        call()
+    except trisect.Error:
+        return
+    raise AssertionError("it was not refused")
+
+
+@pytest.mark.skipif(not __import__("os").path.exists("/proc/self/statm"), reason="needs /proc")
+def test_ten_thousand_calls_leak_nothing(cube: Any, pair: Any) -> None:
+    corners, squares = cube
+    turned = np.asfortranarray(corners.astype(np.float32))
+    spoiled = corners * np.nan
+    a, b = pair
+
+    def calls(count: int) -> None:
+        for i in range(count):
+            solid = trisect.Solid(corners, squares)
+            assert trisect.Solid(turned, squares[::-1]).faces[0, 0] >= 0
+            refused(lambda: trisect.Solid(spoiled, squares))
+            refused(lambda: trisect.Solid(corners, squares - 1))
+            refused(lambda: trisect.Solid(corners, squares[1:]))
+            _ = solid.vertices.sum() + solid.volume
+            if i % 20 == 0:
+                cut = a - b
+                _ = (cut.origins, cut.curves, cut.certificate, cut.attributes, hash(cut))
+                refused(lambda: trisect.union(a, b, memory=1))
+
+    calls(200)
+    gc.collect()
+    before = resident()
+    tracemalloc.start()
+    calls(200)
+    gc.collect()
+    start, _ = tracemalloc.get_traced_memory()
+    calls(200)
+    gc.collect()
+    end, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    # (Six hundred solids of Python's own, kept, would be some hundred kilobytes.)
+    assert end - start < 50_000
+    calls(1_600)
+    gc.collect()
+    # Ten thousand solids of a cube, kept, would be 10 MB at least; pages come and go.
+    assert resident() - before < 6_000_000

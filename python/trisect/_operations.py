@@ -1,0 +1,427 @@
+"""Operations on solids."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import os
+import warnings
+from dataclasses import dataclass
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _trisect
+from ._errors import ArgumentError, Error, MeshError, TrisectWarning
+from ._records import Diagnosis, SelfCrossings
+from ._settings import _SETTINGS, Limits, Settings, settings
+from ._surfaces import Mesh, Solid, SolidLike, _gate_options, _passed, _surface_of, core_of
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+PlaneLike = Union[str, Tuple[str, float], Tuple[Sequence[float], float], Sequence[float]]
+"""A plane: ``"z=12.5"``, ``("z", 12.5)``, a normal and an offset ``((1, 1, 0), 3.0)`` (all x with normal . x = offset), or their four
+numbers. Above is where the normal points."""
+
+
+def _core(operand: SolidLike, place: int, count: int) -> _trisect.Core:
+    try:
+        core = core_of(operand)
+    except Error as error:
+        if error.operand is None:
+            error.operand = error._data["operand"] = place
+            if count > 1:
+                error._message = f"operand {place + 1}: {error._message}"
+        raise
+    if core is None:
+        raise TypeError(f"operand {place + 1} is a {type(operand).__name__}, and no solid can be made of that")
+    return core
+
+
+def cores(operands: Sequence[SolidLike]) -> List[_trisect.Core]:
+    """What stands behind operands; a single list of operands is opened."""
+    listed: Sequence[Any] = operands
+    if len(operands) == 1 and _is_list(operands[0]):
+        listed = list(operands[0])
+    return [_core(operand, place, len(listed)) for place, operand in enumerate(listed)]
+
+
+def _is_list(operand: Any) -> bool:
+    if isinstance(operand, tuple):
+        # Two arrays are a solid.
+        return not (len(operand) == 2 and not any(hasattr(item, "faces") or isinstance(item, (str, Solid)) for item in operand))
+    return isinstance(operand, (list, set, frozenset)) or hasattr(operand, "__next__")
+
+
+def run(operation: str, operands: Sequence[SolidLike], given: Mapping[str, Any]) -> Solid:
+    """One operation."""
+    return Solid._of(_trisect.combine(operation, cores(operands), settings(given)))
+
+
+def union(*operands: SolidLike, **given: "Unpack[Settings]") -> Solid:
+    """What is in any of the operands; one list of them will do.
+
+    >>> import trisect
+    >>> trisect.union([trisect.cuboid([0.5 * i, 0, 0], [0.5 * i + 1, 1, 1]) for i in range(4)]).volume
+    2.5
+
+    Keywords are those of :class:`~trisect.Settings`: limits, threads, progress, what is inside, what is snapped.
+    """
+    return run("union", operands, given)
+
+
+def intersection(*operands: SolidLike, **given: "Unpack[Settings]") -> Solid:
+    """What is in all of the operands. Keywords as for :func:`union`.
+
+    >>> import trisect
+    >>> trisect.intersection(trisect.cuboid([0, 0, 0], [2, 2, 2]), trisect.cuboid([1, 1, 1], [3, 3, 3])).volume
+    1.0
+    """
+    return run("intersection", operands, given)
+
+
+def difference(*operands: SolidLike, **given: "Unpack[Settings]") -> Solid:
+    """What is in the first operand and in none of the others. Keywords as for :func:`union`.
+
+    >>> import trisect
+    >>> trisect.difference(trisect.cuboid([0, 0, 0], [2, 2, 2]), trisect.cuboid([1, 1, 1], [3, 3, 3])).volume
+    7.0
+    """
+    return run("difference", operands, given)
+
+
+def xor(*operands: SolidLike, **given: "Unpack[Settings]") -> Solid:
+    """What is in an odd number of the operands. Keywords as for :func:`union`.
+
+    >>> import trisect
+    >>> trisect.xor(trisect.cuboid([0, 0, 0], [2, 2, 2]), trisect.cuboid([1, 1, 1], [3, 3, 3])).volume
+    14.0
+    """
+    return run("xor", operands, given)
+
+
+def combine(expression: Union[str, Sequence[str]], *operands: SolidLike, **named: Any) -> Any:
+    """Any expression of operands, evaluated from all of them at once: nothing is rounded in between.
+
+    >>> import trisect
+    >>> box = trisect.cuboid([0, 0, 0], [3, 3, 3])
+    >>> pin, slot = trisect.cuboid([1, 1, 1], [2, 2, 2]), trisect.cuboid([2, 2, 2], [4, 4, 4])
+    >>> trisect.combine("body - (pin | slot)", body=box, pin=pin, slot=slot).volume
+    25.0
+    >>> [part.volume for part in trisect.combine(["a - b", "a & b"], box, slot)]
+    [26.0, 1.0]
+
+    Operands are called by keywords, or ``a``, ``b``, ``c`` ... where they have none. ``|`` or ``+`` is a union, ``&`` an intersection,
+    ``-`` a difference, ``^`` a symmetric difference, and ``atleast(2, a, b, c)`` what is in at least two of three.
+
+    Parameters
+    ----------
+    expression : str or list of str
+        One expression, or several: then results come in a list, and where they meet they have the same vertices.
+
+    Other keywords are those of :class:`~trisect.Settings`; no operand can be called like one of them.
+    """
+    given = {key: value for key, value in named.items() if key in _SETTINGS}
+    named = {key: value for key, value in named.items() if key not in _SETTINGS}
+    listed = list(operands[0]) if len(operands) == 1 and _is_list(operands[0]) else list(operands)
+    names = list(itertools.islice(_letters(), len(listed)))
+    twice = set(names) & set(named)
+    if twice:
+        raise ArgumentError(f"operands without a name are called {', '.join(names)}: {', '.join(sorted(twice))} is there twice")
+    names += named
+    listed += named.values()
+    texts = [expression] if isinstance(expression, str) else list(expression)
+    made = [_core(operand, place, len(listed)) for place, operand in enumerate(listed)]
+    results = [Solid._of(core) for core in _trisect.evaluate(texts, names, made, settings(given))]
+    return results[0] if isinstance(expression, str) else results
+
+
+def _letters() -> Any:
+    """a to z, and then a1, b1 and so on."""
+    letters = "abcdefghijklmnopqrstuvwxyz"
+    for round_ in itertools.count():
+        for letter in letters:
+            yield letter if round_ == 0 else f"{letter}{round_}"
+
+
+def resolve(operand: SolidLike, **given: "Unpack[Settings]") -> Solid:
+    """What a surface that crosses itself winds around, as one that does not. Keywords as for :func:`union`; ``rule`` says what is
+    inside, ``embed=True`` frees the result of crossings that rounding makes.
+
+    >>> import numpy as np
+    >>> import trisect
+    >>> a, b = trisect.cuboid([0, 0, 0], [1, 1, 1]), trisect.cuboid([0.5, 0.5, 0.5], [1.5, 1.5, 1.5])
+    >>> both = trisect.Solid(np.vstack([a.vertices, b.vertices]), np.vstack([a.faces, b.faces + 8]))
+    >>> both.volume, trisect.resolve(both).volume, trisect.resolve(both, rule="even-odd").volume
+    (2.0, 1.875, 1.75)
+    """
+    [core] = _trisect.evaluate(["a"], ["a"], [_core(operand, 0, 1)], settings(given))
+    return Solid._of(core)
+
+
+def _plane(given: PlaneLike) -> Tuple[List[float], float]:
+    """Normal and offset."""
+    try:
+        if isinstance(given, str):
+            axis, at = given.split("=")
+            return _axis(axis.strip()), float(at)
+        listed: List[Any] = list(given)
+        if len(listed) == 2 and isinstance(listed[0], str):
+            return _axis(listed[0]), float(listed[1])
+        if len(listed) == 2:
+            listed = [*listed[0], listed[1]]
+        numbers = [float(number) for number in listed]
+        if len(numbers) == 4:
+            return numbers[:3], numbers[3]
+    except (TypeError, ValueError):
+        pass
+    raise ArgumentError(f"a plane is 'z=1.5', ('z', 1.5), ((nx, ny, nz), offset) or four numbers, not {given!r}")
+
+
+def _axis(name: str) -> List[float]:
+    if name not in ("x", "y", "z"):
+        raise ValueError(name)
+    return [float(name == axis) for axis in "xyz"]
+
+
+def cut(
+    solid: SolidLike, plane: PlaneLike, *, cap: Optional[str] = None, **given: "Unpack[Settings]"
+) -> Tuple[Solid, Solid]:
+    """What is above a plane and what is below it, both closed by the same faces.
+
+    >>> import trisect
+    >>> above, below = trisect.cut(trisect.cuboid([0, 0, 0], [2, 2, 3]), "z=1")
+    >>> above.volume, below.volume
+    (8.0, 4.0)
+
+    ``plane``: see :data:`PlaneLike`. ``cap`` is the name of a group for the closing faces. In ``origins`` the plane is operand 1.
+    """
+    above, below = _trisect.cut(_core(solid, 0, 1), _plane(plane), cap, settings(given))
+    return Solid._of(above), Solid._of(below)
+
+
+@dataclass(frozen=True)
+class Section:
+    """Where a plane meets a solid."""
+
+    normal: Tuple[float, float, float]
+    offset: float
+    """All points x of the plane have normal . x = offset."""
+    area: float
+    """In squared units of the coordinates."""
+    perimeter: float
+    """In units of the coordinates."""
+    shapes: List[List[NDArray[np.float64]]]
+    """Polygons: an outline, counter-clockwise seen from above, and its holes; each an array of shape (k, 2). Across z the
+    coordinates are x and y, across x they are y and z, across y they are z and x."""
+    rings: List[List[NDArray[np.float64]]]
+    """The same in space, each of shape (k, 3)."""
+
+    def __bool__(self) -> bool:
+        return bool(self.shapes)
+
+
+def sections(
+    solid: SolidLike,
+    planes: Union[PlaneLike, Sequence[PlaneLike], None] = None,
+    *,
+    heights: Optional[Any] = None,
+    side: str = "inside",
+    drawing: Optional[Union[str, "os.PathLike[str]"]] = None,
+    **given: "Unpack[Settings]",
+) -> List[Section]:
+    """Polygons where planes meet a solid, all in one pass.
+
+    >>> import trisect
+    >>> [layer.area for layer in trisect.sections(trisect.cuboid([0, 0, 0], [2, 2, 3]), heights=[0.5, 1.5, 4])]
+    [4.0, 4.0, 0.0]
+
+    Parameters
+    ----------
+    planes : plane or list of planes
+        See :data:`PlaneLike`.
+    heights : array-like of shape (k,)
+        In their place: planes across z.
+    side : str
+        What counts where faces lie in the plane: "inside" (has the solid on both sides), "above" or "below".
+    drawing : path
+        A file to draw them into, a layer each: ``.svg`` or ``.dxf``.
+    """
+    if heights is not None:
+        listed = [([0.0, 0.0, 1.0], float(height)) for height in np.asarray(heights, dtype=float).reshape(-1)]
+    elif planes is None:
+        raise ArgumentError("sections need planes or heights")
+    else:
+        listed = [_plane(plane) for plane in _planes(planes)]
+    found = _trisect.sections(_core(solid, 0, 1), listed, side, settings(given))
+    # (Areas of nothing are not to be negative zeros.)
+    made = [
+        Section((normal[0], normal[1], normal[2]), offset, area + 0.0, perimeter, shapes, rings)
+        for (normal, offset), (area, perimeter, shapes, rings) in zip(listed, found)
+    ]
+    if drawing is not None:
+        _draw(made, os.fspath(drawing))
+    return made
+
+
+def _planes(given: Any) -> Sequence[PlaneLike]:
+    if isinstance(given, str):
+        return [given]
+    listed = list(given)
+    try:
+        _plane(listed)
+    except ArgumentError:
+        return listed
+    # Two planes across axes look like none: this is one.
+    return [listed]
+
+
+def _draw(made: Sequence[Section], path: str) -> None:
+    kind = os.path.splitext(path)[1].lower().lstrip(".")
+    layers = []
+    for section in made:
+        normal = ",".join(f"{x:g}" for x in section.normal)
+        name = f"z={section.offset:g}" if section.normal == (0.0, 0.0, 1.0) else f"{normal},{section.offset:g}"
+        shapes = [[ring.tolist() for ring in shape] for shape in section.shapes]
+        layers.append((name, section.offset, shapes))
+    text = _trisect.drawing(kind, layers)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def split(solid: SolidLike, by: Optional[SolidLike] = None, **given: "Unpack[Settings]") -> List[Solid]:
+    """The bodies of a solid; or the cells that another one makes of it: what is inside it and what is outside, body by body.
+
+    >>> import trisect
+    >>> block, wall = trisect.cuboid([0, 0, 0], [5, 1, 1]), trisect.cuboid([2, -1, -1], [3, 2, 2])
+    >>> sorted(cell.volume for cell in trisect.split(block, by=wall))
+    [1.0, 2.0, 2.0]
+    """
+    if by is None:
+        return Solid._of(_core(solid, 0, 1)).bodies()
+    cells = combine(["a - b", "a & b"], solid, by, **given)
+    return [body for cell in cells for body in cell.bodies()]
+
+
+def trim(surface: Any, by: SolidLike, *, outside: bool = False, **given: "Unpack[Settings]") -> Mesh:
+    """What of a surface lies inside a solid, or outside it. The surface need not be closed: a terrain, a scanned skin.
+
+    >>> import trisect
+    >>> sheet = trisect.Mesh([[-2, -2, 0], [2, -2, 0], [2, 2, 0], [-2, 2, 0]], [[0, 1, 2, 3]])
+    >>> post = trisect.cuboid([-1, -1, -1], [1, 1, 1])
+    >>> trisect.trim(sheet, post).area, trisect.trim(sheet, post, outside=True).area
+    (4.0, 12.0)
+    """
+    core = _trisect.trim(_surface_of(surface, None), _core(by, 1, 2), not outside, settings(given))
+    mesh: Mesh = Mesh._wrap(core)
+    return mesh
+
+
+@dataclass(frozen=True)
+class Check:
+    """Whether a mesh can be an operand, and if not, why."""
+
+    usable: bool
+    """Whether it can be, as it is."""
+    diagnosis: Diagnosis
+    """All that is wrong with it."""
+    solid: Optional[Solid]
+    """The solid that it is, or that the remedy makes of it."""
+    self_crossings: Optional[SelfCrossings]
+    """Where it crosses itself, which is no obstacle; ``None`` if there is no solid."""
+    error: Optional[MeshError]
+    """Why it is refused."""
+    remedy: Optional[Dict[str, Any]]
+    """Arguments of :class:`Solid` that have been tried and would do."""
+
+    def __bool__(self) -> bool:
+        return self.usable
+
+
+# What is tried, the least first.
+_REMEDIES: Tuple[Dict[str, Any], ...] = (
+    {"orient": True},
+    {"weld": "auto"},
+    {"weld": "auto", "orient": True},
+    {"closed_parts": True},
+    {"closed_parts": True, "orient": True},
+    {"fill_holes": True},
+    {"fill_holes": True, "orient": True},
+    {"fill_holes": True, "weld": "auto", "orient": True},
+)
+
+
+def check(source: Any, **limits: "Unpack[Limits]") -> Check:
+    """Whether a mesh can be an operand; if not, why, where, and what would do.
+
+    >>> import trisect
+    >>> tetrahedron = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> found = trisect.check((tetrahedron, [[0, 2, 1], [0, 1, 3], [1, 2, 3]]))
+    >>> found.usable, found.diagnosis.open_edges.count, found.remedy
+    (False, 3, {'fill_holes': True})
+    """
+    given = settings(limits, limits_only=True)
+    surface = _surface_of(source, None)
+    text, words = surface.diagnosis(given)
+    diagnosis = Diagnosis.of({**json.loads(text), "text": words})
+    error: Optional[MeshError] = None
+    remedies: List[Dict[str, Any]] = [{}, *_REMEDIES]
+    for remedy in remedies:
+        try:
+            options = _gate_options(
+                remedy.get("weld"),
+                bool(remedy.get("orient")),
+                bool(remedy.get("closed_parts")),
+                bool(remedy.get("fill_holes")),
+                False,
+                False,
+            )
+            solid = Solid._of(_passed(surface, options, given))
+        except MeshError as refused:
+            error = error or refused
+            continue
+        crossings = solid.self_crossings(**limits)
+        return Check(not remedy, diagnosis, solid, crossings, error, remedy or None)
+    return Check(False, diagnosis, None, None, error, None)
+
+
+def evaluate_model(
+    model: Union[str, "os.PathLike[str]", Mapping[str, Any]],
+    *,
+    folder: Union[str, "os.PathLike[str]", None] = None,
+    tolerance: Optional[float] = None,
+    **limits: "Unpack[Limits]",
+) -> Solid:
+    """A solid from a model: a tree of operations over meshes, primitives, formulas and contours.
+
+    >>> import trisect
+    >>> trisect.evaluate_model({"kind": "difference", "operands": [
+    ...     {"kind": "box", "size": [2, 2, 2]}, {"kind": "box", "size": [1, 1, 4]}]}).volume
+    6.0
+
+    Parameters
+    ----------
+    model : path or dict
+        A model file (JSON), or what one would hold.
+    folder : path
+        Where relative file names start; the model file's own by default, or the current one.
+    tolerance : float
+        How far from curved surfaces meshes may be, in units of the coordinates.
+    """
+    text, base = model_text(model, folder)
+    core, warned = _trisect.model(text, base, tolerance, settings(limits, limits_only=True))
+    for line in warned:
+        warnings.warn(line, TrisectWarning, stacklevel=2)
+    return Solid._of(core)
+
+
+def model_text(model: Any, folder: Any) -> Tuple[str, str]:
+    """The text of a model and the folder of its files."""
+    if isinstance(model, Mapping):
+        return json.dumps(model), os.fspath(folder if folder is not None else ".")
+    path = os.fspath(model)
+    with open(path, encoding="utf-8") as file:
+        return file.read(), os.fspath(folder) if folder is not None else os.path.dirname(path) or "."

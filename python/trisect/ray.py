@@ -1,0 +1,305 @@
+"""Many machines: jobs as tasks of Ray, and one union too large for one machine.
+
+Needs ``trisect[ray]``. Start or join a cluster with ``ray.init`` before; without, one of this machine's processes is started.
+Every machine needs trisect installed. ``docs/scale.md`` says when to use what, and what it costs.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
+
+import numpy as np
+import ray
+import ray.exceptions
+
+from . import _operations
+from ._errors import ArgumentError
+from ._jobs import Job, Report, run_job
+from ._surfaces import Solid, SolidLike
+from .batch import Reports, Summary, _folder_of, _progress, _waiting, failure, numbered_jobs
+
+PathLike = Union[str, "os.PathLike[str]"]
+
+# Tasks handed to Ray for each processor before one has to end: enough that none waits for the driver, few enough that jobs are
+# read as they are needed.
+_AHEAD = 4
+
+
+def _started() -> None:
+    if not ray.is_initialized():
+        ray.init(log_to_driver=False)
+
+
+def _run(job: Job, folder: str) -> Report:
+    # A task has one processor, as Ray counts.
+    options = dict(job.get("options") or {})
+    options.setdefault("threads", 1)
+    return run_job({**job, "options": options}, folder)
+
+
+def batch(
+    jobs: Union[PathLike, Iterable[Job]],
+    out: Optional[PathLike] = None,
+    *,
+    folder: Optional[PathLike] = None,
+    resume: bool = True,
+    retry_failed: bool = False,
+    attempts: int = 4,
+    in_flight: Optional[int] = None,
+    task: Optional[Dict[str, Any]] = None,
+    progress: Any = None,
+) -> Summary:
+    """Runs jobs as tasks of Ray, and reports each once; the same jobs, reports and files as :func:`trisect.batch`.
+
+    A task whose worker or machine is lost runs again, ``attempts`` times in all. Paths in jobs must mean the same on all
+    machines: a shared folder, or anything that ``fsspec`` knows (``s3://bucket/a.ply``).
+
+    Parameters
+    ----------
+    in_flight : int
+        How many jobs Ray has at a time; by default four for each processor of the cluster. More are not read from ``jobs``.
+    task : dict
+        Options of the tasks, as ``ray.remote`` takes them, such as ``{"memory": 4e9}``.
+    """
+    if attempts < 1:
+        raise ArgumentError("a job is tried once at least")
+    _started()
+    start = time.perf_counter()
+    total, numbered = numbered_jobs(jobs)
+    base = os.path.abspath(os.fspath(folder) if folder is not None else _folder_of(jobs))
+    reported = Reports(out, resume, retry_failed)
+    summary = Summary(reports=[] if out is None else None)
+    tell = _progress(progress, total, start)
+    options: Dict[str, Any] = {"num_cpus": 1, "max_retries": attempts - 1, **(task or {})}
+    remote: Any = ray.remote(**options)(_run)
+    cluster: Any = ray
+    most = in_flight or _AHEAD * max(1, int(cluster.cluster_resources().get("CPU", 1)))
+    try:
+        for report in _reports(remote, _waiting(numbered, reported, summary), base, most):
+            reported.write(report)
+            summary.add(report)
+            tell(summary)
+    finally:
+        reported.close()
+    summary.seconds = time.perf_counter() - start
+    return summary
+
+
+def _reports(remote: Any, jobs: Iterator[Job], folder: str, most: int) -> Iterator[Report]:
+    """Reports as tasks end, with no more than so many tasks at a time."""
+    running: Dict[Any, Tuple[Job, float]] = {}
+    more = True
+    while more or running:
+        while more and len(running) < most:
+            job = next(jobs, None)
+            if job is None:
+                more = False
+            elif "broken" in job:
+                yield failure(job, "usage", str(job["broken"]), time.perf_counter())
+            else:
+                running[remote.remote(job, folder)] = (job, time.perf_counter())
+        if not running:
+            continue
+        [done], _ = ray.wait(list(running), num_returns=1)
+        job, start = running.pop(done)
+        try:
+            yield ray.get(done)
+        except ray.exceptions.RayError as error:
+            yield failure(job, "lost", f"the task was lost: {str(error).splitlines()[0]}", start)
+
+
+# Union of many parts
+
+
+@dataclass
+class Tiled:
+    """What a tiled operation did."""
+
+    solid: Solid
+    """The result. It has no origins: parts were united in tasks of their own."""
+    tiles: int
+    """Tasks at the leaves."""
+    merges: int
+    """Tasks that merged two results."""
+    moved: int
+    """Bytes of vertices and faces that tasks were given."""
+    seconds: float
+    """How long it took."""
+
+
+@dataclass
+class _Piece:
+    """A part of a result, in the object store: what it weighs, and where it is."""
+
+    reference: Any
+    place: Tuple[int, ...]
+
+
+def _bytes(solids: Sequence[Solid]) -> int:
+    return sum(solid.vertices.nbytes + solid.faces.nbytes for solid in solids)
+
+
+def _unite(settings: Dict[str, Any], *solids: Solid) -> Tuple[Solid, int]:
+    """United, and the bytes it was made of."""
+    listed = [part for solid in solids for part in (solid if isinstance(solid, list) else [solid])]
+    return _operations.union(listed, **settings), _bytes(listed)
+
+
+def _merge(settings: Dict[str, Any], *pieces: Tuple[Solid, int]) -> Tuple[Solid, int]:
+    """Two results united, and the bytes moved so far."""
+    solids = [solid for solid, _ in pieces]
+    merged = _operations.union(solids, **settings)
+    return merged, sum(moved for _, moved in pieces) + _bytes(solids)
+
+
+def union(
+    parts: Sequence[SolidLike],
+    *,
+    tiles: Optional[Sequence[int]] = None,
+    threads: int = 1,
+    task: Optional[Dict[str, Any]] = None,
+    **settings: Any,
+) -> Tiled:
+    """What is in any of many parts, united tile by tile.
+
+    Space is cut into a grid of ``tiles``; the parts whose middle is in a tile are united by a task, and neighbouring results are
+    merged in a tree, along one axis after the other. The result is closed, and has the volume of the union on one machine but for the
+    rounding of vertices at which three results meet.
+
+    Parameters
+    ----------
+    parts : sequence of solids, or of anything one can be made of
+        Paths are read where they are needed; solids go through Ray's object store once.
+    tiles : three int
+        How many along x, y and z; by default so many that each has some hundred parts.
+    threads : int
+        Of each task; also what it asks Ray for.
+    """
+    _started()
+    start = time.perf_counter()
+    solids = [part if isinstance(part, Solid) else Solid(part) for part in parts]
+    if not solids:
+        raise ArgumentError("a union needs at least one part")
+    grid = tuple(tiles) if tiles is not None else _grid(len(solids))
+    if len(grid) != 3 or min(grid) < 1:
+        raise ArgumentError(f"tiles are three numbers, not {tiles!r}")
+    given = {**settings, "threads": threads}
+    options: Dict[str, Any] = {"num_cpus": threads, **(task or {})}
+    unite: Any = ray.remote(**options)(_unite)
+    leaves = [
+        _Piece(unite.remote(given, ray.put(members)), place) for place, members in sorted(_by_tile(solids, grid).items())
+    ]
+    return _finish(leaves, _merge, given, options, start)
+
+
+def _finish(leaves: List[_Piece], how: Callable[..., Any], given: Any, options: Any, start: float) -> Tiled:
+    merge: Any = ray.remote(**options)(how)
+    row, merges = leaves, 0
+    while len(row) > 1:
+        row, made = _halved(row, merge, given)
+        merges += made
+    solid, moved = ray.get(row[0].reference)
+    return Tiled(solid, len(leaves), merges, moved, time.perf_counter() - start)
+
+
+def _halved(row: List[_Piece], merge: Any, given: Any) -> Tuple[List[_Piece], int]:
+    """Neighbours merged in pairs along the axis with the most places."""
+    count = [len({piece.place[axis] for piece in row}) for axis in range(3)]
+    axis = int(np.argmax(count))
+    cells: Dict[Tuple[int, ...], List[_Piece]] = {}
+    for piece in row:
+        place = tuple(number // 2 if k == axis else number for k, number in enumerate(piece.place))
+        cells.setdefault(place, []).append(piece)
+    merged, made = [], 0
+    for place, pieces in cells.items():
+        if len(pieces) == 1:
+            merged.append(_Piece(pieces[0].reference, place))
+        else:
+            merged.append(_Piece(merge.remote(given, *[piece.reference for piece in pieces]), place))
+            made += 1
+    return merged, made
+
+
+# Parts a task takes: some hundred spheres take about a second.
+_PARTS_A_TILE = 200
+
+
+def _grid(count: int) -> Tuple[int, int, int]:
+    side = max(1, round((count / _PARTS_A_TILE) ** (1 / 3)))
+    return (side, side, side)
+
+
+def _by_tile(solids: Sequence[Solid], grid: Tuple[int, ...]) -> Dict[Tuple[int, ...], List[Solid]]:
+    """The solids whose middle is in each tile."""
+    middles = np.array([solid.bounds.mean(axis=0) for solid in solids])
+    full = ~np.isnan(middles).any(axis=1)
+    low = middles[full].min(axis=0) if full.any() else np.zeros(3)
+    size = (middles[full].max(axis=0) - low) if full.any() else np.zeros(3)
+    cell = np.where(size > 0, size / np.array(grid), 1.0)
+    places = np.minimum(np.nan_to_num((middles - low) / cell), np.array(grid) - 1).astype(int)
+    members: Dict[Tuple[int, ...], List[Solid]] = {}
+    for solid, place in zip(solids, places.tolist()):
+        members.setdefault(tuple(place), []).append(solid)
+    return members
+
+
+# Two large operands
+
+
+def _slab(operation: str, settings: Dict[str, Any], a: Solid, b: Solid) -> Tuple[Solid, int]:
+    return _operations.run(operation, (a, b), settings), _bytes([a, b])
+
+
+def combine_large(
+    operation: str,
+    a: SolidLike,
+    b: SolidLike,
+    *,
+    slabs: int = 4,
+    threads: int = 1,
+    task: Optional[Dict[str, Any]] = None,
+    **settings: Any,
+) -> Tiled:
+    """One operation ("union", "intersection" or "difference") on two large operands.
+
+    Both are cut by the same planes across the longest side of their common box, at coordinates exact in ``f64``; each slab is a task,
+    and neighbours are merged in a tree. Halves of a cut have the same vertices along it, bit for bit, so slabs fit together
+    again and the walls between them vanish.
+    """
+    _started()
+    start = time.perf_counter()
+    if operation not in ("union", "intersection", "difference") or slabs < 1:
+        raise ArgumentError(f"no {operation!r} in {slabs} slabs: it is a union, intersection or difference in one or more")
+    operands = [part if isinstance(part, Solid) else Solid(part) for part in (a, b)]
+    given = {**settings, "threads": threads}
+    options: Dict[str, Any] = {"num_cpus": threads, **(task or {})}
+    work: Any = ray.remote(**options)(_slab)
+    cut = [_slabs(operand, *_planes(operands, slabs)) for operand in operands]
+    leaves = [
+        _Piece(work.remote(operation, given, first, second), (place, 0, 0))
+        for place, (first, second) in enumerate(zip(*cut))
+    ]
+    return _finish(leaves, _merge, given, options, start)
+
+
+def _planes(operands: Sequence[Solid], slabs: int) -> Tuple[int, List[float]]:
+    """The axis, and where it is cut: so that slabs have about as many vertices."""
+    boxes = np.array([operand.bounds for operand in operands if operand])
+    if not len(boxes):
+        return 0, []
+    axis = int(np.argmax(boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)))
+    places = np.concatenate([operand.vertices[:, axis] for operand in operands])
+    marks = np.quantile(places, np.arange(1, slabs) / slabs)
+    # Short numbers, so that few vertices lie nearly on a plane.
+    return axis, sorted({float(np.float32(mark)) for mark in marks})
+
+
+def _slabs(solid: Solid, axis: int, marks: Sequence[float]) -> List[Solid]:
+    slabs = []
+    for mark in marks:
+        solid, below = _operations.cut(solid, ("xyz"[axis], mark))
+        slabs.append(below)
+    return [*slabs, solid]
