@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Random booleans of trisect against manifold3d; the oracle of the tests judges every result.
 
-    python3 benches/proof/compare.py live --cases 1000 [--first SEED] [--points 48] [--report FILE] [--seeds N N ...]
+    python3 benches/proof/compare.py live --cases 1000 [--first SEED] [--points 48] [--report FILE] [--seeds N N ...] [--jobs 2]
     python3 benches/proof/compare.py record --cases 3000 --to fixtures/manifold3d.txt
 
 Needs manifold3d and numpy (pip install manifold3d numpy) and the driver (cargo build --release in benches/proof).
@@ -11,7 +11,7 @@ class of the difference (see docs/proof.md), which is printed with its seeds. It
 or a difference is not explained. "record" writes what manifold3d finds, for the plain tests; "-" for a quantity that the
 arbiter explains otherwise.
 """
-import argparse, collections, json, math, os, resource, struct, subprocess, sys, time
+import argparse, collections, json, math, multiprocessing, os, resource, struct, subprocess, sys, time
 from fractions import Fraction
 
 import manifold3d
@@ -19,6 +19,8 @@ import numpy
 
 # Boxes of 1e300 overflow: their volumes are infinite, and nothing is asked of them.
 numpy.seterr(over="ignore", invalid="ignore")
+# Drivers run side by side.
+os.environ.setdefault("RAYON_NUM_THREADS", "1")
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 DRIVER = os.path.join(os.environ.get("CARGO_TARGET_DIR", os.path.join(HERE, "target")), "release", "trisect-proof")
@@ -92,6 +94,10 @@ class Arbiter:
         self.process.stdin.flush()
         answer = json.loads(self.process.stdout.readline())
         return answer["ours"], answer["theirs"]
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait()
 
 
 def limited():
@@ -252,6 +258,14 @@ class Tally:
         self.first, self.begun, self.done, self.agreed, self.judged, self.farthest = first, time.time(), 0, 0, 0, 0.0
         self.classes, self.totals = collections.defaultdict(list), collections.Counter()
 
+    def take(self, other):
+        """Adds what another tally has seen."""
+        self.done, self.agreed, self.judged = self.done + other.done, self.agreed + other.agreed, self.judged + other.judged
+        self.farthest = max(self.farthest, other.farthest)
+        self.totals.update(other.totals)
+        for name, seeds in other.classes.items():
+            self.classes[name] += seeds
+
     def add(self, case, arbiter):
         self.done += 1
         if isinstance(case, int):
@@ -286,28 +300,48 @@ class Tally:
             lines.append(f"  {family}: {counts}")
         for (name, family), seeds in sorted(self.classes.items()):
             more = " ..." if len(seeds) > show else ""
+            seeds = sorted(seeds, key=lambda seed: int(seed.split(':')[0]))
             lines.append(f"{name} | {family}: {len(seeds)} [{' '.join(seeds[:show])}{more}]")
         return "\n".join(lines) + "\n"
 
 
+# Cases that one process takes at a time.
+BATCH = 500
+
+
+def tally_of(batch):
+    """What is seen in so many cases from a seed on."""
+    first, count, points = batch
+    tally, arbiter = Tally(first), Arbiter()
+    for case in stream(first, count, points):
+        try:
+            tally.add(case, arbiter)
+        except (ArithmeticError, OSError, ValueError) as error:
+            # A finding, too: the others go on.
+            tally.classes[UNEXPLAINED + f"the comparison fails: {error!r}", "?"].append(str(getattr(case, "seed", case)))
+            arbiter = Arbiter()
+    arbiter.close()
+    return tally
+
+
 def live(arguments):
-    tally, arbiter = Tally(arguments.first), Arbiter()
+    tally = Tally(arguments.first)
 
     def report():
         if arguments.report:
             with open(arguments.report, "w") as file:
                 file.write(tally.text(1000))
 
+    end = arguments.first + arguments.cases
+    batches = [(first, min(BATCH, end - first), arguments.points) for first in range(arguments.first, end, BATCH)]
     if arguments.seeds:
-        cases = (case for seed in arguments.seeds for case in stream(seed, 1, arguments.points))
-    else:
-        cases = stream(arguments.first, arguments.cases, arguments.points)
-    for case in cases:
-        tally.add(case, arbiter)
-        if tally.done % 1000 == 0:
-            print(f"{tally.done} cases, {time.time() - tally.begun:.0f} s", file=sys.stderr, flush=True)
+        batches = [(seed, 1, arguments.points) for seed in arguments.seeds]
+    with multiprocessing.Pool(arguments.jobs) as pool:
+        for part in pool.imap_unordered(tally_of, batches):
+            tally.take(part)
+            if len(batches) > 1 and part.done > 1:
+                print(f"{tally.done} cases, {time.time() - tally.begun:.0f} s", file=sys.stderr, flush=True)
             report()
-    report()
     print(tally.text(arguments.show), end="")
     if tally.failed():
         sys.exit(1)
@@ -373,8 +407,9 @@ if __name__ == "__main__":
         if verb == "live":
             sub.add_argument("--points", type=int, default=48)
             sub.add_argument("--show", type=int, default=12)
-            sub.add_argument("--report", help="a file for the text, with all seeds; brought up to date every thousand cases")
+            sub.add_argument("--report", help="a file for the text, with all seeds; brought up to date as the run goes on")
             sub.add_argument("--seeds", type=int, nargs="*", help="these cases only")
+            sub.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes side by side")
         else:
             sub.add_argument("--to", required=True)
     arguments = parser.parse_args()

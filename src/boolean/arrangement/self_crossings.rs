@@ -11,6 +11,7 @@ use obvhs::aabb::Aabb;
 
 use super::apart::{are_plainly_apart, common_corners};
 use super::neighbours::Neighbours;
+use super::penetration;
 use super::self_pairs::self_pairs;
 use crate::boolean::complex::ids::VertexId;
 use crate::boolean::complex::planes;
@@ -182,7 +183,8 @@ impl<'a> Surface<'a> {
                 return Some(Crossing { crossing, real: true, shallow: false });
             }
         };
-        let depth = depth(a, b).min(depth(b, a)).min(distance(&segment[0], &segment[1]));
+        let depth = penetration::penetration(&positions(a), &positions(b)).max(0.0);
+        let depth = depth.min(distance(&segment[0], &segment[1]));
         let place = std::array::from_fn(|k| 0.5 * segment[0][k] + 0.5 * segment[1][k]);
         let own = largest_coordinate(&segment[0]).max(largest_coordinate(&segment[1]));
         let tolerance = self.part * size_at_hand(self.largest, own);
@@ -291,15 +293,6 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// How far a triangle reaches to the shorter side of another's plane.
-fn depth(t: &[Corner; 3], plane: &[Corner; 3]) -> f64 {
-    let Some(normal) = unit_normal(plane) else { return 0.0 };
-    let heights = [0, 1, 2].map(|k| height(&normal, &plane[0].position, &t[k].position));
-    let above = heights.iter().fold(0.0f64, |reach, &h| reach.max(h));
-    let below = heights.iter().fold(0.0f64, |reach, &h| reach.max(-h));
-    above.min(below)
-}
-
 fn height(normal: &[f64; 3], origin: &[f64; 3], point: &[f64; 3]) -> f64 {
     (0..3).map(|k| normal[k] * (point[k] - origin[k])).sum()
 }
@@ -314,18 +307,11 @@ fn distance(p: &[f64; 3], q: &[f64; 3]) -> f64 {
 }
 
 fn unit_normal(t: &[Corner; 3]) -> Option<[f64; 3]> {
-    let edge = |i: usize| -> [f64; 3] { std::array::from_fn(|k| t[i].position[k] - t[0].position[k]) };
-    let (mut u, mut v) = (edge(1), edge(2));
-    let size = u.iter().chain(&v).fold(0.0f64, |size, x| size.max(x.abs()));
-    if size == 0.0 {
-        return None;
-    }
-    u = u.map(|x| x / size);
-    v = v.map(|x| x / size);
-    let cross: [f64; 3] =
-        std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
-    let length = norm(&cross);
-    (length > 0.0).then(|| cross.map(|x| x / length))
+    penetration::unit_normal(&positions(t))
+}
+
+fn positions(t: &[Corner; 3]) -> [[f64; 3]; 3] {
+    t.each_ref().map(|corner| corner.position)
 }
 
 /// Where a line passes a plane, roughly.

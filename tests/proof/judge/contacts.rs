@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use trisect::Mesh;
 
+use super::boxes::{Boxes, overlap};
 use super::surface::Sets;
 use super::vector::{Point, cross, dot, extent, length, minus, plus, unit};
 
@@ -37,7 +38,14 @@ struct Side {
     forward: bool,
     /// Angle of the face round the edge.
     angle: f64,
+    /// Whether the face is so thin that its angle is the work of rounding.
+    needle: bool,
 }
+
+/// What is no higher over an edge than so many units in the last place of the coordinates there may have been turned to any side by
+/// rounding: corners are off by half a unit along each axis, two ends of an edge and a corner over it by sqrt(3) together, and what
+/// was that high may be twice as high now.
+const NEEDLE_ULPS: f64 = 4.0;
 
 /// The topology of `mesh` with its contacts parted. Vertices nearer than `reach` times the size of the mesh are one. Exact
 /// where features are larger and contacts closer than that; `None` if the surface is not closed after joining them, or if
@@ -62,10 +70,12 @@ pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
             let (from, to) = (u.min(v), u.max(v));
             let forward = u < v;
             let angle = angle_round(points[from], points[to], face.normal, forward);
-            edges.entry((from, to)).or_default().push(Side { face: index, side, forward, angle });
+            let needle = is_needle([points[from], points[to]], &face.triangle.map(|v| points[v]));
+            edges.entry((from, to)).or_default().push(Side { face: index, side, forward, angle, needle });
         }
     }
-    let pinched = edges.iter().any(|(edge, sides)| is_pinched(*edge, sides, &faces, &points, near));
+    let boxes = Boxes::new(faces.iter().map(|face| extent(&face.triangle.map(|v| points[v]))));
+    let pinched = edges.iter().any(|(edge, sides)| is_pinched(*edge, sides, &faces, &boxes, &points, near));
     let (mut fans, mut bodies) = (Sets::new(corners), Sets::new(faces.len()));
     let mut pairs = 0;
     for sides in edges.values_mut() {
@@ -111,7 +121,10 @@ fn face(triangle: [usize; 3], points: &[Point], near: f64) -> Option<Face> {
         return None;
     }
     let [low, high] = extent(&[a, b, c]);
-    let close: Vec<usize> = (0..points.len())
+    // Points are in order along x.
+    let first = points.partition_point(|p| p[0] < low[0] - near);
+    let close: Vec<usize> = (first..points.len())
+        .take_while(|&v| points[v][0] <= high[0] + near)
         .filter(|v| {
             !triangle.contains(v)
                 && (0..3).all(|k| points[*v][k] >= low[k] - near && points[*v][k] <= high[k] + near)
@@ -149,10 +162,25 @@ fn angle_round(from: Point, to: Point, normal: Point, forward: bool) -> f64 {
     dot(inward, up).atan2(dot(inward, across))
 }
 
+/// Whether a triangle is no higher over an edge of it than rounding.
+fn is_needle([from, to]: [Point; 2], corners: &[Point; 3]) -> bool {
+    let axis = unit(minus(to, from));
+    let height = |p: &Point| length(cross(axis, minus(*p, from)));
+    let largest = corners.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
+    corners.iter().map(height).fold(0.0, f64::max) <= NEEDLE_ULPS * (largest.next_up() - largest)
+}
+
 /// Whether an edge lies on the inner side of some face, not only touching its rim.
-fn is_pinched(edge: (usize, usize), sides: &[Side], faces: &[Face], points: &[Point], near: f64) -> bool {
+fn is_pinched(
+    edge: (usize, usize),
+    sides: &[Side],
+    faces: &[Face],
+    boxes: &Boxes,
+    points: &[Point],
+    near: f64,
+) -> bool {
     let (from, to) = (points[edge.0], points[edge.1]);
-    faces.iter().any(|face| {
+    let holds_some = |face: &Face| {
         let [a, b, c] = face.triangle.map(|v| points[v]);
         if [from, to].iter().any(|&p| dot(minus(p, a), face.normal).abs() > near) {
             return false;
@@ -178,31 +206,63 @@ fn is_pinched(edge: (usize, usize), sides: &[Side], faces: &[Face], points: &[Po
             dot(inward, face.normal) < 1e-7
         };
         begin < end && sides.iter().any(is_inside)
-    })
+    };
+    let [low, high] = extent(&[from, to]);
+    let reach = [low.map(|x| x - near), high.map(|x| x + near)];
+    let mut found = false;
+    boxes.visit(
+        |bounds| overlap(bounds, &reach),
+        |number| {
+            found = holds_some(&faces[number]);
+            !found
+        },
+    );
+    found
 }
 
-/// The pairs of faces that bound one wedge of material; `None` if they do not alternate.
+/// The pairs of faces that bound one wedge of material; `None` if they do not alternate, wherever needles are put.
 fn wedges(sides: &mut [Side]) -> Option<Vec<(&Side, &Side)>> {
     if sides.len() == 2 {
         return (sides[0].forward != sides[1].forward).then(|| vec![(&sides[0], &sides[1])]);
     }
     sides.sort_by(|a, b| a.angle.total_cmp(&b.angle));
-    let count = sides.len();
+    let (needles, round): (Vec<&Side>, Vec<&Side>) = sides.iter().partition(|side| side.needle);
     let apart = |i: usize| {
-        let turn = sides[(i + 1) % count].angle - sides[i].angle;
-        turn.rem_euclid(std::f64::consts::TAU) > 1e-7
+        let turn = round[(i + 1) % round.len()].angle - round[i].angle;
+        round.len() == 1 || turn.rem_euclid(std::f64::consts::TAU) > 1e-7
     };
-    let alternate = (0..count).all(|i| sides[i].forward != sides[(i + 1) % count].forward && apart(i));
-    if count % 2 == 1 || !alternate {
+    if sides.len() % 2 == 1 || !(0..round.len()).all(apart) {
+        return None;
+    }
+    let order = if needles.is_empty() || alternate(&sides.iter().collect::<Vec<_>>()) {
+        sides.iter().collect()
+    } else {
+        with_needles(round, &needles)?
+    };
+    if !alternate(&order) {
         return None;
     }
     // A face that runs with the edge has its material behind it, in the sense of growing angles before it.
-    let start = usize::from(sides[0].forward);
+    let (count, start) = (order.len(), usize::from(order[0].forward));
     Some(
         (0..count / 2)
-            .map(|k| (&sides[(start + 2 * k) % count], &sides[(start + 2 * k + 1) % count]))
+            .map(|k| (order[(start + 2 * k) % count], order[(start + 2 * k + 1) % count]))
             .collect(),
     )
+}
+
+fn alternate(order: &[&Side]) -> bool {
+    (0..order.len()).all(|i| order[i].forward != order[(i + 1) % order.len()].forward)
+}
+
+/// The first order, of those that leave all but needles as they are, in which faces alternate.
+fn with_needles<'a>(order: Vec<&'a Side>, needles: &[&'a Side]) -> Option<Vec<&'a Side>> {
+    let Some((first, rest)) = needles.split_first() else { return alternate(&order).then_some(order) };
+    (0..=order.len()).find_map(|at| {
+        let mut order = order.clone();
+        order.insert(at, first);
+        with_needles(order, rest)
+    })
 }
 
 #[cfg(test)]
@@ -239,6 +299,25 @@ mod tests {
             let Ok(mesh) = mesh else { continue };
             assert_eq!(parted(&mesh, 1e-9).map(|parted| parted.pinched), Some(pinched));
         }
+    }
+
+    #[test]
+    fn needles_that_rounding_turned_are_put_where_faces_alternate() {
+        let side = |angle: f64, forward, needle| Side { face: 0, side: 0, forward, angle, needle };
+        // As found at coordinates of 1e12 (seed 4294968311): the first is 0.0004 high, of four units.
+        for (needle, found) in [(true, true), (false, false)] {
+            let mut sides = [
+                side(-2.8, false, needle),
+                side(-1.7, false, false),
+                side(0.0, true, false),
+                side(3.1, true, false),
+            ];
+            assert_eq!(wedges(&mut sides).is_some(), found);
+        }
+        // What does not alternate without needles is not made to.
+        let mut sides =
+            [side(0.0, true, false), side(0.0, false, false), side(1.0, true, true), side(2.0, false, true)];
+        assert!(wedges(&mut sides).is_none());
     }
 
     #[test]
