@@ -6,6 +6,7 @@
 use std::io::{self, BufRead, Write};
 
 use crate::judge::cases::Case;
+use crate::judge::contacts::{Parted, Topology};
 use crate::judge::many::{MANY_FROM, Many};
 use crate::judge::oracle;
 use crate::judge::samples;
@@ -55,15 +56,20 @@ fn prepare(seed: u64, models: &[Mesh]) -> (Vec<Mesh>, Mesh, Expected) {
 
 fn describe(mesh: &Mesh, smallest_part: f64, verdict: &oracle::Verdict) -> String {
     let found = Properties::of(mesh);
-    let found_parted = run::parted(mesh, smallest_part);
-    let parted = found_parted.map_or("null".to_string(), |parted| {
-        format!("[{},{}]", parted.topology.components, parted.topology.euler)
-    });
-    let pinched = found_parted.is_some_and(|parted| parted.pinched);
+    let by_reach = run::parted_by_reach(mesh, smallest_part);
+    let text = |parted: Option<&Parted>| {
+        let list = |parted: &Parted| format!("[{},{}]", parted.topology.components, parted.topology.euler);
+        parted.map_or("null".to_string(), list)
+    };
+    // At the distance at which it is as the mesh is connected, if there is one: details may be smaller than others.
+    let own = Topology { components: found.components, euler: found.euler };
+    let agreeing = by_reach.iter().find(|parted| parted.topology == own).or(by_reach.first());
+    let (parted, coarse) = (text(agreeing), text(by_reach.first()));
+    let pinched = by_reach.iter().any(|parted| parted.pinched);
     let bodies: Vec<String> = bodies(mesh).iter().map(|body| format!("{:e}", volume(body))).collect();
     format!(
         "{{\"judged\":{},\"mistakes\":{},\"farthest\":{:e},\"closed\":{},\"manifold\":{},\"zero_area\":{},\"volume\":{:e},\
-         \"area\":{:e},\"components\":{},\"euler\":{},\"parted\":{parted},\"pinched\":{pinched},\"walls\":{},\"bodies\":[{}]}}",
+         \"area\":{:e},\"components\":{},\"euler\":{},\"parted\":{parted},\"coarse\":{coarse},\"pinched\":{pinched},\"walls\":{},\"bodies\":[{}]}}",
         verdict.judged,
         verdict.mistakes.len(),
         verdict.farthest(),

@@ -17,6 +17,11 @@ pub(crate) fn parted(mesh: &Mesh, part: f64) -> Option<Parted> {
     [1e-9, 1e-11, 1e-13].into_iter().find_map(|reach| contacts::parted(mesh, part * reach))
 }
 
+/// The same with every distance at which vertices may be one, the largest first; with the last only those a rounding apart are.
+pub(crate) fn parted_by_reach(mesh: &Mesh, part: f64) -> Vec<Parted> {
+    [1e-9, 1e-11, 1e-13, 1e-16].into_iter().filter_map(|reach| contacts::parted(mesh, part * reach)).collect()
+}
+
 /// The size of the smallest of some meshes in that of another; 1 unless they are far apart.
 pub(crate) fn smallest_part(of: &[&Mesh], whole: &Mesh) -> f64 {
     let size = |mesh: &Mesh| {
