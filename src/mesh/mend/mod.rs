@@ -140,7 +140,9 @@ pub(super) fn closing_distance(mesh: &Mesh, triangles: &[[u32; 3]], closed_parts
     let most = if closed_parts {
         let by_rounding = sew::left_open(positions, &edges, None, Splits::ByRounding);
         let all = WAYS.iter().flat_map(|&splits| tried.iter().map(move |&distance| (distance, splits)));
-        all.map(|(distance, splits)| left_open(distance, splits)).min().filter(|&least| least < by_rounding)?
+        all.map(|(distance, splits)| left_open(distance, splits))
+            .min()
+            .filter(|&least| least < by_rounding)?
     } else {
         0
     };
