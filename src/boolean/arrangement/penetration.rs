@@ -14,17 +14,40 @@ type Triangle = [[f64; 3]; 3];
 /// Two convex bodies are parted best along the normal of a face of their Minkowski difference: for triangles the normals of both and
 /// the products of their sides (11 directions).
 pub(super) fn penetration(a: &Triangle, b: &Triangle) -> f64 {
+    overlaps(a, b).map(|(_, overlap)| overlap).fold(f64::INFINITY, f64::min)
+}
+
+/// How far rounding may have moved the corners of two triangles towards each other along a direction in which they overlap by no
+/// more than twice that, and are many times longer; `None` if there is no such direction, so that rounding does not explain
+/// that they cross.
+///
+/// Each coordinate is off by half of its own unit in the last place, however small coordinates are where the two cross: a needle
+/// through the origin ends elsewhere. Along an axis where coordinates are small, huge ones along others do not count.
+pub(super) fn rounding(a: &Triangle, b: &Triangle) -> Option<f64> {
+    /// Triangles no longer than so many roundings may be anywhere; of these nothing is known.
+    const LONGER: f64 = 64.0;
+    let unit = [0, 1, 2].map(|k| {
+        let largest = a.iter().chain(b).fold(0.0f64, |most, p| most.max(p[k].abs()));
+        largest.next_up() - largest
+    });
+    let length = |t: &Triangle| sides(t).iter().flatten().fold(0.0f64, |most, x| most.max(x[0].abs()));
+    let shorter = length(a).min(length(b));
+    overlaps(a, b)
+        .map(|(axis, overlap)| ((0..3).map(|k| axis[k].abs() * unit[k]).sum::<f64>(), overlap))
+        .filter(|(moved, overlap)| *overlap <= 2.0 * moved && shorter > LONGER * moved)
+        .map(|(moved, _)| moved)
+        .reduce(f64::min)
+}
+
+/// The directions along which two triangles may be parted best, and how far they overlap along each.
+fn overlaps(a: &Triangle, b: &Triangle) -> impl Iterator<Item = ([f64; 3], f64)> {
     let (of_a, of_b) = (sides(a), sides(b));
     // About a corner, so that nothing is lost far from the origin.
     let [from_a, from_b] = [a, b].map(|t| t.map(|p| [0, 1, 2].map(|k| p[k] - a[0][k])));
     let normals = [[of_a[0], of_a[1]], [of_b[0], of_b[1]]];
-    let products = of_a.iter().flat_map(|u| of_b.iter().map(|v| [*u, *v]));
-    normals
-        .into_iter()
-        .chain(products)
-        .filter_map(|[u, v]| unit_product(u, v))
-        .map(|axis| overlap(&axis, &from_a, &from_b))
-        .fold(f64::INFINITY, f64::min)
+    let products = of_a.into_iter().flat_map(move |u| of_b.map(|v| [u, v]));
+    let axes = normals.into_iter().chain(products).filter_map(|[u, v]| unit_product(u, v));
+    axes.map(move |axis| (axis, overlap(&axis, &from_a, &from_b)))
 }
 
 /// The direction across a triangle, right to a few roundings however thin it is; none if it is flat.
@@ -177,6 +200,24 @@ mod tests {
             [0.18214562829377792, -0.28968449564048465, 0.6020717018443106],
         ];
         assert!(penetration(&needle, &beside) < 1e-15);
+    }
+
+    #[test]
+    fn rounding_is_that_of_the_corners_along_the_direction() {
+        // Two needles that pass each other at the origin, 1e-17 deep: their ends are rounded to 1e-16.
+        let one = [[-0.75, -1e-9, 0.0], [0.75, -1e-9, 0.0], [0.0, 1e-9, 0.0]];
+        let other = [[-1e-9, -0.75, -1e-17], [1e-9, 0.75, -1e-17], [0.0, 0.0, 1e-3]];
+        let found = rounding(&one, &other).expect("it is rounding");
+        assert!((1e-19..3e-16).contains(&found), "{found:e}");
+        // Not where it is deeper.
+        let deep = other.map(|p| [p[0], p[1], p[2] - 1e-9]);
+        assert_eq!(rounding(&one, &deep), None);
+        // Nor where a face is huge along other axes only, or so huge that what is near it is shorter than its rounding.
+        let face = [[-1e30, -1e30, 0.5], [1e30, -1e30, 0.5], [0.0, 1e30, 0.5]];
+        let small = [[0.0, 0.0, 0.4], [0.1, 0.0, 1.0], [0.0, 0.1, 1.0]];
+        assert_eq!(rounding(&face, &small), None);
+        let slanting = [[-1e30, -1e30, -1e30], [1e30, -1e30, 0.7e30], [0.0, 1e30, 0.3e30]];
+        assert_eq!(rounding(&slanting, &small), None);
     }
 
     #[test]

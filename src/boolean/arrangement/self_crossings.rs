@@ -188,6 +188,8 @@ impl<'a> Surface<'a> {
         let place = std::array::from_fn(|k| 0.5 * segment[0][k] + 0.5 * segment[1][k]);
         let own = largest_coordinate(&segment[0]).max(largest_coordinate(&segment[1]));
         let tolerance = self.part * size_at_hand(self.largest, own);
+        let rounding = penetration::rounding(&positions(a), &positions(b));
+        let tolerance = rounding.map_or(tolerance, |moved| tolerance.max(TOLERATED_ULPS * moved));
         let real = depth > tolerance || self.leaves_wrong_winding(&place, a, b, tolerance);
         let shallow = real && depth > 0.0 && depth <= SHALLOW * tolerance;
         Some(Crossing { crossing: SelfCrossing { triangles: pair, place, depth }, real, shallow })
