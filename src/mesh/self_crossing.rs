@@ -12,8 +12,9 @@ pub struct SelfCrossing {
     pub triangles: [u32; 2],
     /// A point of the crossing, roughly.
     pub place: [f64; 3],
-    /// How deep the one reaches through the other: the length or height of the smaller of what crosses, in units of the
-    /// coordinates; 0 where they overlap in one plane or along an edge.
+    /// How deep the one reaches through the other, in units of the coordinates: how far one would have to be moved at most for the
+    /// two to come apart, or the length of what they have in common, where that is less. 0 where they overlap in one plane or
+    /// along an edge.
     pub depth: f64,
 }
 

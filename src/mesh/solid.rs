@@ -60,6 +60,8 @@ pub struct Solid {
     pub(super) links: OnceLock<Links>,
     pub(super) shape: OnceLock<Shape>,
     pub(super) self_crossings: OnceLock<SelfCrossings>,
+    /// Pairs of triangles that may cross or lie on each other.
+    pub(super) near_pairs: OnceLock<Vec<[u32; 2]>>,
     /// Whether an operation made it so that it crosses itself no deeper than rounding.
     pub(super) made_clean: bool,
     /// Shells that face the wrong way.
@@ -152,6 +154,15 @@ impl Solid {
         self.self_crossings.get()
     }
 
+    /// The pairs of triangles that may cross or lie on each other, the lower one first, if somebody has looked for them.
+    pub(crate) fn known_near_pairs(&self) -> Option<&[[u32; 2]]> {
+        self.near_pairs.get().map(Vec::as_slice)
+    }
+
+    pub(crate) fn remember_near_pairs(&self, pairs: Vec<[u32; 2]>) -> &[[u32; 2]] {
+        self.near_pairs.get_or_init(|| pairs)
+    }
+
     pub(crate) fn remember_self_crossings(&self, found: SelfCrossings) -> &SelfCrossings {
         self.self_crossings.get_or_init(|| found)
     }
@@ -224,6 +235,12 @@ impl Solid {
     #[must_use]
     pub fn is_manifold(&self) -> bool {
         self.is_edge_manifold() && self.links().pinched == 0
+    }
+
+    /// Whether the surface is a 2-manifold without two triangles on the same vertices. As [`is_manifold`](Self::is_manifold).
+    pub(crate) fn is_simple_complex(&self) -> bool {
+        // (In a 2-manifold two triangles with the same vertices are all there is around these.)
+        self.is_manifold() && !self.links().two_triangle_vertex
     }
 
     /// Whether every directed edge is met by its opposite equally often, found out anew for what no gate has looked at.

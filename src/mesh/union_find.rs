@@ -27,7 +27,7 @@ impl UnionFind {
     }
 
     /// The sets numbered in the order of their lowest indices: how many, and the number of each index.
-    pub(crate) fn labels(mut self) -> (usize, Vec<u32>) {
+    pub(crate) fn labels(&mut self) -> (usize, Vec<u32>) {
         let mut count = 0;
         let mut labels = vec![0; self.parents.len()];
         for index in 0..self.parents.len() {

@@ -21,7 +21,7 @@ mod neighbours;
 mod penetration;
 pub(super) mod plane_faces;
 pub(super) mod points;
-mod self_crossings;
+pub(in crate::boolean) mod self_crossings;
 mod self_pairs;
 pub(super) mod sheets;
 mod unrounded;

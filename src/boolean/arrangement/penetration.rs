@@ -14,7 +14,8 @@ type Triangle = [[f64; 3]; 3];
 /// Two convex bodies are parted best along the normal of a face of their Minkowski difference: for triangles the normals of both and
 /// the products of their sides (11 directions).
 pub(super) fn penetration(a: &Triangle, b: &Triangle) -> f64 {
-    overlaps(a, b).map(|(_, overlap)| overlap).fold(f64::INFINITY, f64::min)
+    // (Two without area may have no direction, and are nowhere apart from a line.)
+    overlaps(a, b).map(|(_, overlap)| overlap).reduce(f64::min).unwrap_or(0.0)
 }
 
 /// How far rounding may have moved the corners of two triangles towards each other along a direction in which they overlap by no

@@ -49,21 +49,81 @@ impl Solid {
         if let Some(known) = self.known_self_crossings() {
             return Ok(known);
         }
-        let found = find(self, Runner::new(control, true))?;
+        let found = find(self, Runner::new(control, true), |_| true)?;
         Ok(self.remember_self_crossings(found))
     }
 }
 
-/// Finds all crossings of a surface with itself.
-fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
+/// The pairs of triangles of a solid that may cross or lie on each other, the lower one first. Computed once and remembered.
+///
+/// # Errors
+/// Only limits.
+pub(in crate::boolean) fn near_pairs<'a>(
+    solid: &'a Solid,
+    runner: Runner<'_>,
+) -> Result<&'a [[u32; 2]], Error> {
+    if let Some(known) = solid.known_near_pairs() {
+        return Ok(known);
+    }
+    let Some(bounds) = solid.bounds() else { return Ok(&[]) };
+    let frame = Frame::of(bounds.low, bounds.high);
+    let (pairs, _) = find_near(solid.mesh(), &bounds, &frame, runner)?;
+    Ok(solid.remember_near_pairs(pairs))
+}
+
+/// The same, looked for, and the boxes of all triangles.
+fn find_near(
+    mesh: &Mesh,
+    bounds: &Bounds,
+    frame: &Frame,
+    runner: Runner<'_>,
+) -> Result<(Vec<[u32; 2]>, BoxTree), Error> {
+    let (tree, neighbours) = runner.both(|| tree_of(mesh, frame), || Neighbours::new(mesh, bounds.largest()));
+    let may_meet = |pair: [u32; 2]| neighbours.may_meet(pair);
+    let pairs = self_pairs(mesh, &tree, frame, runner, &neighbours, may_meet)?;
+    Ok((pairs, tree))
+}
+
+/// Whether a solid crosses itself nowhere deeper than a few roundings, nor lies on itself. Stops at the first place that tells
+/// otherwise; what it then knows is not all, and not remembered.
+///
+/// # Errors
+/// Only limits.
+pub(in crate::boolean) fn is_nearly_simple(solid: &Solid, control: &Control) -> Result<bool, Error> {
+    if let Some(known) = solid.known_self_crossings() {
+        return Ok(known.is_nearly_simple());
+    }
+    let found = find(solid, Runner::new(control, true), SelfCrossings::is_nearly_simple)?;
+    let is_simple = found.is_nearly_simple();
+    if is_simple {
+        solid.remember_self_crossings(found);
+    }
+    Ok(is_simple)
+}
+
+/// Pairs that one thread examines before the limits are checked.
+const PAIRS_AT_ONCE: usize = 1024;
+/// Pairs that are examined before it is asked for the first time whether to go on; then four times as many, and so on.
+const PAIRS_AT_FIRST: usize = 256;
+
+/// Finds all crossings of a surface with itself, or some: as long as `go_on` accepts what was found so far.
+fn find(
+    solid: &Solid,
+    runner: Runner<'_>,
+    go_on: impl Fn(&SelfCrossings) -> bool,
+) -> Result<SelfCrossings, Error> {
     let mesh = solid.mesh();
     let Some(bounds) = solid.bounds() else { return Ok(SelfCrossings::default()) };
     let largest = bounds.largest();
     // 1. Pairs that are near one another and not plainly apart: none, nearly always.
     let frame = Frame::of(bounds.low, bounds.high);
-    let (tree, neighbours) = runner.both(|| tree_of(mesh, &frame), || Neighbours::new(mesh, largest));
-    let may_meet = |pair: [u32; 2]| neighbours.may_meet(pair);
-    let pairs = self_pairs(mesh, &tree, &frame, runner, &neighbours, may_meet)?;
+    let (pairs, tree) = match solid.known_near_pairs() {
+        Some(pairs) => (pairs, None),
+        None => {
+            let (pairs, tree) = find_near(mesh, &bounds, &frame, runner)?;
+            (solid.remember_near_pairs(pairs), Some(tree))
+        }
+    };
     let part = tolerance_of_one(&mesh.positions);
     let mut result = SelfCrossings { tolerance: part * largest, ..SelfCrossings::default() };
     if pairs.is_empty() {
@@ -72,21 +132,27 @@ fn find(solid: &Solid, runner: Runner<'_>) -> Result<SelfCrossings, Error> {
     // 2. Those that cross or touch.
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
     let complex = Complex::alone(operand, largest);
+    let tree = tree.unwrap_or_else(|| tree_of(mesh, &frame));
     let surface = Surface::new(&complex, tree, frame, &bounds, part);
-    let found = runner.pieces(pairs.len(), 4096, |range| {
-        pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
-    })?;
-    for found in found.into_iter().flatten() {
-        let Found::Crossing(found) = found else {
-            result.touching += 1;
-            continue;
-        };
-        if found.real {
-            result.count += 1;
-            result.shallow += usize::from(found.shallow);
-            result.places.push(found.crossing);
-        } else {
-            result.tolerated += 1;
+    let (mut rest, mut next) = (pairs, PAIRS_AT_FIRST);
+    while !rest.is_empty() && go_on(&result) {
+        let (pairs, after) = rest.split_at(next.min(rest.len()));
+        (rest, next) = (after, 4 * next);
+        let found = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
+            pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
+        })?;
+        for found in found.into_iter().flatten() {
+            let Found::Crossing(found) = found else {
+                result.touching += 1;
+                continue;
+            };
+            if found.real {
+                result.count += 1;
+                result.shallow += usize::from(found.shallow);
+                result.places.push(found.crossing);
+            } else {
+                result.tolerated += 1;
+            }
         }
     }
     result.places.sort_by(|x, y| y.depth.total_cmp(&x.depth).then(x.triangles.cmp(&y.triangles)));

@@ -3,14 +3,15 @@
 use super::crossings::Crossings;
 use super::edges::{Edges, MOST_FACES};
 use super::lines::Lines;
-use super::pairs::FaceBoxes;
+use super::locality::Locality;
+use super::pairs::{self, FaceBoxes};
 use super::segment_labels::SegmentLabels;
 use super::surfaces::Surfaces;
 use super::walk::FaceLabels;
 use super::{seeds, sheets, triples};
 use crate::boolean::arrangement::identify::Identification;
 use crate::boolean::arrangement::sheets::Sheet;
-use crate::boolean::complex::ids::FaceId;
+use crate::boolean::complex::ids::{FaceId, VertexId};
 use crate::boolean::complex::planes::look_same_way;
 use crate::control::Reservation;
 use crate::mesh::Bounds;
@@ -42,7 +43,11 @@ pub(crate) struct Crossed {
     crossings: Crossings,
     contacts: u64,
     bounds: Bounds,
-    boxes: FaceBoxes,
+    /// Where they were needed already.
+    boxes: Option<FaceBoxes>,
+    locality: Locality,
+    /// By piece of surface, its last vertex in x.
+    last: Vec<Option<VertexId>>,
     _memory: Reservation,
 }
 
@@ -62,17 +67,32 @@ impl Crossed {
         let bytes = vertices * BYTES_PER_VERTEX + triangles * BYTES_PER_TRIANGLE;
         let memory = runner.control.reserve(bytes as u64)?;
         // 1. All operands as one complex, in general position.
-        let (mut surfaces, mut edges) = Surfaces::new(operands, groups);
+        let mut surfaces = Surfaces::new(operands, groups);
         let bounds = operands.iter().filter_map(|solid| solid.bounds());
         let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
-        let boxes = FaceBoxes::new(&surfaces, &bounds);
-        let pairs = boxes.pairs(&surfaces, runner)?;
+        let is_simple = |solid: &&Solid| solid.is_simple_complex();
+        let all_edges = (!operands.iter().all(is_simple)).then(|| surfaces.separate());
+        let boxes =
+            (all_edges.is_some() || !pairs::are_few(operands)).then(|| FaceBoxes::new(&surfaces, &bounds));
+        let pairs = match &boxes {
+            Some(boxes) => boxes.pairs(&surfaces, runner, |_| true)?,
+            None => pairs::of_manifolds(&surfaces, operands, runner)?,
+        };
+        let (locality, components) = match all_edges {
+            Some(_) => Locality::everywhere(&surfaces),
+            None => Locality::around(&surfaces, &pairs),
+        };
+        surfaces.set_components(components);
         surfaces.set_near(&pairs);
+        let last = seeds::last_vertices(&surfaces);
+        let mut edges = all_edges.unwrap_or_else(|| {
+            surfaces.edges_of(&locality.walked_over(&surfaces, last.iter().copied().flatten()))
+        });
         let contacts = seeds::sort_radially(&surfaces, &mut edges);
         // 2. Which faces cross.
         let crossings = Crossings::find(&surfaces, &edges, &pairs, runner)?;
         let contacts = contacts + crossings.contacts;
-        Ok(Self { surfaces, edges, crossings, contacts, bounds, boxes, _memory: memory })
+        Ok(Self { surfaces, edges, crossings, contacts, bounds, boxes, locality, last, _memory: memory })
     }
 
     /// The faces that cross others or lie on others, ascending, as triangles of their operands.
@@ -92,16 +112,17 @@ impl General {
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where points cannot be numbered.
     pub(crate) fn new(crossed: Crossed, fuse: bool, runner: Runner<'_>) -> Result<Self, Error> {
-        let Crossed { surfaces, edges, crossings, mut contacts, bounds, boxes, _memory } = crossed;
+        let Crossed { surfaces, edges, crossings, mut contacts, bounds, boxes, locality, last, _memory } =
+            crossed;
         let cut: Vec<FaceId> = surfaces.faces().filter(|&face| !crossings.of_face(face).is_empty()).collect();
         // 3. Three-face points.
         let (triples, contacts_of_triples) = triples::find(&surfaces, &edges, &crossings, &cut, runner)?;
         // 4. Where all points are, and their order.
         let lines = Lines::new(&surfaces, &edges, &crossings, triples, runner)?;
         // 5. Labels.
-        let (seeds, contacts_of_seeds) = seeds::find(&surfaces, &edges, &bounds, &boxes, runner)?;
+        let (seeds, contacts_of_seeds) = seeds::find(&surfaces, &edges, &bounds, &last, boxes, runner)?;
         let control = runner.control;
-        let mut faces = FaceLabels::new(&surfaces, &edges, &crossings, &lines, &seeds, control)?;
+        let mut faces = FaceLabels::new(&surfaces, &edges, &locality, &crossings, &lines, &seeds, control)?;
         let segment_labels = SegmentLabels::new(&surfaces, &edges, &crossings, &lines, &mut faces, control)?;
         contacts += contacts_of_triples + lines.contacts + contacts_of_seeds;
         // 6. What touches.

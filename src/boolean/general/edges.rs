@@ -14,6 +14,11 @@ impl Side {
         Self(face << 2 | k)
     }
 
+    /// Side 0 of a face.
+    pub(crate) fn first_of(face: FaceId) -> Self {
+        Self::new(face.number(), 0)
+    }
+
     #[inline]
     pub(crate) fn face(self) -> FaceId {
         FaceId::new(self.0 >> 2)
@@ -28,7 +33,7 @@ impl Side {
 /// The most faces whose sides can be numbered.
 pub(crate) const MOST_FACES: usize = 1 << 30;
 
-/// All edges. An edge runs from its low end, the vertex with the lower number, to its high end.
+/// The edges of all faces, or of some. An edge runs from its low end, the vertex with the lower number, to its high end.
 #[derive(Debug)]
 pub(crate) struct Edges {
     ends: Vec<[VertexId; 2]>,
@@ -42,18 +47,29 @@ pub(crate) struct Edges {
 impl Edges {
     /// The edges of triangles with the given corners.
     pub(crate) fn new(corners: &[[u32; 3]], vertices: usize) -> Self {
+        Self::of_faces(corners, vertices, (0..corners.len() as u32).map(FaceId::new))
+    }
+
+    /// The edges of some of these triangles. Each has the sides of these alone.
+    pub(crate) fn of_faces(
+        corners: &[[u32; 3]],
+        vertices: usize,
+        faces: impl ExactSizeIterator<Item = FaceId> + Clone,
+    ) -> Self {
         // 1. All sides by their lower ends, and those by their higher ends.
-        let half_edges = (0u32..).zip(corners).flat_map(|(face, corners)| {
+        let count = faces.len();
+        let half_edges = faces.flat_map(|face| {
+            let corners = &corners[face.index()];
             [0, 1, 2].map(|k| {
                 let (u, v) = (corners[k], corners[(k + 1) % 3]);
-                (u.min(v), [u.max(v), Side::new(face, k as u32).0])
+                (u.min(v), [u.max(v), Side::new(face.number(), k as u32).0])
             })
         });
         let mut at_low = Buckets::new(vertices, half_edges);
         let mut edges = Self {
-            ends: Vec::with_capacity(corners.len() * 3 / 2),
-            starts: Vec::with_capacity(corners.len() * 3 / 2 + 1),
-            sides: Vec::with_capacity(corners.len() * 3),
+            ends: Vec::with_capacity(count * 3 / 2),
+            starts: Vec::with_capacity(count * 3 / 2 + 1),
+            sides: Vec::with_capacity(count * 3),
             of_face: vec![[EdgeId::NONE; 3]; corners.len()],
         };
         // 2. Equal ones are an edge.
@@ -100,13 +116,13 @@ impl Edges {
         self.ends[edge.index()]
     }
 
-    /// The edge that a side of a face is.
+    /// The edge that a side of a face is; the face must be one of those whose edges these are.
     #[inline]
     pub(crate) fn edge(&self, face: FaceId, k: usize) -> EdgeId {
         self.of_face[face.index()][k]
     }
 
-    /// The sides that an edge is: of two faces, nearly always.
+    /// The sides that an edge is: of two faces, nearly always; of one at the border of those whose edges these are.
     #[inline]
     pub(crate) fn sides(&self, edge: EdgeId) -> &[Side] {
         &self.sides[self.range(edge)]

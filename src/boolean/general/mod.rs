@@ -2,7 +2,7 @@
 //! expressions of them, evaluated at once from the original operands and rounded once.
 //!
 //! 1. `surfaces`, `edges`: all operands under one numbering, in general position;
-//! 2. `pairs`, `cross`, `crossings`: which faces cross, and where their edges do;
+//! 2. `pairs`, `cross`, `crossings`: which faces cross, and where their edges do; `locality`: the patches in which none does;
 //! 3. `triples`: points in which three faces meet;
 //! 4. `lines`: where all points are, in order along edges and segments;
 //! 5. `labels`, `seeds`, `walk`, `segment_labels`: winding numbers of all operands beside every piece;
@@ -27,6 +27,7 @@ pub(crate) mod embed;
 pub(crate) mod evaluate;
 pub(crate) mod labels;
 pub(crate) mod lines;
+pub(crate) mod locality;
 pub(crate) mod pairs;
 pub(crate) mod seeds;
 pub(crate) mod segment_labels;

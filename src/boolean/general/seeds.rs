@@ -60,7 +60,29 @@ pub(crate) fn sort_radially(surfaces: &Surfaces, edges: &mut Edges) -> u64 {
     predicates.into_contacts()
 }
 
-/// The seeds of all pieces of surface, in their order.
+/// The last vertex of each piece of surface in x, perturbed; `None` for one without vertices.
+pub(crate) fn last_vertices(surfaces: &Surfaces) -> Vec<Option<VertexId>> {
+    let mut last: Vec<Option<VertexId>> = vec![None; surfaces.component_count() as usize];
+    for vertex in (0..surfaces.vertex_count()).map(VertexId::new) {
+        let last = &mut last[surfaces.component_of_vertex(vertex) as usize];
+        if last.is_none_or(|last| is_further(surfaces, vertex, last)) {
+            *last = Some(vertex);
+        }
+    }
+    last
+}
+
+/// Rays up to which it is cheaper to look at every face for each than to make a hierarchy of all: that costs as much as some eight
+/// looks.
+const FEW_RAYS: usize = 8;
+
+/// Whether the box of a triangle meets the ray in +x from a point.
+fn may_cross(start: &[f64; 3], [a, b, c]: &[[f64; 3]; 3]) -> bool {
+    let meets = |k: usize| a[k].min(b[k]).min(c[k]) <= start[k] && start[k] <= a[k].max(b[k]).max(c[k]);
+    a[0].max(b[0]).max(c[0]) >= start[0] && meets(1) && meets(2)
+}
+
+/// The seeds of all pieces of surface, in their order; `last` are their last vertices.
 ///
 /// # Errors
 /// Only limits.
@@ -68,21 +90,14 @@ pub(crate) fn find(
     surfaces: &Surfaces,
     edges: &Edges,
     bounds: &Bounds,
-    boxes: &FaceBoxes,
+    last: &[Option<VertexId>],
+    boxes: Option<FaceBoxes>,
     runner: Runner<'_>,
 ) -> Result<(Vec<Seed>, u64), Error> {
-    // 1. The last vertex of each piece in x.
-    let count = surfaces.component_count() as usize;
-    let mut last: Vec<Option<VertexId>> = vec![None; count];
-    for vertex in (0..surfaces.vertex_count()).map(VertexId::new) {
-        let last = &mut last[surfaces.component_of_vertex(vertex) as usize];
-        if last.is_none_or(|last| is_further(surfaces, vertex, last)) {
-            *last = Some(vertex);
-        }
-    }
-    // 2. The edges at these vertices.
+    // 1. The edges at these vertices.
+    let count = last.len();
     let mut component_of_last = rustc_hash::FxHashMap::default();
-    for (component, vertex) in (0..).zip(&last) {
+    for (component, vertex) in (0..).zip(last) {
         component_of_last.extend(vertex.map(|vertex| (vertex, component)));
     }
     let at_last = edges.iter().flat_map(|(edge, ends)| {
@@ -90,8 +105,9 @@ pub(crate) fn find(
     });
     let at_last: Vec<(u32, EdgeId)> = at_last.flatten().collect();
     let at_last = Buckets::new(count, at_last.into_iter());
-    // 3. A ray from each.
+    // 2. A ray from each.
     let predicates = Predicates::new(surfaces);
+    let boxes = boxes.or_else(|| (count > FEW_RAYS).then(|| FaceBoxes::new(surfaces, bounds)));
     let search = Search { surfaces, edges, predicates };
     let end_x = coordinate_past(bounds.low[0], bounds.high[0]);
     let seeds = runner.pieces(count, 1, |range| {
@@ -104,9 +120,15 @@ pub(crate) fn find(
             let id = VertexId::new(surfaces.vertex_count() + component as u32);
             let end = Corner { id, position: [end_x, start.position[1], start.position[2]] };
             let ray = Ray { start, end };
-            boxes.meeting([&ray.start.position, &ray.end.position], |face| {
-                crossed.extend(search.crossed(face, &ray, component as u32));
-            });
+            let mut visit = |face| crossed.extend(search.crossed(face, &ray, component as u32));
+            match &boxes {
+                Some(boxes) => boxes.meeting([&ray.start.position, &ray.end.position], visit),
+                None => {
+                    let may_cross =
+                        |face: &FaceId| may_cross(&ray.start.position, &surfaces.positions(*face));
+                    surfaces.faces().filter(may_cross).for_each(&mut visit);
+                }
+            }
         }
         Some(search.seed(vertex, at_last.get(component), crossed))
     })?;

@@ -42,10 +42,9 @@ pub(crate) struct Surfaces {
 }
 
 impl Surfaces {
-    /// The surfaces of operands, with the result's group of each of their triangles (empty lists if there are no groups),
-    /// and their edges.
-    pub(crate) fn new(operands: &[&Solid], groups: &[Vec<u32>]) -> (Self, Edges) {
-        // 1. All arrays one after the other.
+    /// The surfaces of operands, with the result's group of each of their triangles (empty lists if there are no groups):
+    /// all arrays one after the other.
+    pub(crate) fn new(operands: &[&Solid], groups: &[Vec<u32>]) -> Self {
         let count = |of: fn(&Solid) -> usize| operands.iter().map(|solid| of(solid)).sum();
         let vertex_count: usize = count(|solid| solid.mesh().positions.len());
         let face_count: usize = count(|solid| solid.mesh().triangles.len());
@@ -71,22 +70,22 @@ impl Surfaces {
             surfaces.triangles.extend(0..mesh.triangles.len() as u32);
         }
         surfaces.largest = surfaces.positions.iter().flatten().fold(0.0, |most, x: &f64| most.max(x.abs()));
-        // 2. Triangles on the same vertices become one.
-        let mut edges = Edges::new(&surfaces.corners, surfaces.positions.len());
-        if surfaces.merge_copies(&edges) {
-            edges = Edges::new(&surfaces.corners, surfaces.positions.len());
+        surfaces
+    }
+
+    /// Makes one face of triangles on the same vertices, and a vertex for each fan; the edges of all faces.
+    pub(crate) fn separate(&mut self) -> Edges {
+        let mut edges = Edges::new(&self.corners, self.positions.len());
+        if self.merge_copies(&edges) {
+            edges = Edges::new(&self.corners, self.positions.len());
         }
-        // 3. A vertex for each fan.
-        surfaces.separate_fans(&mut edges);
-        // 4. Pieces of surface.
-        let mut sets = UnionFind::new(surfaces.positions.len());
-        for &[u, v, w] in &surfaces.corners {
-            sets.join(u, v);
-            sets.join(v, w);
-        }
-        let (count, labels) = sets.labels();
-        (surfaces.component_count, surfaces.components) = (count as u32, labels);
-        (surfaces, edges)
+        self.separate_fans(&mut edges);
+        edges
+    }
+
+    /// The edges of some faces.
+    pub(crate) fn edges_of(&self, faces: &[FaceId]) -> Edges {
+        Edges::of_faces(&self.corners, self.positions.len(), faces.iter().copied())
     }
 
     /// Makes one face of triangles on the same vertices; whether there were any.
@@ -169,6 +168,11 @@ impl Surfaces {
         if changed {
             edges.renumber(&self.corners);
         }
+    }
+
+    /// Says which piece of surface each vertex belongs to, and how many there are.
+    pub(crate) fn set_components(&mut self, (count, of_vertices): (usize, Vec<u32>)) {
+        (self.component_count, self.components) = (count as u32, of_vertices);
     }
 
     /// Says which pairs of faces are near each other: from these directions and colours are made.

@@ -5,7 +5,8 @@
 //! - past a node with face g a side's label changes by the step of g, up where the side goes inside g and down where it leaves;
 //! - round a corner v of f, from side to side, it changes by the step of every g whose segment with f begins at v, up where
 //!   the next side lies inside g;
-//! - round an edge with two faces it is the same for both; with more, crossing a face in radial order changes it.
+//! - round an edge with two faces it is the same for both; with more, crossing a face in radial order changes it;
+//! - in a patch, and in a face that is not cut, it is the same everywhere.
 //!
 //! So one label for each piece of surface gives all: that beside its vertex with the largest x, by a ray in +x.
 
@@ -13,6 +14,7 @@ use super::crossings::Crossings;
 use super::edges::{Edges, Side};
 use super::labels::Labels;
 use super::lines::Lines;
+use super::locality::Locality;
 use super::seeds::Seed;
 use super::surfaces::Surfaces;
 use crate::Error;
@@ -46,6 +48,7 @@ impl FaceLabels {
     pub(crate) fn new(
         surfaces: &Surfaces,
         edges: &Edges,
+        locality: &Locality,
         crossings: &Crossings,
         lines: &Lines,
         seeds: &[Seed],
@@ -55,8 +58,10 @@ impl FaceLabels {
         let mut walk = Walk {
             surfaces,
             edges,
+            locality,
             crossings,
             lines,
+            of_patches: vec![LabelId::NONE; locality.count()],
             found: Self {
                 labels: Labels::new(),
                 of_face: vec![u32::MAX; count],
@@ -79,6 +84,7 @@ impl FaceLabels {
                 walk.leave(face);
             }
         }
+        walk.fill_patches();
         debug_assert!(walk.found.of_face.iter().all(|&label| label != u32::MAX), "every piece has a seed");
         Ok(walk.found)
     }
@@ -101,8 +107,11 @@ impl FaceLabels {
 struct Walk<'a> {
     surfaces: &'a Surfaces,
     edges: &'a Edges,
+    locality: &'a Locality,
     crossings: &'a Crossings,
     lines: &'a Lines,
+    /// By patch, its label, if it is known.
+    of_patches: Vec<LabelId>,
     found: FaceLabels,
     stack: Vec<FaceId>,
 }
@@ -225,11 +234,49 @@ impl Walk<'_> {
             let place = sides.iter().position(|side| side.face() == face && side.place() == k);
             let place = place.expect("the side is one of its edge's");
             let label = self.label_at(sides[place], true);
-            if let [x, y] = sides {
-                self.enter(if place == 0 { *y } else { *x }, true, label);
-            } else {
-                self.round_edge(edge, place, label);
+            match sides {
+                // Beyond lies a patch.
+                [_] => {}
+                [x, y] => self.enter(if place == 0 { *y } else { *x }, true, label),
+                _ => self.round_edge(edge, place, label),
             }
+        }
+        for vertex in self.surfaces.vertices(face) {
+            if let Some(patch) = self.locality.of_vertex(vertex)
+                && self.of_patches[patch] == LabelId::NONE
+            {
+                self.cross_patch(patch, self.found.of_face(face)[0]);
+            }
+        }
+    }
+
+    /// Goes on to the faces at the border of a patch. (They are not cut, or they would have no vertex in it.)
+    fn cross_patch(&mut self, patch: usize, label: LabelId) {
+        self.of_patches[patch] = label;
+        let locality = self.locality;
+        for &face in locality.bordering(patch) {
+            self.enter(Side::first_of(face), true, label);
+        }
+    }
+
+    /// Gives all faces within patches their labels.
+    fn fill_patches(&mut self) {
+        let mut last = (usize::MAX, [LabelId::NONE; 2]);
+        for face in self.surfaces.faces() {
+            let of_face = &mut self.found.of_face[face.index()];
+            if *of_face != u32::MAX {
+                continue;
+            }
+            let Some(patch) = self.locality.of_vertex(self.surfaces.vertices(face)[0]) else { continue };
+            if last.0 != patch {
+                // (A patch is of one operand, and each of its faces counts once.)
+                let outer = self.of_patches[patch];
+                let inner =
+                    self.found.labels.step(outer, self.surfaces.owner(face), self.surfaces.step(face));
+                last = (patch, [outer, inner]);
+            }
+            *of_face = last.1[0].number();
+            self.found.inner[face.index()] = last.1[1];
         }
     }
 

@@ -3,6 +3,7 @@
 use super::groups::{MergedGroups, merged_groups};
 use super::made::Made;
 use super::policy::{Embed, Policy, no_operands};
+use crate::boolean::arrangement::self_crossings::is_nearly_simple;
 use crate::boolean::complex::classes::Faces;
 use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::operation::{Contact, Operation};
@@ -35,7 +36,7 @@ pub(in crate::boolean) fn is_simple(policy: Policy, solid: &Solid, control: &Con
     if policy.assume_clean && solid.known_self_crossings().is_none() {
         return Ok(true);
     }
-    let is_clean = solid.is_known_clean() || solid.self_crossings(control)?.is_nearly_simple();
+    let is_clean = solid.is_known_clean() || is_nearly_simple(solid, control)?;
     Ok(is_clean && solid.is_well_nested())
 }
 
