@@ -132,6 +132,7 @@ class Arbiter:
         self.process.stdin.write(struct.pack("<QIII", case.seed, points, len(positions), len(corners)) + positions.tobytes() + corners.tobytes())
         self.process.stdin.flush()
         answer = json.loads(self.process.stdout.readline())
+        answer["ours"]["at_origin"] = answer["at_origin"]
         return answer["ours"], answer["theirs"]
 
     def close(self):
@@ -284,6 +285,9 @@ def classified(case, peer, differing, ours, theirs):
             # What is thinner than its tolerance manifold3d closes. No two triangles of ours lie on each other: the film has a thickness.
             return "same solid; films thinner than manifold3d's tolerance"
         return UNEXPLAINED + "area"
+    if ours["at_origin"] and ours["parted"] != [ours["components"], ours["euler"]]:
+        # At the origin the result has the same vertices, not rounded, is connected alike, and its contacts are parted.
+        return "same solid; needles turned by rounding far from the origin"
     if ours["parted"] is None:
         return OURS + "walls without thickness"
     if ours["parted"] != [ours["components"], ours["euler"]]:

@@ -7,8 +7,9 @@ use trisect::{BooleanOptions, Control, Mesh, Solid};
 
 use crate::judge::cases::Case;
 use crate::judge::many::{MANY_FROM, Many};
+use crate::judge::origin::compared_at_origin;
 use crate::judge::surface::Properties;
-use crate::judge::{contacts, oracle, samples};
+use crate::judge::{oracle, samples};
 
 fn solid(mesh: &Mesh) -> Solid {
     Solid::try_from(mesh.clone()).expect("closed")
@@ -66,34 +67,34 @@ fn needles_do_not_make_results_cross_themselves() {
 }
 
 #[test]
+fn a_point_a_rounding_from_a_needle_is_no_mistake() {
+    // Taken to be 37 units in the last place from it, by a direction across its long sides.
+    let seed = 4_295_147_980;
+    let case = Case::new(seed, &[]);
+    let solids = [&case.a, &case.b].map(solid);
+    let result =
+        BooleanOptions::new().run(case.operation, &solids).expect("no limits").into_solid().into_mesh();
+    let operands = [&case.a, &case.b];
+    let points = samples::points(&operands, &result, 100, &mut ChaCha8Rng::seed_from_u64(!seed));
+    let verdict = oracle::judge_at(case.operation, &operands, &result, &points);
+    assert!(verdict.mistakes.is_empty() && verdict.judged > 90, "{verdict:?}");
+}
+
+#[test]
 fn what_rounding_turns_far_from_the_origin_is_no_wall() {
-    // At 1e12 a unit in the last place is 1e-4.
-    for seed in [4_294_968_311, 4_294_968_809, 4_294_970_635] {
+    // At 1e12 a unit in the last place is 1e-4. The seeds of a report can be given instead.
+    let seeds = std::env::var("TRISECT_PROOF_SEEDS").map_or_else(
+        |_| vec![4_294_968_311, 4_294_968_809, 4_294_970_635],
+        |text| text.split_whitespace().map(|seed| seed.parse().expect("seeds are numbers")).collect(),
+    );
+    let mut differ = Vec::new();
+    for seed in seeds {
         let case = Case::new(seed, &[]);
-        let result = |operands: [&Mesh; 2]| {
-            let solids = operands.map(solid);
-            let outcome = BooleanOptions::new().run(case.operation, &solids).expect("no limits");
-            outcome.into_solid().into_mesh()
-        };
-        let far = result([&case.a, &case.b]);
-        // The same operands at the origin, which takes no rounding.
-        let from = case.a.positions[0];
-        let near = |mesh: &Mesh| mesh.clone().translated(from.map(|x| -x));
-        let (a, b) = (near(&case.a), near(&case.b));
-        let back = |mesh: &Mesh| mesh.clone().translated(from);
-        assert!(back(&a) == case.a && back(&b) == case.b, "seed {seed}");
-        let at_origin = result([&a, &b]);
-        // The same vertices, each rounded once.
-        assert_eq!(far.positions.len(), at_origin.positions.len(), "seed {seed}");
-        for (p, q) in far.positions.iter().zip(&at_origin.positions) {
-            for k in 0..3 {
-                let ulp = p[k].abs().next_up() - p[k].abs();
-                assert!(((p[k] - from[k]) - q[k]).abs() <= 0.51 * ulp, "seed {seed}: {p:?} {q:?}");
-            }
+        let solids = [&case.a, &case.b].map(solid);
+        let outcome = BooleanOptions::new().run(case.operation, &solids).expect("no limits");
+        if let Err(what) = compared_at_origin(&case, outcome.solid().mesh()) {
+            differ.push(format!("{seed}: {what}"));
         }
-        // Connected alike, with no wall without thickness.
-        let topology = |mesh: &Mesh| contacts::parted(mesh, 1e-13).map(|parted| parted.topology);
-        assert!(topology(&far).is_some(), "seed {seed}");
-        assert_eq!(topology(&far), topology(&at_origin), "seed {seed}");
     }
+    assert!(differ.is_empty(), "{differ:?}");
 }

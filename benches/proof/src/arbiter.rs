@@ -4,11 +4,13 @@
 //! the input, and answers each with a line of JSON.
 
 use std::io::{self, BufRead, Write};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::judge::cases::Case;
+use crate::judge::cases::{Case, Family, HARD_FROM};
 use crate::judge::contacts::{Parted, Topology};
 use crate::judge::many::{MANY_FROM, Many};
 use crate::judge::oracle;
+use crate::judge::origin;
 use crate::judge::samples;
 use crate::judge::surface::{Properties, volume};
 use crate::{many, record, run};
@@ -24,6 +26,7 @@ pub(crate) fn serve(input: &mut impl BufRead, out: &mut impl Write, models: &[Me
         let (seed, points) = (u64::from_le_bytes(seed), u32::from_le_bytes(points) as usize);
         let theirs = record::read_mesh(input)?;
         let (operands, ours, expected) = prepare(seed, models);
+        let at_origin = is_as_at_origin(seed, models, &ours);
         let operands: Vec<&Mesh> = operands.iter().collect();
         let mut random = ChaCha8Rng::seed_from_u64(!seed);
         let mut places = samples::points(&operands, &ours, points / 2, &mut random);
@@ -32,10 +35,20 @@ pub(crate) fn serve(input: &mut impl BufRead, out: &mut impl Write, models: &[Me
             let verdict = oracle::judge_by(&expected, &operands, mesh, &places);
             describe(mesh, run::smallest_part(&operands, mesh), &verdict)
         });
-        writeln!(out, "{{\"ours\":{ours},\"theirs\":{theirs}}}")?;
+        writeln!(out, "{{\"ours\":{ours},\"theirs\":{theirs},\"at_origin\":{at_origin}}}")?;
         out.flush()?;
     }
     Ok(())
+}
+
+/// Whether a result at coordinates of 1e12 is what it is at the origin.
+fn is_as_at_origin(seed: u64, models: &[Mesh], result: &Mesh) -> bool {
+    if !(HARD_FROM..MANY_FROM).contains(&seed) {
+        return false;
+    }
+    let case = Case::new(seed, models);
+    let is_same = || origin::compared_at_origin(&case, result).is_ok();
+    case.family == Family::Far12 && catch_unwind(AssertUnwindSafe(is_same)).unwrap_or(false)
 }
 
 /// How often a result should wind round a point that the operands wind round so often.

@@ -205,13 +205,13 @@ mod tests {
 
     #[test]
     fn rounding_is_that_of_the_corners_along_the_direction() {
-        // Two needles that pass each other at the origin, 1e-17 deep: their ends are rounded to 1e-16.
-        let one = [[-0.75, -1e-9, 0.0], [0.75, -1e-9, 0.0], [0.0, 1e-9, 0.0]];
-        let other = [[-1e-9, -0.75, -1e-17], [1e-9, 0.75, -1e-17], [0.0, 0.0, 1e-3]];
+        // Two needles that pass each other at the origin by less than their ends are rounded.
+        let one = [[-0.75, -1e-9, 1e-9], [0.75, -1e-9, 1e-9], [0.0, 1e-9, -1e-9]];
+        let other = [[-1e-9, 0.75, -0.75], [1e-9, -0.75, 0.75f64.next_down()], [0.0, 1e-3, 1e-3]];
         let found = rounding(&one, &other).expect("it is rounding");
-        assert!((1e-19..3e-16).contains(&found), "{found:e}");
+        assert!((1e-16..3e-16).contains(&found), "{found:e}");
         // Not where it is deeper.
-        let deep = other.map(|p| [p[0], p[1], p[2] - 1e-9]);
+        let deep = other.map(|p| [p[0], p[1] - 1e-9, p[2] - 1e-9]);
         assert_eq!(rounding(&one, &deep), None);
         // Nor where a face is huge along other axes only, or so huge that what is near it is shorter than its rounding.
         let face = [[-1e30, -1e30, 0.5], [1e30, -1e30, 0.5], [0.0, 1e30, 0.5]];

@@ -65,9 +65,12 @@ pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
     if mesh.triangles.is_empty() {
         return Some(Parted { topology: Topology::default(), pinched: false });
     }
-    let [low, high] = extent(&mesh.positions);
+    // About a vertex: far from the origin a place on a side is rounded, and would fall on vertices that are beside it.
+    let origin = mesh.positions[mesh.triangles[0][0] as usize];
+    let positions: Vec<Point> = mesh.positions.iter().map(|p| minus(*p, origin)).collect();
+    let [low, high] = extent(&positions);
     let near = reach * (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
-    let (points, of) = joined(&mesh.positions, near);
+    let (points, of) = joined(&positions, near);
     let faces: Vec<Face> =
         mesh.triangles.iter().filter_map(|t| face(t.map(|v| of[v as usize]), &points, near)).collect();
     let mut edges: HashMap<(usize, usize), Vec<Side>> = HashMap::new();
@@ -81,7 +84,8 @@ pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
             let (from, to) = (u.min(v), u.max(v));
             let forward = u < v;
             let angle = angle_round(points[from], points[to], face.normal, forward);
-            let uncertainty = uncertainty([points[from], points[to]], &face.triangle.map(|v| points[v]));
+            let corners = face.triangle.map(|v| points[v]);
+            let uncertainty = uncertainty([points[from], points[to]], &corners, origin);
             edges.entry((from, to)).or_default().push(Side {
                 face: index,
                 side,
@@ -180,9 +184,10 @@ fn angle_round(from: Point, to: Point, normal: Point, forward: bool) -> f64 {
 }
 
 /// How much rounding may have moved the highest corner of a triangle over an edge of it, as a part of its height.
-fn uncertainty([from, to]: [Point; 2], corners: &[Point; 3]) -> f64 {
+fn uncertainty([from, to]: [Point; 2], corners: &[Point; 3], origin: Point) -> f64 {
     let along = minus(to, from);
-    let largest = corners.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
+    let largest =
+        corners.iter().flat_map(|p| plus(*p, origin, 1.0)).fold(0.0f64, |most, x| most.max(x.abs()));
     let ulp = largest.next_up() - largest;
     let of_corner = |p: &Point| {
         let height = length(cross(unit(along), minus(*p, from)));

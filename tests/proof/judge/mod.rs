@@ -6,6 +6,7 @@
 //! - [`contacts`]: the topology a solid has where its surface touches itself;
 //! - [`boxes`]: what of many boxes is near;
 //! - [`wide`]: volumes and windings at any size of coordinates, in integers;
+//! - [`origin`]: whether a result far from the origin is what it is there;
 //! - [`minimise`]: a failing pair made small;
 //! - [`shapes`], [`placement`], [`cases`], [`hard`]: pairs of solids and an operation from a seed; [`many`]: operands of several
 //!   bodies, and expressions.
@@ -19,6 +20,7 @@ pub(crate) mod hard;
 pub(crate) mod many;
 pub(crate) mod minimise;
 pub(crate) mod oracle;
+pub(crate) mod origin;
 pub(crate) mod placement;
 pub(crate) mod samples;
 pub(crate) mod shapes;
