@@ -256,8 +256,10 @@ impl<'a> Surface<'a> {
         let tolerance = self.part * size_at_hand(self.largest, own);
         let rounding = penetration::rounding(&positions(a), &positions(b));
         let tolerance = rounding.map_or(tolerance, |moved| tolerance.max(TOLERATED_ULPS * moved));
-        let real = depth > tolerance || self.leaves_wrong_winding(&place, a, b, tolerance);
-        let shallow = real && depth > 0.0 && depth <= SHALLOW * tolerance;
+        // A body whose corner just pierces the wall of another from inside crosses it by no more than rounding, but is in it.
+        let is_wrong = depth <= SHALLOW * tolerance && self.leaves_wrong_winding(&place, a, b, tolerance);
+        let real = depth > tolerance || is_wrong;
+        let shallow = real && !is_wrong && depth > 0.0 && depth <= SHALLOW * tolerance;
         Some(Crossing { crossing: SelfCrossing { triangles: pair, place, depth }, real, shallow })
     }
 
