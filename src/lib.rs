@@ -48,6 +48,7 @@
 //! | Feature | Default | Adds | Crates (30 without any) |
 //! |---|---|---|---|
 //! | `cli` | yes | the program; brings `field`, `formats`, `model`, `render`, `serde` | 51 |
+//! | `draco` | yes | Draco-compressed glTF in the module `io`; brings `formats` | 17 |
 //! | `field` | yes | the module `field`: signed distances, formulas, R-functions, and their surfaces as meshes | 1 |
 //! | `formats` | yes | the module `io`, `Mesh::load` and `Mesh::save`: OBJ, glTF, STL, PLY, OFF | 16 |
 //! | `model` | yes | the module `model`: trees of operations in JSON; brings `field` and `formats` | 17 |
@@ -56,6 +57,8 @@
 //! | `render` | with `cli` | the module `render`: pictures of meshes as PNG | 11 |
 //! | `serde` | with `cli` | `Serialize` and `Deserialize` for meshes, settings and reports | 3 |
 //! | `subdivision` | yes | the module `subdivision`: subdivision surfaces given by cages, and their booleans as cages | none |
+//! | `threemf` | yes | 3MF files in the module `io`; brings `formats` | 32 |
+//! | `viewer` | yes | results as pages for browsers, of the program; brings `cli` | 53 |
 //!
 //! For the engine alone: `default-features = false`, with `parallel` or not.
 //!
@@ -95,9 +98,10 @@ pub mod spatial;
 pub mod subdivision;
 
 pub use boolean::{
-    BooleanOptions, Certificate, Contact, CornerOrigin, CutFaces, Embed, Embedding, Expression,
-    ExpressionError, Grid, NearContact, NearContacts, OperandState, Operation, Origin, Outcome, PlaneCut,
-    Rule, Section, SectionSide, Sections, Snapping, TrimSide, Trimmed, UnknownName, boolean,
+    BooleanOptions, Cell, Certificate, Contact, CornerOrigin, CutFaces, Embed, Embedding, Expression,
+    ExpressionError, Grid, Imprinted, NearContact, NearContacts, OperandState, Operation, Origin, Outcome,
+    PlaneCut, Rule, Section, SectionSide, Sections, Snapping, Solidified, Solidify, SolidifyReport, TrimSide,
+    Trimmed, UnknownName, boolean,
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};

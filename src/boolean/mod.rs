@@ -33,9 +33,11 @@ mod expression;
 mod general;
 mod many;
 mod pair;
+mod partition;
 mod plane;
 mod result;
 mod snapping;
+mod solidify;
 mod tidy;
 
 pub use complex::operation::{Contact, Operation, UnknownName};
@@ -47,6 +49,7 @@ pub use general::embed::{Embedding, Grid};
 pub use many::options::BooleanOptions;
 pub use many::policy::Embed;
 pub use many::trim::{TrimSide, Trimmed};
+pub use partition::{Cell, Imprinted};
 pub use plane::{PlaneCut, Section, SectionSide, Sections};
 pub use result::attributes::CornerOrigin;
 pub use result::certificate::{Certificate, OperandState};
@@ -54,6 +57,7 @@ pub use result::cut_faces::CutFaces;
 pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;
 pub use snapping::report::Snapping;
+pub use solidify::{Solidified, Solidify, SolidifyReport};
 
 use crate::{Error, Solid};
 

@@ -137,6 +137,9 @@ pub(crate) struct Admitting {
         value_parser = values::hole, action = clap::ArgAction::Append
     )]
     fill_holes: Vec<usize>,
+    /// Refine what fills holes to the edges around it, and bend it on like the surface there; fills all if --fill-holes is not given
+    #[arg(long, num_args = 0, default_missing_value = "true", action = clap::ArgAction::Append)]
+    refine_holes: Vec<bool>,
     /// Mend nothing: refuse an input that is not closed as it is
     #[arg(long, num_args = 0, default_missing_value = "true", action = clap::ArgAction::Append)]
     as_is: Vec<bool>,

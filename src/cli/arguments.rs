@@ -8,7 +8,7 @@ use trisect::Operation;
 use super::argument_groups::{Common, Inputs, Placing, Reading, Repair, Results};
 #[cfg(feature = "subdivision")]
 use super::cage_arguments::{FreeFormVerb, Subdivide};
-use super::cut_arguments::{Cut, Section, Split, Trim};
+use super::cut_arguments::{Cut, Imprint, Section, Solidify, Split, Trim};
 #[cfg(feature = "parametric")]
 use super::field_arguments::CurveVerb;
 use super::field_arguments::{Eval, SampleGrid, Slice};
@@ -94,6 +94,12 @@ pub(crate) enum Verb {
     /// What of an open surface lies inside a solid, or outside it
     #[command(after_help = "Example:\n  trisect trim terrain.obj house.stl --outside -o terrain-cut.obj")]
     Trim(Trim),
+    /// The curve in which two surfaces meet, as edges of both
+    #[command(after_help = "Example:\n  trisect imprint terrain.obj wall.obj -o marked.obj")]
+    Imprint(Imprint),
+    /// A solid of any soup of triangles: holes closed, what is inside found by winding numbers
+    #[command(after_help = "Example:\n  trisect solidify scan.ply -o solid.stl --png solid.png")]
+    Solidify(Solidify),
     /// Say whether files can be used as operands, and if not, why and where
     #[command(
         after_help = "Exit code 0: all usable; 3: at least one is not; 2: at least one cannot be read."
@@ -155,6 +161,8 @@ impl Verb {
             Self::Section(_) => "section",
             Self::Split(_) => "split",
             Self::Trim(_) => "trim",
+            Self::Imprint(_) => "imprint",
+            Self::Solidify(_) => "solidify",
             Self::Check(_) => "check",
             Self::Info(_) => "info",
             Self::Convert(_) => "convert",

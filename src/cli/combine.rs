@@ -12,7 +12,7 @@ use super::arguments::{Combination, Combine};
 use super::fault::{Exit, Fault};
 use super::mended;
 use super::operands::{self, Operand};
-use super::output::{self, Product, Target};
+use super::output::{self, Product, Shown, Target};
 use super::recenter;
 use super::report::{self, Measures};
 use super::requests::{self, Request};
@@ -329,7 +329,8 @@ pub(super) fn write(
         trisect::render::mesh(mesh, &output::view(drawing, style.format), colours.as_deref())
     };
     let options = style.options.clone();
-    let product = Product { mesh, options, picture: &picture, documents: &[] };
+    let shown = Shown::new(drawing, style.format, Some(outcome));
+    let product = Product { mesh, options, picture: &picture, documents: &[], shown };
     let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
     for warning in warnings {
         session.warn(warning);

@@ -13,7 +13,7 @@ use super::argument_groups::{Colours, Writing};
 use super::arguments::Convert;
 use super::fault::{Exit, Fault};
 use super::mended;
-use super::output::{self, Product, Target};
+use super::output::{self, Product, Shown, Target};
 use super::reading::{self, Input};
 use super::recenter;
 use super::report::{self, Measures};
@@ -124,7 +124,8 @@ fn write(
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
         trisect::render::mesh(mesh, &output::view(drawing, Some(*format)), colours.as_deref())
     };
-    let product = Product { mesh, options, picture: &picture, documents: &[] };
+    let shown = Shown::new(drawing, Some(*format), None);
+    let product = Product { mesh, options, picture: &picture, documents: &[], shown };
     let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
     session.note("outputs", outputs);
     for warning in warnings {

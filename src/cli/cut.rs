@@ -15,6 +15,7 @@ use super::requests;
 use super::scenes;
 use super::selection;
 use super::session::Session;
+use super::surface;
 use super::words;
 
 /// Cuts an input.
@@ -59,7 +60,14 @@ pub(crate) fn run(arguments: &Cut, matches: &ArgMatches, session: &mut Session<'
     }
 
     let start = Instant::now();
-    let options = session.boolean_options(control).rule(operand.request.rule).assume_clean(assume_clean);
+    let material = arguments.cut_material.as_deref();
+    let cut_faces =
+        surface::cut_faces(material, arguments.cut_uv, operands.iter().map(|operand| &operand.solid));
+    let options = session
+        .boolean_options(control)
+        .rule(operand.request.rule)
+        .assume_clean(assume_clean)
+        .cut_faces(cut_faces);
     let pieces = pieces(arguments, &operand.solid, &options)?;
     let seconds = session.took("run", start);
     if let Some(piece) = pieces.first() {

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use trisect::FaceGroup;
 use trisect::exact::Plane;
+use trisect::mesh::Welding;
 
-use super::argument_groups::{Inputs, Results};
+use super::argument_groups::{Inputs, Placing, Reading, Repair, Results};
 use super::field_arguments::Axis;
+use super::surface::{self, CutUv};
 use super::values::{self, Heights};
 
 /// Which halves of a cut are wanted.
@@ -39,6 +41,15 @@ pub(crate) struct Cut {
     /// The group of the new faces, with a colour if it ends with #RRGGBB
     #[arg(long, value_name = "MATERIAL", value_parser = values::material, help_heading = "Results")]
     pub(crate) cap: Option<FaceGroup>,
+    /// What the new faces show: nothing of their own, the group around them, or a material by its name, new or of the input
+    #[arg(
+        long, value_name = "keep|body|NAME", value_parser = surface::cut_material, conflicts_with = "cap",
+        help_heading = "Results"
+    )]
+    pub(crate) cut_material: Option<String>,
+    /// Texture coordinates of the new faces: planar or box, with how many to a unit of length, as box:0.5
+    #[arg(long, value_name = "KIND[:DENSITY]", value_parser = surface::cut_uv, help_heading = "Results")]
+    pub(crate) cut_uv: Option<CutUv>,
     #[command(flatten)]
     pub(crate) results: Results,
     /// Read and check the input, say what would be done, write nothing
@@ -101,6 +112,40 @@ pub(crate) struct Trim {
     pub(crate) results: Results,
 }
 
+/// Making a solid of a soup.
+#[derive(Debug, Args)]
+pub(crate) struct Solidify {
+    /// Input file; `-` is standard input (with --format)
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    #[command(flatten)]
+    placing: Placing,
+    /// Join vertices on open edges that are no further apart than this; auto: than the least distance that hardly leaves more
+    /// edges open than larger ones do
+    #[arg(long, value_name = "DISTANCE|auto", value_parser = values::welding, allow_hyphen_values = true, help_heading = "Inputs")]
+    weld: Vec<Welding>,
+    #[command(flatten)]
+    pub(crate) results: Results,
+}
+
+/// Drawing curves on surfaces.
+#[derive(Debug, Args)]
+pub(crate) struct Imprint {
+    /// Two input files, which may be open; `-` is standard input (with --format)
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    #[command(flatten)]
+    placing: Placing,
+    #[command(flatten)]
+    repair: Repair,
+    #[command(flatten)]
+    pub(crate) results: Results,
+}
+
 /// Splitting into parts.
 #[derive(Debug, Args)]
 pub(crate) struct Split {
@@ -109,6 +154,9 @@ pub(crate) struct Split {
     /// Cut by this solid first: what is outside it, inside it, and of it outside the input, with common seams
     #[arg(long, value_name = "FILE", conflicts_with = "groups", help_heading = "Results")]
     pub(crate) by: Option<PathBuf>,
+    /// Part by this surface, which may be open but has to pass through: the cells on its sides. May be repeated
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["groups", "by"], help_heading = "Results")]
+    pub(crate) sheet: Vec<PathBuf>,
     /// The surfaces of the face groups instead of bodies; they are open where groups meet
     #[arg(long, help_heading = "Results")]
     pub(crate) groups: bool,

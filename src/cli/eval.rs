@@ -12,7 +12,7 @@ use super::argument_groups::Colours;
 use super::documents::{self, Document};
 use super::fault::{Exit, Fault};
 use super::field_arguments::Eval;
-use super::output::{self, Product, Target};
+use super::output::{self, Product, Shown, Target};
 use super::reading;
 use super::recenter;
 use super::report::Measures;
@@ -158,7 +158,8 @@ fn write(
             trisect::render::mesh(mesh, &output::view(drawing, None), colours.as_deref())
         };
         let options = output::write_options(&arguments.results.writing, &session.limits);
-        let product = Product { mesh, options, picture: &picture, documents: drawn };
+        let shown = Shown::new(drawing, None, None);
+        let product = Product { mesh, options, picture: &picture, documents: drawn, shown };
         let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
         for warning in warnings {
             session.warn(warning);

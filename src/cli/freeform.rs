@@ -11,7 +11,7 @@ use super::argument_groups::{Drawing, Writing};
 use super::cage_arguments::FreeFormVerb;
 use super::cages::{self, Read};
 use super::fault::{Exit, Fault};
-use super::output::{self, Product};
+use super::output::{self, Product, Shown};
 use super::session::Session;
 use super::words;
 
@@ -59,7 +59,8 @@ pub(crate) fn run(
         let mesh = outcome.exact().solid().mesh();
         let options = output::write_options(&writing(Vec::new()), &session.limits);
         let picture = || trisect::render::mesh(mesh, &output::view(&arguments.drawing, None), None);
-        let product = Product { mesh, options, picture: &picture, documents: &[] };
+        let shown = Shown::new(&arguments.drawing, None, None);
+        let product = Product { mesh, options, picture: &picture, documents: &[], shown };
         output::write_all(&exact_targets, &product, &session.limits)?;
     }
     session.took("write", start);
@@ -128,7 +129,8 @@ fn write(
     };
     let empty = Writing::default();
     let options = output::write_options(&empty, &session.limits);
-    let product = Product { mesh: &mesh, options, picture: &picture, documents: &documents };
+    let shown = Shown::new(&arguments.drawing, None, None);
+    let product = Product { mesh: &mesh, options, picture: &picture, documents: &documents, shown };
     let (written, warnings) = output::write_all(targets, &product, &session.limits)?;
     session.note("outputs", written);
     for warning in warnings {

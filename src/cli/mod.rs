@@ -25,13 +25,17 @@ mod field_arguments;
 #[cfg(feature = "subdivision")]
 mod freeform;
 mod grid;
+mod half_spaces;
 mod held;
+mod imprint;
 mod info;
 mod json;
 mod limits;
 mod mended;
 mod operands;
 mod output;
+#[cfg(feature = "viewer")]
+mod page;
 mod progress;
 mod reading;
 mod recenter;
@@ -44,6 +48,7 @@ mod section;
 mod selection;
 mod session;
 mod slice;
+mod solidify;
 mod source;
 mod split;
 mod stage;
@@ -144,6 +149,8 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Section(section) => section::run(section, matches, &mut session),
             Verb::Split(split) => split::run(split, matches, &mut session),
             Verb::Trim(trim) => trim::run(trim, matches, &mut session),
+            Verb::Imprint(imprint) => imprint::run(imprint, matches, &mut session),
+            Verb::Solidify(solidify) => solidify::run(solidify, matches, &mut session),
             Verb::Check(check) => check::run(check, matches, &mut session),
             Verb::Info(info) => info::run(info, matches, &mut session),
             Verb::Convert(convert) => convert::run(convert, matches, &mut session),

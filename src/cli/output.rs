@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use trisect::io::{self, Format, Written};
 use trisect::render::{self, Picture};
-use trisect::{Error, Failure, Mesh};
+use trisect::{Error, Failure, Mesh, Outcome};
 
 use super::argument_groups::{Colours, Common, Drawing, Up, Writing};
 use super::crossings;
@@ -34,6 +34,9 @@ enum Kind {
     Forced(Format),
     Standard(Format),
     Picture,
+    /// A page that shows the mesh in a browser.
+    #[cfg(feature = "viewer")]
+    Page,
 }
 
 impl Target {
@@ -74,6 +77,8 @@ impl Target {
             Kind::Mesh(format) | Kind::Forced(format) | Kind::Standard(format) => {
                 matches!(format, Format::Stl | Format::Glb | Format::Gltf)
             }
+            #[cfg(feature = "viewer")]
+            Kind::Page => true,
             Kind::Picture => false,
         }
     }
@@ -82,6 +87,8 @@ impl Target {
     pub(crate) fn format(&self) -> String {
         match self.kind {
             Kind::Mesh(format) | Kind::Forced(format) | Kind::Standard(format) => format.extension().into(),
+            #[cfg(feature = "viewer")]
+            Kind::Page => "html".into(),
             Kind::Picture => "png".into(),
         }
     }
@@ -101,6 +108,24 @@ pub(crate) struct Product<'a> {
     pub(crate) picture: &'a dyn Fn() -> Picture,
     /// What else is written with it.
     pub(crate) documents: &'a [Document],
+    /// How a page shows it.
+    pub(crate) shown: Shown<'a>,
+}
+
+/// How a page shows a mesh.
+#[cfg_attr(not(feature = "viewer"), allow(dead_code, reason = "pages are left out"))]
+pub(crate) struct Shown<'a> {
+    /// The boolean that it is the result of, if it is of one.
+    pub(crate) outcome: Option<&'a Outcome>,
+    pub(crate) view: render::View,
+    pub(crate) colours: Option<Colours>,
+}
+
+impl<'a> Shown<'a> {
+    /// As pictures of a mesh that was read as `format` are.
+    pub(crate) fn new(drawing: &Drawing, format: Option<Format>, outcome: Option<&'a Outcome>) -> Self {
+        Self { outcome, view: view(drawing, format), colours: drawing.png_color }
+    }
 }
 
 /// The outputs a command line asks for.
@@ -131,6 +156,8 @@ pub(crate) fn targets(writing: &Writing, drawing: &Drawing, common: &Common) -> 
             if Format::from_path(path) == Some(format) { Kind::Mesh(format) } else { Kind::Forced(format) }
         } else if is_png(path) {
             Kind::Picture
+        } else if let Some(page) = page(path) {
+            page
         } else {
             Kind::Mesh(Format::from_path(path).ok_or_else(|| unknown_format(path))?)
         };
@@ -150,11 +177,25 @@ fn is_png(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"))
 }
 
+/// A page, if the name is one's.
+#[cfg(feature = "viewer")]
+fn page(path: &Path) -> Option<Kind> {
+    let extension = path.extension()?;
+    let is_page = ["html", "htm"].iter().any(|known| extension.eq_ignore_ascii_case(known));
+    is_page.then_some(Kind::Page)
+}
+
+#[cfg(not(feature = "viewer"))]
+fn page(_path: &Path) -> Option<Kind> {
+    None
+}
+
 fn unknown_format(path: &Path) -> Fault {
     Fault::usage(format!(
-        "cannot tell the format of {} by its name; known endings: {}, png; or add --output-format",
+        "cannot tell the format of {} by its name; known endings: {}, png{}; or add --output-format",
         path.display(),
-        Format::ALL.map(Format::extension).join(", ")
+        Format::ALL.map(Format::extension).join(", "),
+        if cfg!(feature = "viewer") { ", html" } else { "" }
     ))
 }
 
@@ -162,13 +203,15 @@ fn refuse_terminal(format: Format, ascii: bool) -> Result<(), Fault> {
     let binary = match format {
         Format::Glb => true,
         Format::Stl | Format::Ply => !ascii,
+        #[cfg(feature = "threemf")]
+        Format::ThreeMf => true,
         // Obj, Gltf and Off are text; a new format must be added here if it is not (the enum is open to this program).
         _ => false,
     };
     if binary && stdout().is_terminal() {
         return Err(Fault::usage(format!(
             "standard output is a terminal, and {format} is binary; send it to a file or a pipe{}",
-            if format == Format::Glb { "" } else { ", or add --ascii" }
+            if matches!(format, Format::Stl | Format::Ply) { ", or add --ascii" } else { "" }
         )));
     }
     Ok(())
@@ -220,7 +263,9 @@ pub(crate) fn write_all(
         let stage = Stage::new(&target.path, limits).map_err(|error| Fault::output(&target.path, error))?;
         let said = write_file(target, &stage.path(), product).map_err(|error| failed(target, error))?;
         warnings.extend(said_of(target, &said));
-        if let Some(rounding) = &said.rounding {
+        if let Some(rounding) =
+            said.rounding.as_ref().filter(|_| matches!(target.kind, Kind::Mesh(_) | Kind::Forced(_)))
+        {
             let crossing = crossings::in_file(&stage.path(), rounding, limits)?;
             warnings.extend(crossing.map(|warning| format!("{}: {warning}", target.name())));
         }
@@ -282,7 +327,21 @@ fn write_file(target: &Target, path: &Path, product: &Product<'_>) -> Result<Wri
             io::write_report(product.mesh, format, &mut file, &product.options)
         }
         Kind::Picture => (product.picture)().save_png(path).map(|()| Written::default()),
+        #[cfg(feature = "viewer")]
+        Kind::Page => {
+            let file = File::create(path).map_err(|source| file_error(path, source))?;
+            write_page(target, product, &mut std::io::BufWriter::new(file))
+        }
     }
+}
+
+/// Writes a page, named for its file.
+#[cfg(feature = "viewer")]
+fn write_page(target: &Target, product: &Product<'_>, out: &mut dyn Write) -> Result<Written, Error> {
+    let name = target.path.file_stem().unwrap_or_default().to_string_lossy();
+    let written = super::page::write(product.mesh, &product.shown, &name, &product.options, out)?;
+    out.flush().map_err(|source| file_error(&target.path, source))?;
+    Ok(written)
 }
 
 /// Writes to standard output or to a device, which cannot be replaced by a finished file.
@@ -300,6 +359,8 @@ fn write_stream(target: &Target, product: &Product<'_>) -> Result<Written, Error
             (product.picture)().write_png(&mut out).map_err(failed)?;
             Written::default()
         }
+        #[cfg(feature = "viewer")]
+        Kind::Page => write_page(target, product, &mut out)?,
     };
     out.flush().map_err(failed)?;
     Ok(written)

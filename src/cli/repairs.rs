@@ -11,6 +11,8 @@ pub(crate) struct Repairs {
     pub(crate) as_is: bool,
     /// Holes with up to so many edges are filled.
     pub(crate) fill_holes: Option<usize>,
+    /// What fills them is refined.
+    pub(crate) refine_holes: bool,
 }
 
 impl Repairs {
@@ -22,6 +24,7 @@ impl Repairs {
             closed_parts: self.closed_parts || all.closed_parts,
             as_is: self.as_is || all.as_is,
             fill_holes: self.fill_holes.or(all.fill_holes),
+            refine_holes: self.refine_holes || all.refine_holes,
         }
     }
 
@@ -29,9 +32,11 @@ impl Repairs {
     pub(crate) fn gate(self) -> Gate {
         let gate = match self.fill_holes {
             Some(most) => Gate::new().fill_holes(most),
+            None if self.refine_holes => Gate::new().fill_holes(usize::MAX),
             None => Gate::new(),
         };
-        gate.weld(self.weld)
+        gate.refine_holes(self.refine_holes)
+            .weld(self.weld)
             .orient(self.orient)
             .closed_parts(self.closed_parts)
             .as_is(self.as_is)
@@ -44,6 +49,7 @@ impl Repairs {
             (self.weld != Welding::Rounding, "--weld"),
             (self.closed_parts, "--closed-parts"),
             (self.fill_holes.is_some(), "--fill-holes"),
+            (self.refine_holes, "--refine-holes"),
         ];
         contradictions.into_iter().find(|&(is_asked, _)| self.as_is && is_asked).map(|(_, name)| name)
     }

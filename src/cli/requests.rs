@@ -164,6 +164,7 @@ fn placed_repairs(matches: &ArgMatches) -> Vec<(usize, Repairs)> {
     let flags = [
         ("orient", Repairs { orient: true, ..none }),
         ("closed_parts", Repairs { closed_parts: true, ..none }),
+        ("refine_holes", Repairs { refine_holes: true, ..none }),
         ("as_is", Repairs { as_is: true, ..none }),
     ];
     for (id, asked) in flags {

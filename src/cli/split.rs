@@ -5,7 +5,7 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::Value;
 use trisect::mesh::Gate;
-use trisect::{BooleanOptions, Expression, Mesh, Outcome, Solid};
+use trisect::{BooleanOptions, Cell, Expression, Mesh, Outcome, Solid};
 
 use super::argument_groups::{Colours, Results};
 use super::chosen;
@@ -13,13 +13,14 @@ use super::combine;
 use super::cut_arguments::Split;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Operand};
-use super::output::{self, Product, Target};
+use super::output::{self, Product, Shown, Target};
 use super::recenter;
 use super::report::{self, Measures};
 use super::requests::{self, Request};
 use super::scenes;
 use super::selection;
 use super::session::Session;
+use super::trim::{self, Sheet};
 use super::words;
 
 /// A part that is written to files of its own.
@@ -51,6 +52,7 @@ pub(crate) fn run(arguments: &Split, matches: &ArgMatches, session: &mut Session
     let mut requests = requests(arguments, matches)?;
     let writing = &arguments.results.writing;
     scenes::name_node(&mut requests, writing)?;
+    let sheet_requests = sheet_requests(arguments, requests.first())?;
     let targets = output::targets(writing, &arguments.results.drawing, session.common)?;
     if targets.is_empty() && !session.is_reported() {
         return Err(Fault::usage(
@@ -69,12 +71,20 @@ pub(crate) fn run(arguments: &Split, matches: &ArgMatches, session: &mut Session
     let operands = operands::operands(requests, assume_clean, &session.limits, &control, &session.console)?;
     session.took("read", start);
     combine::describe(&operands, Some(writing), session);
+    let mut sheets: Vec<Sheet> = Vec::new();
+    for (number, request) in sheet_requests.iter().enumerate() {
+        sheets.push(trim::sheet(request, number + 1, writing, &control, session)?);
+    }
     let start = Instant::now();
     let options = session
         .boolean_options(control)
         .rules(operands.iter().map(|operand| operand.request.rule))
         .assume_clean(assume_clean);
-    let parts = parts(arguments, &operands, &options, session)?;
+    let parts = if sheets.is_empty() {
+        parts(arguments, &operands, &options, session)?
+    } else {
+        between(&operands, &sheets, &options)?
+    };
     let seconds = session.took("run", start);
     let format = operands.first().map(|operand| operand.format);
     let style = combine::Style { format, options: write_options };
@@ -94,6 +104,32 @@ fn requests(arguments: &Split, matches: &ArgMatches) -> Result<Vec<Request>, Fau
     }
     requests::name_formats(&mut requests, arguments.inputs.reading.format)?;
     Ok(requests)
+}
+
+/// The surfaces that the input is parted by, mended as it is.
+fn sheet_requests(arguments: &Split, input: Option<&Request>) -> Result<Vec<Request>, Fault> {
+    let of_sheet = |path: &std::path::PathBuf| {
+        let (path, part) = chosen::split(path.clone());
+        let of_input = input.cloned().ok_or_else(|| Fault::usage("an input is needed"))?;
+        Ok(Request { path, part, transforms: Vec::new(), ..of_input })
+    };
+    let mut requests: Vec<Request> = arguments.sheet.iter().map(of_sheet).collect::<Result<_, Fault>>()?;
+    requests::name_formats(&mut requests, arguments.inputs.reading.format)?;
+    Ok(requests)
+}
+
+/// The cells between surfaces, the largest first.
+fn between(operands: &[Operand], sheets: &[Sheet], options: &BooleanOptions) -> Result<Vec<Part>, Fault> {
+    let [input, ..] = operands else { return Err(Fault::usage("an input is needed")) };
+    let surfaces: Vec<&Mesh> = sheets.iter().map(|sheet| &sheet.mesh).collect();
+    let mut cells = options.split(&input.solid, &surfaces)?;
+    cells.sort_by(|x, y| y.solid.volume().total_cmp(&x.solid.volume()));
+    let digits = cells.len().to_string().len();
+    let part = |(index, cell): (usize, Cell)| {
+        let operands = cell.origins.iter().map(|origin| origin.operand as usize).collect();
+        Part { operands, ..Part::of_solid(format!("-{:0digits$}", index + 1), cell.solid) }
+    };
+    Ok(cells.into_iter().enumerate().map(part).collect())
 }
 
 fn parts(
@@ -203,7 +239,8 @@ fn write(
             trisect::render::mesh(mesh, &output::view(&results.drawing, style.format), colours.as_deref())
         };
         let options = style.options.clone();
-        let product = Product { mesh, options, picture: &picture, documents: &[] };
+        let shown = Shown::new(&results.drawing, style.format, None);
+        let product = Product { mesh, options, picture: &picture, documents: &[], shown };
         let (written, warnings) = output::write_all(&targets, &product, &session.limits)?;
         warnings.into_iter().for_each(|warning| session.warn(warning));
         outputs.extend(written);

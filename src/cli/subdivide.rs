@@ -14,7 +14,7 @@ use super::cage_arguments::Subdivide;
 use super::cages;
 use super::documents;
 use super::fault::{Exit, Fault};
-use super::output::{self, Product, Target};
+use super::output::{self, Product, Shown, Target};
 use super::recenter;
 use super::report::Measures;
 use super::scenes;
@@ -111,7 +111,8 @@ fn write(
         _ => trisect::render::mesh(mesh, &output::view(drawing, None), None),
     };
     let options = output::write_options(writing, &session.limits);
-    let product = Product { mesh, options, picture: &picture, documents: &documents };
+    let shown = Shown::new(drawing, None, None);
+    let product = Product { mesh, options, picture: &picture, documents: &documents, shown };
     let (written, warnings) = output::write_all(targets, &product, &session.limits)?;
     for warning in warnings {
         session.warn(warning);

@@ -1,9 +1,10 @@
 //! What a verb wants of its operands: an operation, or expressions.
 
-use trisect::{BooleanOptions, Error, Expression, Operation, Outcome, Solid};
+use trisect::{BooleanOptions, Expression, Operation, Outcome, Solid};
 
 use super::arguments::Combination;
 use super::fault::Fault;
+use super::half_spaces::{self, HalfSpace};
 use super::requests::Request;
 
 /// What is wanted.
@@ -23,16 +24,22 @@ pub(crate) struct Part {
     /// Appended to the names of outputs; empty if there is but one expression.
     pub(crate) suffix: &'static str,
     pub(crate) expression: Expression,
+    /// Its last operands, which are no inputs.
+    pub(crate) half_spaces: Vec<HalfSpace>,
 }
 
 impl Task {
     /// What `combine` asks for, of so many inputs. Takes the names of operands off the paths.
     pub(crate) fn of(combination: &Combination, requests: &mut [Request]) -> Result<Self, Fault> {
         let names = names(requests);
-        let one = |name: String, expression| Self::Expressions(vec![Part { name, suffix: "", expression }]);
+        let one = |name: String, expression, half_spaces| {
+            Self::Expressions(vec![Part { name, suffix: "", expression, half_spaces }])
+        };
         if let Some(text) = &combination.expr {
+            let (named, of_half_spaces, half_spaces) = half_spaces::named(text)?;
+            let all = [&names[..], &of_half_spaces[..]].concat();
             let expression =
-                Expression::parse(text, &names).map_err(|error| Fault::usage(format!("--expr: {error}")))?;
+                Expression::parse(&named, &all).map_err(|error| Fault::usage(format!("--expr: {error}")))?;
             if let Some(unused) = (0..names.len()).find(|&i| !expression.operands().contains(&i)) {
                 return Err(Fault::usage(format!(
                     "--expr does not name operand {} ({})",
@@ -40,7 +47,7 @@ impl Task {
                     requests[unused].name()
                 )));
             }
-            return Ok(one(text.clone(), expression));
+            return Ok(one(text.clone(), expression, half_spaces));
         }
         let operand = Expression::Operand;
         if let Some(count) = combination.at_least {
@@ -48,7 +55,7 @@ impl Task {
                 return Err(Fault::usage(format!("--at-least {count} of {} inputs is nothing", names.len())));
             }
             let expression = Expression::AtLeast(count.into(), (0..names.len()).map(operand).collect());
-            return Ok(one(format!("what is in at least {count}"), expression));
+            return Ok(one(format!("what is in at least {count}"), expression, Vec::new()));
         }
         if names.len() != 2 {
             return Err(Fault::usage(format!("--all takes two inputs, and there are {}", names.len())));
@@ -57,6 +64,7 @@ impl Task {
             name: suffix[1..].to_owned(),
             suffix,
             expression,
+            half_spaces: Vec::new(),
         };
         let both = || vec![operand(0), operand(1)];
         Ok(Self::Expressions(vec![
@@ -108,22 +116,22 @@ impl Task {
     }
 
     /// The results, one for each suffix.
-    pub(crate) fn run(&self, options: &BooleanOptions, operands: &[&Solid]) -> Result<Vec<Outcome>, Error> {
+    pub(crate) fn run(&self, options: &BooleanOptions, operands: &[&Solid]) -> Result<Vec<Outcome>, Fault> {
         let all = operands.iter().copied();
         match self {
             Self::Operation(operation) => Ok(vec![options.run(*operation, all)?]),
             Self::Resolve => match operands {
                 [operand] => Ok(vec![options.resolve(operand)?]),
-                _ => {
-                    Err(Error::InvalidArgument(format!("resolve takes one operand, not {}", operands.len())))
-                }
+                _ => Err(Fault::usage(format!("resolve takes one operand, not {}", operands.len()))),
             },
             Self::Expressions(parts) if parts.len() == 1 => {
-                Ok(vec![options.evaluate(&parts[0].expression, all)?])
+                let Part { expression, half_spaces, .. } = &parts[0];
+                let more = half_spaces::solids(half_spaces, expression, operands)?;
+                Ok(vec![options.evaluate(expression, all.chain(&more))?])
             }
             Self::Expressions(parts) => {
                 let expressions: Vec<Expression> = parts.iter().map(|part| part.expression.clone()).collect();
-                options.evaluate_all(&expressions, all)
+                Ok(options.evaluate_all(&expressions, all)?)
             }
         }
     }

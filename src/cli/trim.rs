@@ -13,7 +13,7 @@ use super::cut_arguments::Trim;
 use super::fault::{Exit, Fault};
 use super::mended;
 use super::operands;
-use super::output::{self, Product};
+use super::output::{self, Product, Shown};
 use super::reading::{self, Input};
 use super::recenter;
 use super::report::Measures;
@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &Trim, matches: &ArgMatches, session: &mut Session<
     output::probe(&targets, &session.limits)?;
 
     let start = Instant::now();
-    let sheet = sheet(&request, writing, &control, session)?;
+    let sheet = sheet(&request, 0, writing, &control, session)?;
     let assume_clean = arguments.inputs.using.assume_clean;
     let solids = operands::operands(vec![by], assume_clean, &session.limits, &control, &session.console)?;
     session.took("read", start);
@@ -67,7 +67,8 @@ pub(crate) fn run(arguments: &Trim, matches: &ArgMatches, session: &mut Session<
         let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
         trisect::render::mesh(placed, &output::view(drawing, Some(sheet.format)), colours.as_deref())
     };
-    let product = Product { mesh: placed, options: write_options, picture: &picture, documents: &[] };
+    let shown = Shown::new(drawing, Some(sheet.format), None);
+    let product = Product { mesh: placed, options: write_options, picture: &picture, documents: &[], shown };
     let (outputs, warnings) = output::write_all(&targets, &product, &session.limits)?;
     warnings.into_iter().for_each(|warning| session.warn(warning));
     session.note("outputs", outputs);
@@ -77,31 +78,29 @@ pub(crate) fn run(arguments: &Trim, matches: &ArgMatches, session: &mut Session<
     Ok(Exit::Fine)
 }
 
-/// The surface that is trimmed.
-struct Sheet {
-    mesh: Mesh,
-    format: Format,
+/// A surface that may be open.
+pub(super) struct Sheet {
+    pub(super) mesh: Mesh,
+    pub(super) format: Format,
     /// Held while the mesh is.
     _reserved: Reservation,
 }
 
 /// Reads the surface, joins its vertices and turns its faces where that is asked for, and says what it is.
-fn sheet(
+pub(super) fn sheet(
     request: &Request,
+    number: usize,
     writing: &Writing,
     control: &Control,
     session: &mut Session<'_>,
 ) -> Result<Sheet, Fault> {
-    let of_sheet = |error: Error| error.of_operand(0, request.name());
+    let of_sheet = |error: Error| error.of_operand(number, request.name());
     let Input { mesh, format, mut warnings, contents, reserved } =
         reading::read(request, &session.limits, control).map_err(of_sheet)?;
-    warnings.extend(scenes::lost(&contents, writing, 0));
+    warnings.extend(scenes::lost(&contents, writing, number));
     let repairs = request.repairs;
     if repairs.closed_parts || repairs.fill_holes.is_some() {
-        warnings.push(
-            "--closed-parts and --fill-holes are for the solid: the surface that is trimmed stays open"
-                .into(),
-        );
+        warnings.push("--closed-parts and --fill-holes are for solids: this surface stays open".into());
     }
     for warning in warnings {
         session.warn(format!("{}: {warning}", request.name()));

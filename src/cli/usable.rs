@@ -179,7 +179,7 @@ fn remedy(
         let set_already = (has(weld) && repairs.weld != Welding::Rounding)
             || (has(orient) && repairs.orient)
             || (has(parts) && repairs.closed_parts)
-            || (has(fill) && repairs.fill_holes.is_some());
+            || (has(fill) && (repairs.fill_holes.is_some() || repairs.refine_holes));
         if set_already || (inwards && names != [orient]) {
             continue;
         }
@@ -188,6 +188,7 @@ fn remedy(
             orient: repairs.orient || has(orient),
             closed_parts: repairs.closed_parts || has(parts),
             fill_holes: if has(fill) { Some(usize::MAX) } else { repairs.fill_holes },
+            refine_holes: repairs.refine_holes,
             as_is: false,
         };
         sets.push((names.join(" "), asked));

@@ -12,7 +12,7 @@ const MEANT: [(&[&str], &str); 8] = [
     (&["explode", "separate", "parts"], "see `split`"),
     (
         &["repair", "fix", "heal"],
-        "see `check`, which says what is wrong, `resolve` for what crosses itself, and the options --weld, --orient, --fill-holes and --closed-parts of every verb",
+        "see `check`, which says what is wrong, `resolve` for what crosses itself, `solidify` for soups, and the options --weld, --orient, --fill-holes and --closed-parts of every verb",
     ),
     (&["hull", "offset", "minkowski", "decimate"], "there is no such operation"),
 ];

@@ -4,9 +4,7 @@
 //! high as it is long still gets its weights to some ten digits. What is found depends on the triangle and the point
 //! alone, and on an edge on nothing but the edge and the point, so that the triangles on both sides of it agree to the bit.
 
-use std::ops::{Add, Div, Mul, Sub};
-
-use super::double_double::DoubleDouble;
+use super::double_double::{DoubleDouble, Number, cross, dot};
 
 /// The nearest point of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -167,23 +165,6 @@ fn on_side(corners: &[[f64; 3]; 3], p: &[f64; 3], k: usize) -> (Place, f64) {
     let at = if squared > 0.0 { (dot(&way, &along) / squared).clamp(0.0, 1.0) } else { 0.0 };
     let off: [f64; 3] = [0, 1, 2].map(|k| (way[k] - at * along[k]) * power);
     (Place::Side { ends, at }, dot(&off, &off))
-}
-
-/// What weights are computed in.
-trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {}
-
-impl Number for f64 {}
-impl Number for DoubleDouble {}
-
-fn dot<T: Number>(x: &[T; 3], y: &[T; 3]) -> T {
-    x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
-}
-
-fn cross<T: Number>(x: &[T; 3], y: &[T; 3]) -> [T; 3] {
-    [0, 1, 2].map(|k| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        x[i] * y[j] - x[j] * y[i]
-    })
 }
 
 #[cfg(test)]

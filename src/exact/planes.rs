@@ -15,7 +15,7 @@
 //! lies: `n_k.X - d_k = -D4(f, g, h, k) / det(n_f, n_g, n_h)`.
 
 use super::Sign;
-use super::double_double::DoubleDouble;
+use super::double_double::{DoubleDouble, cross, dot};
 use super::integer::Integer;
 use super::lattice::Lattice;
 use super::near::{Near, round};
@@ -80,17 +80,6 @@ pub(super) fn near_meeting(faces: [[&[f64; 3]; 3]; 3]) -> Option<[Near; 3]> {
         near[k] = Near { value: DoubleDouble::from(reference[k]) + way, error };
     }
     Some(near)
-}
-
-fn cross(u: &[DoubleDouble; 3], v: &[DoubleDouble; 3]) -> [DoubleDouble; 3] {
-    std::array::from_fn(|k| {
-        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-        u[l] * v[m] - u[m] * v[l]
-    })
-}
-
-fn dot(u: &[DoubleDouble; 3], v: &[DoubleDouble; 3]) -> DoubleDouble {
-    u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 }
 
 /// The point in which three triangles' planes meet, each coordinate correctly rounded (to nearest, ties to even; a zero is

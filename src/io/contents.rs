@@ -19,6 +19,10 @@ pub struct Contents {
     pub extras: usize,
     /// How many material variants there are; materials are the usual ones.
     pub variants: usize,
+    /// How many pieces of metadata a package has.
+    pub metadata: usize,
+    /// How many files a package has besides its models: pictures of them, settings of slicers.
+    pub attachments: usize,
 }
 
 impl Contents {
@@ -49,9 +53,13 @@ impl Contents {
                 "{meshes} with morph targets taken in the shape of the weights, the targets are not kept"
             ));
         }
-        for (count, what) in
-            [(self.cameras, "camera"), (self.lights, "light"), (self.variants, "material variant")]
-        {
+        for (count, what) in [
+            (self.cameras, "camera"),
+            (self.lights, "light"),
+            (self.variants, "material variant"),
+            (self.metadata, "metadata entry"),
+            (self.attachments, "further file of the package"),
+        ] {
             if count > 0 {
                 sentences.push(format!("{} not kept", counted(count, what)));
             }
@@ -69,10 +77,12 @@ impl Contents {
 }
 
 fn counted(count: usize, what: &str) -> String {
-    match (count, what.ends_with("sh")) {
+    match (count, what) {
         (1, _) => format!("1 {what}"),
-        (_, true) => format!("{count} {what}es"),
-        (_, false) => format!("{count} {what}s"),
+        (_, "metadata entry") => format!("{count} metadata entries"),
+        (_, "further file of the package") => format!("{count} further files of the package"),
+        (_, what) if what.ends_with("sh") => format!("{count} {what}es"),
+        (_, what) => format!("{count} {what}s"),
     }
 }
 

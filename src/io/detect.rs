@@ -49,6 +49,11 @@ impl Format {
         if bytes.starts_with(b"glTF") {
             return Some(Self::Glb);
         }
+        #[cfg(feature = "threemf")]
+        if bytes.starts_with(ZIP) {
+            // Names of parts stand at the end of a package, in the clear.
+            return memchr::memmem::rfind(bytes, b".model").map(|_| Self::ThreeMf);
+        }
         if matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r' | b' ' | b'\t', ..]) {
             return Some(Self::Ply);
         }
@@ -73,6 +78,9 @@ impl Format {
     }
 }
 
+/// What ZIP archives begin with.
+const ZIP: &[u8] = b"PK\x03\x04";
+
 /// Whether the first statements are those of an OBJ file, a vertex among them.
 fn looks_like_obj(mut scanner: Scanner<'_>) -> bool {
     for _ in 0..64 {
@@ -94,7 +102,14 @@ fn looks_like_obj(mut scanner: Scanner<'_>) -> bool {
 /// What a file is that is none of the formats read here, and what to do about it.
 fn foreign(bytes: &[u8]) -> Option<&'static str> {
     let kinds: [(&[u8], &str); 16] = [
-        (b"PK\x03\x04", "a ZIP archive (3MF files are such); unpack or convert it first"),
+        (
+            ZIP,
+            if cfg!(feature = "threemf") {
+                "a ZIP archive without a 3MF model; unpack it first"
+            } else {
+                "a ZIP archive (3MF files are such); unpack or convert it first"
+            },
+        ),
         (b"\x1f\x8b", "compressed with gzip; unpack it first"),
         (b"BZh", "compressed with bzip2; unpack it first"),
         (b"\xfd7zXZ", "compressed with xz; unpack it first"),
@@ -158,6 +173,8 @@ mod tests {
         let error = detect("a.stl", b"PK\x03\x04 rest").unwrap_err().to_string();
         assert!(error.contains("ZIP"), "{error}");
         let error = detect("a.3mf", b"PK\x03\x04 rest").unwrap_err().to_string();
-        assert!(error.contains("a.3mf") && error.contains("3MF"), "{error}");
+        assert!(error.contains("3MF"), "{error}");
+        #[cfg(feature = "threemf")]
+        assert_eq!(detect("a.3mf", b"PK\x03\x04 3D/a.model").unwrap().format, Format::ThreeMf);
     }
 }

@@ -19,10 +19,18 @@ pub enum Format {
     Ply,
     /// Geomview OFF.
     Off,
+    /// 3MF, the package of slicers.
+    #[cfg(feature = "threemf")]
+    ThreeMf,
 }
 
 impl Format {
     /// Every format.
+    #[cfg(feature = "threemf")]
+    pub const ALL: [Self; 7] =
+        [Self::Obj, Self::Gltf, Self::Glb, Self::Stl, Self::Ply, Self::Off, Self::ThreeMf];
+    /// Every format.
+    #[cfg(not(feature = "threemf"))]
     pub const ALL: [Self; 6] = [Self::Obj, Self::Gltf, Self::Glb, Self::Stl, Self::Ply, Self::Off];
 
     /// The format's usual file extension, in lower case and without the dot.
@@ -35,6 +43,8 @@ impl Format {
             Self::Stl => "stl",
             Self::Ply => "ply",
             Self::Off => "off",
+            #[cfg(feature = "threemf")]
+            Self::ThreeMf => "3mf",
         }
     }
 
@@ -61,6 +71,8 @@ impl fmt::Display for Format {
             Self::Stl => "STL",
             Self::Ply => "PLY",
             Self::Off => "OFF",
+            #[cfg(feature = "threemf")]
+            Self::ThreeMf => "3MF",
         })
     }
 }

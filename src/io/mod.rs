@@ -1,4 +1,4 @@
-//! Reading and writing mesh files: OBJ, glTF and GLB, STL, PLY, OFF.
+//! Reading and writing mesh files: OBJ, glTF and GLB, STL, PLY, OFF, 3MF.
 //!
 //! [`Mesh::load`](crate::Mesh::load) and [`Mesh::save`](crate::Mesh::save) are the short way; [`load`] and [`save`]
 //! take options and return warnings; [`read`] and [`write()`] work on bytes and streams.
@@ -48,6 +48,8 @@ mod rounding;
 mod scan;
 mod stl;
 mod text;
+#[cfg(feature = "threemf")]
+mod threemf;
 mod weld;
 
 use std::io::Write;
@@ -100,6 +102,12 @@ pub fn read(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Loade
         Format::Stl => stl::read(bytes, options)?,
         Format::Ply => ply::read(bytes, options)?,
         Format::Off => off::read(bytes, options)?,
+        #[cfg(feature = "threemf")]
+        Format::ThreeMf => {
+            let (mesh, held, warnings) = threemf::read(bytes, options)?;
+            contents = held;
+            (mesh, warnings)
+        }
     };
     if mesh.is_empty() {
         warnings.push("the file has no triangles".to_string());
@@ -172,6 +180,8 @@ fn write_to(
         Format::Stl => without_attributes(mesh, format, stl::write(mesh, output, options)?),
         Format::Ply => ply::write(mesh, output, options)?,
         Format::Off => without_attributes(mesh, format, off::write(mesh, output, options)?),
+        #[cfg(feature = "threemf")]
+        Format::ThreeMf => threemf::write(mesh, output, options)?,
     };
     if options.scene.is_some() && !matches!(format, Format::Gltf | Format::Glb) {
         written.warnings.insert(0, format!("{format} has no scenes: the mesh is written alone"));

@@ -1,5 +1,7 @@
 //! Statements of material libraries that name pictures.
 
+use crate::mesh::TextureMatrix;
+
 /// Whether a statement of a library names a picture.
 pub(super) fn names_picture(keyword: &str) -> bool {
     keyword.starts_with("map_") && keyword != "map_aat"
@@ -12,6 +14,14 @@ pub(super) struct MapOptions {
     pub(super) scale: [f64; 2],
     pub(super) offset: [f64; 2],
     pub(super) clamp: bool,
+}
+
+impl MapOptions {
+    /// What becomes of coordinates from the upper edge: the options count from the lower one.
+    pub(super) fn transform(&self) -> TextureMatrix {
+        let ([width, height], [x, y]) = (self.scale, self.offset);
+        [[width, 0.0, x], [0.0, height, 1.0 - height - y]]
+    }
 }
 
 /// A statement that names a picture, in its parts.

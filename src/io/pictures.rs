@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 use std::fs;
+use std::hash::{BuildHasher as _, RandomState};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -28,8 +29,16 @@ pub(super) fn of_material(material: &Material) -> impl Iterator<Item = &Arc<Imag
 pub(super) fn of_mesh(mesh: &Mesh) -> Vec<Arc<Image>> {
     let mut list: Vec<Arc<Image>> = Vec::new();
     let mut seen: HashSet<*const Image> = HashSet::new();
+    // Pictures by what they are, so that many different ones are not compared with each other.
+    let mut known: HashMap<u64, Vec<usize>> = HashMap::new();
+    let state = RandomState::new();
     for image in mesh.groups.list.iter().filter_map(|group| group.material.as_ref()).flat_map(of_material) {
-        if seen.insert(Arc::as_ptr(image)) && !list.iter().any(|known| **known == **image) {
+        if !seen.insert(Arc::as_ptr(image)) {
+            continue;
+        }
+        let alike = known.entry(state.hash_one((&image.file, &image.text, &image.bytes))).or_default();
+        if !alike.iter().any(|&other| *list[other] == **image) {
+            alike.push(list.len());
             list.push(Arc::clone(image));
         }
     }

@@ -42,6 +42,11 @@ impl<T: Copy + Default> Buckets<T> {
         &mut self.items[range]
     }
 
+    /// The number of items.
+    pub(crate) fn total(&self) -> usize {
+        self.items.len()
+    }
+
     /// The number of keys.
     pub(crate) fn len(&self) -> usize {
         self.starts.len() - 1

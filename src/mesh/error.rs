@@ -69,6 +69,18 @@ pub enum MeshError {
     /// A distance to weld by that is negative or not finite.
     #[error("the welding distance must be finite and not negative, not {0}")]
     WeldingDistance(f64),
+    /// A surface that is to part a solid does not pass through it.
+    #[error(
+        "the surface ends inside the solid, at ({}, {}, {}), beside its triangle {triangle}: what it parts there is one piece; \
+         extend it past the solid or up to another surface, or imprint it only",
+        position[0], position[1], position[2]
+    )]
+    EndsInside {
+        /// A place of the surface that has the same piece of the solid on both sides.
+        position: [f64; 3],
+        /// The triangle of the surface there.
+        triangle: u32,
+    },
     /// A transform that would flatten the mesh, or is none.
     #[error("{0}")]
     Transform(TransformFault),

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use super::clean::{self, Cleaned, Weld};
 use super::diagnose::diagnose_tried;
-use super::measure::signed_volume;
+use super::measure::{self, signed_volume};
 use super::mend::{self, Leave, Mending};
 use super::{Bounds, Cleaning, Links, Mesh, MeshError, Solid, attributes, chain, orient, shells};
 use crate::parallel::join;
@@ -35,6 +35,7 @@ pub struct Gate {
     closed_parts: bool,
     single_shells: bool,
     fill_holes: Option<usize>,
+    refine_holes: bool,
 }
 
 /// Which vertices of open edges are made one, besides those at equal coordinates.
@@ -114,6 +115,14 @@ impl Gate {
         self
     }
 
+    /// Whether what fills holes gets new vertices, until its edges are as long as those around, and is bent on like the surface around
+    /// it. Default: false. [`Solid::mending`] tells how many vertices there are.
+    #[must_use]
+    pub fn refine_holes(mut self, refine: bool) -> Self {
+        self.refine_holes = refine;
+        self
+    }
+
     /// Makes a solid of a mesh. A few nanoseconds a triangle where it is closed by its indices; O(n log n) otherwise.
     ///
     /// # Errors
@@ -182,16 +191,21 @@ impl Gate {
     fn cleaned(&self, mesh: &Mesh) -> Result<Solid, MeshError> {
         clean::check_corners(mesh)?;
         let mut cleaned = clean::clean(&mesh.positions, &mesh.triangles, Weld::Exact);
-        let mut mending = None;
+        let (mut mending, mut refined) = (None, None);
         if !cleaned.closed {
-            let Some((triangles, source, done)) = self.mended(mesh, &cleaned) else {
+            let Some((mut triangles, mut source, mut done)) = self.mended(mesh, &cleaned) else {
                 return Err(MeshError::NotClosed(Box::new(diagnose_tried(mesh, !self.as_is))));
             };
+            if self.refine_holes && done.filled_triangles > 0 {
+                let refined = refined.insert(mesh.clone());
+                refine(refined, &mut triangles, &mut source, &mut done);
+            }
+            let mesh = refined.as_ref().unwrap_or(mesh);
             let chain = chain::examine(&triangles, mesh.positions.len());
             cleaned.edge_manifold = chain.is_ok_and(|chain| chain.edge_manifold);
             (cleaned.triangles, cleaned.source, mending) = (triangles, source, Some(Box::new(done)));
         }
-        assemble(mesh, cleaned, mending, self.orient)
+        assemble(refined.as_ref().unwrap_or(mesh), cleaned, mending, self.orient)
     }
 
     /// What mending makes of a mesh that is not closed.
@@ -226,6 +240,18 @@ impl Gate {
             .or_else(filled)
             .or_else(|| if self.closed_parts { parts() } else { None })?;
         Some((mended.triangles, mended.source, mended.report))
+    }
+}
+
+/// Refines the fillings of holes, which are the last of some triangles.
+fn refine(mesh: &mut Mesh, triangles: &mut Vec<[u32; 3]>, source: &mut Vec<u32>, done: &mut Mending) {
+    let (first, vertices) = (triangles.len() - done.filled_triangles, mesh.positions.len());
+    mend::refine(&mut mesh.positions, triangles, source, first);
+    done.filled_triangles = triangles.len() - first;
+    done.filled_vertices = mesh.positions.len() - vertices;
+    let filling = &triangles[first..];
+    if let Some(bounds) = Bounds::of(filling.iter().flatten().map(|&v| &mesh.positions[v as usize])) {
+        done.filled_area = measure::area(&mesh.positions, filling, &bounds);
     }
 }
 

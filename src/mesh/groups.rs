@@ -41,7 +41,7 @@ impl FaceGroups {
     }
 
     /// Keeps of the assignment what the triangles `kept` have, in that order. The list stays as it is.
-    pub(super) fn select(&mut self, kept: &[u32]) {
+    pub(crate) fn select(&mut self, kept: &[u32]) {
         if !self.is_empty() {
             let group = |&triangle: &u32| self.of_triangle.get(triangle as usize).copied();
             self.of_triangle = kept.iter().filter_map(group).collect();

@@ -68,8 +68,9 @@ pub use material::{
     Image, Material, MaterialLanguage, MaterialText, Texture, TextureMatrix, TextureUse, Wrap,
 };
 pub(crate) use measure::enclosed_volume;
-pub use mend::Mending;
+pub(crate) use mend::Soup;
 pub(crate) use mend::fan_around_splits;
+pub use mend::{Mending, Readied};
 pub(crate) use normals::{area_vector, cross, unit};
 pub use places::{Fault, Place};
 #[cfg(feature = "formats")]

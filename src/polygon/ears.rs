@@ -60,8 +60,8 @@ pub(super) struct EarClipper {
 
 impl EarClipper {
     /// Triangulates a closed loop into triangles that use each of its edges once: `n - 2`, less those that name a vertex
-    /// twice. Where no ear is left, a corner without area is cut off (the shape stays what it is), and only then the least
-    /// bad one. At least quadratic in the number of corners.
+    /// twice. Where no ear is left, a corner without area is cut off (the shape stays what it is), and only then the one
+    /// with the least area. At least quadratic in the number of corners.
     pub(super) fn clip(
         &mut self,
         points: &[[f64; 2]],
@@ -272,18 +272,19 @@ impl EarClipper {
         orient2d(at, target, before) != Sign::Negative && orient2d(at, target, after) != Sign::Positive
     }
 
-    /// The corner to cut off when there is no ear: the best-shaped convex one, else the flattest.
+    /// The corner to cut off when there is no ear: the one with the least area, whichever way it turns, since that is what the
+    /// shape is changed by.
     fn least_bad(&self, points: &[[f64; 2]], some: u32, left: usize) -> u32 {
-        let shape = |link: u32| {
+        let area = |link: u32| {
             let [a, b, c] = self.corners(link).map(|v| points[v as usize]);
-            triangle_quality(a, b, c)
+            ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
         };
-        let mut best = (some, shape(some));
+        let mut best = (some, area(some));
         let mut link = self.links[some as usize].next;
         for _ in 1..left {
-            let quality = shape(link);
-            if quality > best.1 {
-                best = (link, quality);
+            let area = area(link);
+            if area < best.1 {
+                best = (link, area);
             }
             link = self.links[link as usize].next;
         }

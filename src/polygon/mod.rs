@@ -18,7 +18,7 @@ use delaunay::Bridges;
 
 pub(crate) use delaunay::{Conflict, Overlay, fill_region};
 pub(crate) use face::{FaceTriangulator, Tiling};
-pub(crate) use region::{Region, fill_wound, polygons};
+pub(crate) use region::{Region, fill_wound, polygons, polygons_of_loops};
 pub(crate) use winding::{Edge, Found, by_winding, cross_properly};
 
 /// Area inside a ring, negative where it runs clockwise.

@@ -37,7 +37,11 @@ pub(crate) fn fill_wound(points: &[[f64; 2]], edges: &[[u32; 2]]) -> Region {
 /// The loops of edges that bound a region to their left, as polygons: an outline each, counter-clockwise, then its holes. Every edge
 /// is in one loop. O(n log n), and besides O(h p) for h holes and p polygons.
 pub(crate) fn polygons(points: &[[f64; 2]], edges: &[[u32; 2]]) -> Vec<Vec<Vec<u32>>> {
-    let loops = Tracer::default().trace(points, edges);
+    polygons_of_loops(points, Tracer::default().trace(points, edges))
+}
+
+/// The same of loops that neither cross nor touch.
+pub(crate) fn polygons_of_loops(points: &[[f64; 2]], loops: Vec<Vec<u32>>) -> Vec<Vec<Vec<u32>>> {
     let polygons = holes::group(points, loops);
     polygons
         .into_iter()

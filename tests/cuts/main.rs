@@ -5,7 +5,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod models;
+mod partitions;
 mod parts;
 mod planes;
 mod sections;
 mod sheets;
+mod soups;

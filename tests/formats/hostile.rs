@@ -26,6 +26,9 @@ fn seeds() -> Vec<(Format, Vec<u8>)> {
         "rgb_cube_with_primitives.gltf",
         "BoxInterleaved.glb",
         "nested-quantized.glb",
+        "nested-draco.glb",
+        #[cfg(feature = "threemf")]
+        "vertex-colours.3mf",
     ] {
         let bytes = std::fs::read(fixture(name)).unwrap();
         files.push((Format::from_content(&bytes).unwrap(), bytes));

@@ -165,3 +165,116 @@ fn an_open_surface_is_trimmed() {
     folder.run("trim torn.obj --weld 0.01 block.off --inside -o in.obj").exits(0).says("2 vertices welded");
     folder.run("trim sheet.obj --fill-holes block.off --inside -o in.obj").exits(0).says("stays open");
 }
+
+#[test]
+fn caps_show_what_is_asked_for() {
+    let folder = Folder::new();
+    let block = crate::common::program::cube([0.0; 3], [2.0; 3]);
+    folder.write("a.mtl", "newmtl red\nKd 1 0 0\n");
+    folder.write("a.obj", format!("mtllib a.mtl\nvn 0 0 1\no body\nusemtl red\n{block}"));
+    folder.run("convert a.obj --normals flat -o block.glb").exits(0);
+    let on_cap = |mesh: &Mesh| -> Vec<usize> {
+        let is_on = |triangle: &[u32; 3]| {
+            triangle.iter().all(|&v| (mesh.positions[v as usize][2] - 1.0).abs() < 1e-6)
+        };
+        (0..mesh.triangles.len()).filter(|&t| is_on(&mesh.triangles[t])).collect()
+    };
+    for (options, name, material) in [
+        ("", "", None),
+        ("--cut-material body", "body", Some("red")),
+        ("--cut-material brass --cut-uv planar:0.5", "brass", Some("brass")),
+        ("--cap lid", "lid", None),
+    ] {
+        folder.run(&format!("cut block.glb --plane z=1 --keep below {options} -o half.glb")).exits(0);
+        let mesh = Mesh::load(folder.path("half.glb")).expect("a mesh");
+        let cap = on_cap(&mesh);
+        assert_eq!(cap.len(), 2, "{options}");
+        for &triangle in &cap {
+            let group = &mesh.groups.list[mesh.groups.of_triangle[triangle] as usize];
+            assert_eq!(group.name, name, "{options}");
+            if name != "lid" {
+                assert_eq!(
+                    group.material.as_ref().map(|material| material.name.as_str()),
+                    material,
+                    "{options}"
+                );
+            }
+            let normals = mesh.attribute("NORMAL").expect("normals");
+            assert_eq!(normals.at(triangle, 0), Some(&[0.0, 0.0, 1.0][..]), "{options}");
+            let uv = mesh.attribute("TEXCOORD_0").and_then(|uv| uv.at(triangle, 1));
+            assert_eq!(uv.is_some(), options.contains("planar"), "{options}");
+        }
+    }
+    folder.run("cut block.glb --plane z=1 --cap lid --cut-material body -o half.glb").exits(1);
+}
+
+/// A wide square at a height, from one x to another.
+fn square(from: f64, to: f64, height: f64) -> Mesh {
+    let corners = vec![[from, -9.0, height], [to, -9.0, height], [to, 9.0, height], [from, 9.0, height]];
+    Mesh::new(corners, vec![[0, 1, 2], [0, 2, 3]])
+}
+
+#[test]
+fn surfaces_part_a_solid_or_are_refused() {
+    let folder = folder();
+    square(-9.0, 9.0, 1.0).save(folder.path("through.off")).expect("written");
+    square(-9.0, 1.5, 2.0).save(folder.path("short.off")).expect("written");
+    folder.run("split block.off --sheet through.off -o cell.off").exits(0).says("2 parts");
+    assert_eq!([volume(&folder, "cell-1.off"), volume(&folder, "cell-2.off")], [18.0, 6.0]);
+    folder
+        .run("split block.off --sheet through.off --sheet short.off -o cell.off")
+        .exits(3)
+        .says("ends inside the solid");
+    folder.run("split block.off --sheet through.off --groups -o cell.off").exits(1);
+}
+
+#[test]
+fn curves_are_drawn_on_two_files() {
+    let folder = folder();
+    square(-9.0, 9.0, 1.0).save(folder.path("sheet.off")).expect("written");
+    folder.run("imprint block.off sheet.off -o marked.off").exits(0);
+    let [block, sheet] =
+        ["marked-1.off", "marked-2.off"].map(|name| Mesh::load(folder.path(name)).expect("a mesh"));
+    assert_eq!((block.volume(), sheet.area()), (24.0, 18.0 * 18.0));
+    let common = block.positions.iter().filter(|point| sheet.positions.contains(point)).count();
+    assert!(common >= 4, "{common}");
+    folder.run("imprint block.off -o marked.off").exits(1);
+}
+
+#[test]
+fn a_soup_becomes_a_solid() {
+    let folder = folder();
+    let object = folder.run("solidify open.off -o made.off --json").exits(0).json();
+    let report = &object["result"]["solidify"];
+    assert_eq!((report["cells_inside"].as_u64(), report["still_crossing"].as_u64()), (Some(1), Some(0)));
+    assert!(report["added_area"].as_f64().is_some_and(|area| area > 0.0));
+    folder.run("check made.off").exits(0);
+    square(0.0, 1.0, 0.0).save(folder.path("flat.off")).expect("written");
+    folder.run("solidify flat.off -o nothing.off").exits(0).says("enclose nothing");
+    folder.run("solidify open.off two.off -o made.off").exits(1);
+}
+
+#[test]
+fn half_spaces_are_operands_of_expressions() {
+    let folder = folder();
+    let run = |text: &str| folder.run_args(&["combine", "--expr", text, "block.off", "-o", "made.off"]);
+    run("a & below(z=1) - above(x=1.5)").exits(0);
+    assert_eq!(volume(&folder, "made.off"), 1.5 * 3.0);
+    run("a & above(z=9)").exits(0);
+    assert_eq!(volume(&folder, "made.off"), 0.0);
+    run("a + above(z=1)").exits(1).says("unbounded");
+    run("a - above(1,1,1,0)").exits(1).says("z=");
+}
+
+#[test]
+fn what_fills_holes_is_refined_if_that_is_asked_for() {
+    let folder = folder();
+    let mut wide = primitives::geodesic_sphere(1.0, 12).expect("a ball");
+    let positions = wide.positions.clone();
+    wide.triangles.retain(|corners| corners.iter().all(|&v| positions[v as usize][2] < 0.7));
+    wide.save(folder.path("wide.off")).expect("written");
+    folder.run("union wide.off --refine-holes -o fair.off").exits(0).says("new vertices");
+    folder.run("union wide.off --fill-holes -o flat.off").exits(0);
+    assert!(volume(&folder, "fair.off") > volume(&folder, "flat.off"));
+    folder.run("union open.off --refine-holes --as-is -o fair.off").exits(1);
+}

@@ -14,6 +14,10 @@ mod engine;
 mod eval;
 mod kept;
 mod operations;
+#[cfg(feature = "threemf")]
+mod packages;
+#[cfg(feature = "viewer")]
+mod pages;
 mod parts;
 mod repairs;
 mod streams;

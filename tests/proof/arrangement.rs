@@ -446,3 +446,49 @@ fn what_is_wound_around_inwards_is_told() {
         assert_eq!((winding_volume, inward_volume), (15.0, 1.0));
     }
 }
+
+#[test]
+fn what_lies_between_crossings_is_what_walking_over_all_of_it_makes() {
+    // A second body that touches itself in a vertex: then no patches are made, and every face is walked over.
+    let pinched = || {
+        let tetrahedron = |s: f64| {
+            Mesh::new(
+                vec![[0.0; 3], [s, 0.0, 0.0], [0.0, s, 0.0], [0.0, 0.0, s]],
+                if s > 0.0 {
+                    vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]
+                } else {
+                    vec![[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]
+                },
+            )
+        };
+        let mut both = tetrahedron(0.5);
+        let other = tetrahedron(-0.5);
+        both.triangles
+            .extend(other.triangles.iter().map(|corners| corners.map(|v| if v == 0 { 0 } else { v + 3 })));
+        both.positions.extend(&other.positions[1..]);
+        both
+    };
+    for seed in 0..rounds(12) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        // A ball with spikes that cross each other and the ball.
+        let mut mesh = primitives::geodesic_sphere(3.0, 8).unwrap();
+        for _ in 0..rng.random_range(1..6) {
+            let spike = primitives::cone(0.3, 2.5, 7).unwrap();
+            let angle = rng.random_range(0.0..360.0);
+            let axis = std::array::from_fn(|_| rng.random_range(-1.0..1.0f64));
+            let at = std::array::from_fn(|_| rng.random_range(-2.0..2.0));
+            mesh.append(&spike.rotated(axis, angle).unwrap().translated(at)).unwrap();
+        }
+        let mut with_pinched = mesh.clone();
+        with_pinched.append(&pinched().translated([20.0, 0.0, 0.0])).unwrap();
+        let [alone, beside] = [mesh, with_pinched].map(|mesh| {
+            let solid = Solid::try_from(mesh).unwrap();
+            BooleanOptions::new().resolve(&solid).unwrap()
+        });
+        let extra = Solid::try_from(pinched()).unwrap().volume();
+        let (v, w) = (alone.solid().volume(), beside.solid().volume() - extra);
+        assert!((v - w).abs() <= 1e-12 * v, "seed {seed}: {v} and {w}");
+        let [x, y] = [&alone, &beside].map(|outcome| outcome.solid().mesh().triangles.len());
+        assert_eq!(x + 8, y, "seed {seed}");
+    }
+}

@@ -1,5 +1,6 @@
 //! The general arrangement as one value, built step by step.
 
+use super::cells::{Beside, CellCount, Cells, Ground};
 use super::crossings::Crossings;
 use super::edges::{Edges, MOST_FACES};
 use super::lines::Lines;
@@ -16,7 +17,7 @@ use crate::boolean::complex::planes::look_same_way;
 use crate::control::Reservation;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
-use crate::{Error, Solid};
+use crate::{Error, Mesh, Solid};
 
 /// All that results are cut from.
 #[derive(Debug)]
@@ -48,7 +49,34 @@ pub(crate) struct Crossed {
     locality: Locality,
     /// By piece of surface, its last vertex in x.
     last: Vec<Option<VertexId>>,
+    /// The faces near crossings, ascending: all whose edges matter.
+    walked_over: Vec<FaceId>,
     _memory: Reservation,
+}
+
+/// What crossings are found on.
+struct Ready {
+    surfaces: Surfaces,
+    edges: Edges,
+    bounds: Bounds,
+    boxes: Option<FaceBoxes>,
+    locality: Locality,
+    last: Vec<Option<VertexId>>,
+    walked_over: Vec<FaceId>,
+    memory: Reservation,
+}
+
+/// Memory for the tables whose size the operands give.
+fn reserve(meshes: &[&Mesh], runner: Runner<'_>) -> Result<Reservation, Error> {
+    let triangles: usize = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+    let vertices: usize = meshes.iter().map(|mesh| mesh.positions.len()).sum();
+    if triangles >= MOST_FACES || vertices >= MOST_FACES {
+        return Err(Error::TooLarge {
+            what: format!("{triangles} triangles with {vertices} vertices in one arrangement"),
+        });
+    }
+    let bytes = vertices * BYTES_PER_VERTEX + triangles * BYTES_PER_TRIANGLE;
+    Ok(runner.control.reserve(bytes as u64)?)
 }
 
 impl Crossed {
@@ -56,18 +84,11 @@ impl Crossed {
     ///
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where faces or points cannot be numbered.
-    pub(crate) fn new(operands: &[&Solid], groups: &[Vec<u32>], runner: Runner<'_>) -> Result<Self, Error> {
-        let triangles: usize = operands.iter().map(|solid| solid.mesh().triangles.len()).sum();
-        let vertices: usize = operands.iter().map(|solid| solid.mesh().positions.len()).sum();
-        if triangles >= MOST_FACES || vertices >= MOST_FACES {
-            return Err(Error::TooLarge {
-                what: format!("{triangles} triangles with {vertices} vertices in one arrangement"),
-            });
-        }
-        let bytes = vertices * BYTES_PER_VERTEX + triangles * BYTES_PER_TRIANGLE;
-        let memory = runner.control.reserve(bytes as u64)?;
+    pub(crate) fn new(operands: &[&Solid], runner: Runner<'_>) -> Result<Self, Error> {
+        let meshes: Vec<&Mesh> = operands.iter().map(|solid| solid.mesh()).collect();
+        let memory = reserve(&meshes, runner)?;
         // 1. All operands as one complex, in general position.
-        let mut surfaces = Surfaces::new(operands, groups);
+        let mut surfaces = Surfaces::new(&meshes);
         let bounds = operands.iter().filter_map(|solid| solid.bounds());
         let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
         let is_simple = |solid: &&Solid| solid.is_simple_complex();
@@ -85,14 +106,67 @@ impl Crossed {
         surfaces.set_components(components);
         surfaces.set_near(&pairs);
         let last = seeds::last_vertices(&surfaces);
-        let mut edges = all_edges.unwrap_or_else(|| {
-            surfaces.edges_of(&locality.walked_over(&surfaces, last.iter().copied().flatten()))
-        });
+        let walked_over = match all_edges {
+            Some(_) => surfaces.faces().collect(),
+            None => locality.walked_over(&surfaces, last.iter().copied().flatten()),
+        };
+        let edges = all_edges.unwrap_or_else(|| surfaces.edges_of(&walked_over));
+        let ready = Ready { surfaces, edges, bounds, boxes, locality, last, walked_over, memory };
+        Self::cross(ready, &pairs, runner)
+    }
+
+    /// The same of meshes that need not be closed. All their faces are walked over.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(crate) fn of_open(meshes: &[&Mesh], runner: Runner<'_>) -> Result<Self, Error> {
+        let memory = reserve(meshes, runner)?;
+        let mut surfaces = Surfaces::new(meshes);
+        let bounds = meshes.iter().filter_map(|mesh| mesh.bounds());
+        let bounds = bounds.reduce(Bounds::united).unwrap_or(Bounds::NOTHING);
+        let edges = surfaces.separate();
+        let boxes = FaceBoxes::new(&surfaces, &bounds);
+        let pairs = boxes.pairs(&surfaces, runner, |_| true)?;
+        let (locality, components) = Locality::everywhere(&surfaces);
+        surfaces.set_components(components);
+        surfaces.set_near(&pairs);
+        surfaces.extend_borders(&edges);
+        let (boxes, last, walked_over) = (Some(boxes), Vec::new(), surfaces.faces().collect());
+        let ready = Ready { surfaces, edges, bounds, boxes, locality, last, walked_over, memory };
+        Self::cross(ready, &pairs, runner)
+    }
+
+    /// 2. Which faces cross.
+    fn cross(ready: Ready, pairs: &[[FaceId; 2]], runner: Runner<'_>) -> Result<Self, Error> {
+        let Ready { surfaces, mut edges, bounds, boxes, locality, last, walked_over, memory } = ready;
         let contacts = seeds::sort_radially(&surfaces, &mut edges);
-        // 2. Which faces cross.
-        let crossings = Crossings::find(&surfaces, &edges, &pairs, runner)?;
+        let crossings = Crossings::find(&surfaces, &edges, pairs, runner)?;
         let contacts = contacts + crossings.contacts;
-        Ok(Self { surfaces, edges, crossings, contacts, bounds, boxes, locality, last, _memory: memory })
+        Ok(Self {
+            surfaces,
+            edges,
+            crossings,
+            contacts,
+            bounds,
+            boxes,
+            locality,
+            last,
+            walked_over,
+            _memory: memory,
+        })
+    }
+
+    /// The triangles of an operand that are near crossings, ascending: others stay as they are.
+    pub(crate) fn near(&self, operand: u32) -> Vec<u32> {
+        let own = self.walked_over.iter().filter(|&&face| self.surfaces.owner(face) == operand);
+        own.map(|&face| self.surfaces.triangle(face)).collect()
+    }
+
+    /// Says which group of the result each triangle of each operand belongs to; empty lists where there are no groups. Only
+    /// those [near](Self::near) crossings are asked for theirs.
+    pub(crate) fn with_groups(mut self, groups: Vec<Vec<u32>>) -> Self {
+        self.surfaces.set_groups(groups);
+        self
     }
 
     /// The faces that cross others or lie on others, ascending, as triangles of their operands.
@@ -111,21 +185,69 @@ impl General {
     ///
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where points cannot be numbered.
-    pub(crate) fn new(crossed: Crossed, fuse: bool, runner: Runner<'_>) -> Result<Self, Error> {
-        let Crossed { surfaces, edges, crossings, mut contacts, bounds, boxes, locality, last, _memory } =
-            crossed;
-        let cut: Vec<FaceId> = surfaces.faces().filter(|&face| !crossings.of_face(face).is_empty()).collect();
-        // 3. Three-face points.
-        let (triples, contacts_of_triples) = triples::find(&surfaces, &edges, &crossings, &cut, runner)?;
-        // 4. Where all points are, and their order.
-        let lines = Lines::new(&surfaces, &edges, &crossings, triples, runner)?;
+    pub(crate) fn new(mut crossed: Crossed, fuse: bool, runner: Runner<'_>) -> Result<Self, Error> {
+        let placed = Placed::new(&crossed, runner)?;
+        let boxes = crossed.boxes.take();
+        let Crossed { surfaces, edges, crossings, bounds, locality, last, .. } = &crossed;
         // 5. Labels.
-        let (seeds, contacts_of_seeds) = seeds::find(&surfaces, &edges, &bounds, &last, boxes, runner)?;
-        let control = runner.control;
-        let mut faces = FaceLabels::new(&surfaces, &edges, &locality, &crossings, &lines, &seeds, control)?;
-        let segment_labels = SegmentLabels::new(&surfaces, &edges, &crossings, &lines, &mut faces, control)?;
-        contacts += contacts_of_triples + lines.contacts + contacts_of_seeds;
-        // 6. What touches.
+        let (seeds, contacts_of_seeds) = seeds::find(surfaces, edges, bounds, last, boxes, runner)?;
+        let (lines, control) = (&placed.lines, runner.control);
+        let mut faces = FaceLabels::new(surfaces, edges, locality, crossings, lines, &seeds, control)?;
+        let segment_labels = SegmentLabels::new(surfaces, edges, crossings, lines, &mut faces, control)?;
+        let contacts = placed.contacts + contacts_of_seeds;
+        Self::finish(crossed, Placed { contacts, ..placed }, faces, segment_labels, fuse, runner)
+    }
+
+    /// Arranges surfaces that may be open: instead of labels every piece has the numbers of the cells beside it, which are
+    /// returned as well.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(crate) fn with_cells(
+        mut crossed: Crossed,
+        fuse: bool,
+        runner: Runner<'_>,
+    ) -> Result<(Self, CellCount), Error> {
+        let boxes = crossed.boxes.take();
+        let boxes = boxes.unwrap_or_else(|| FaceBoxes::new(&crossed.surfaces, &crossed.bounds));
+        let placed = Placed::new(&crossed, runner)?;
+        let ground = Ground {
+            surfaces: &crossed.surfaces,
+            edges: &crossed.edges,
+            crossings: &crossed.crossings,
+            lines: &placed.lines,
+        };
+        let Cells { faces, segments, count } = Cells::new(&ground, &crossed.bounds, &boxes, runner)?;
+        let general = Self::finish(crossed, placed, faces, segments, fuse, runner)?;
+        Ok((general, count))
+    }
+
+    /// Arranges surfaces of which only is wanted where they meet: no labels are known.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub(crate) fn without_labels(crossed: Crossed, runner: Runner<'_>) -> Result<Self, Error> {
+        let placed = Placed::new(&crossed, runner)?;
+        Self::finish(crossed, placed, FaceLabels::none(), SegmentLabels::none(), true, runner)
+    }
+
+    /// What lies beside every piece.
+    pub(crate) fn beside(&self) -> Beside<'_> {
+        let Self { surfaces, edges, crossings, lines, faces, segment_labels: segments, .. } = self;
+        Beside { ground: Ground { surfaces, edges, crossings, lines }, faces, segments }
+    }
+
+    /// The last step: what touches.
+    fn finish(
+        crossed: Crossed,
+        placed: Placed,
+        faces: FaceLabels,
+        segment_labels: SegmentLabels,
+        fuse: bool,
+        runner: Runner<'_>,
+    ) -> Result<Self, Error> {
+        let Crossed { surfaces, edges, crossings, _memory, .. } = crossed;
+        let Placed { cut, lines, contacts } = placed;
         let fused =
             |&[f, g]: &[FaceId; 2]| fuse || look_same_way(&surfaces.positions(f), &surfaces.positions(g));
         let touching: Vec<[FaceId; 2]> = crossings.touching.iter().copied().filter(fused).collect();
@@ -144,6 +266,26 @@ impl General {
             contacts,
             _memory,
         })
+    }
+}
+
+/// The points of an arrangement, placed and in order.
+struct Placed {
+    cut: Vec<FaceId>,
+    lines: Lines,
+    contacts: u64,
+}
+
+impl Placed {
+    fn new(crossed: &Crossed, runner: Runner<'_>) -> Result<Self, Error> {
+        let Crossed { surfaces, edges, crossings, .. } = crossed;
+        let cut: Vec<FaceId> = surfaces.faces().filter(|&face| !crossings.of_face(face).is_empty()).collect();
+        // 3. Three-face points.
+        let (triples, contacts) = triples::find(surfaces, edges, crossings, &cut, runner)?;
+        // 4. Where all points are, and their order.
+        let lines = Lines::new(surfaces, edges, crossings, triples, runner)?;
+        let contacts = crossed.contacts + contacts + lines.contacts;
+        Ok(Self { cut, lines, contacts })
     }
 }
 

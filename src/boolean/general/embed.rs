@@ -96,7 +96,7 @@ pub(crate) fn embed(
         let mut triangles = std::mem::take(&mut parts.triangles);
         let positions = compact(&positions, &mut triangles);
         let solid = Solid::from_closed_unchecked(Mesh::new(positions, triangles));
-        let crossed = Crossed::new(&[&solid], std::slice::from_ref(&parts.groups), runner)?;
+        let crossed = Crossed::new(&[&solid], runner)?;
         troubled = crossed.troubled();
         report.left = troubled.len();
         let fewest = best.as_ref().map_or(usize::MAX, |(_, report)| report.left);
@@ -113,7 +113,7 @@ pub(crate) fn embed(
         }
         // 3. Its resolution; what is thinner than the next grid is cleaned up.
         report.rounds += 1;
-        let general = General::new(crossed, true, runner)?;
+        let general = General::new(crossed.with_groups(vec![parts.groups.clone()]), true, runner)?;
         let inside: Vec<bool> =
             general.faces.labels.all().iter().map(|label| winding(label, 0) > 0).collect();
         let unit = grid.unit() * f64::from(coarser(report.rounds)).exp2();

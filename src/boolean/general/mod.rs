@@ -20,11 +20,14 @@
 //! double faces. So the pieces of faces that touch in a plane are added up (`cut::plane_sums`).
 
 pub(crate) mod arrangement;
+mod cell_neighbours;
+pub(crate) mod cells;
 pub(crate) mod cross;
 pub(crate) mod crossings;
 pub(crate) mod edges;
 pub(crate) mod embed;
 pub(crate) mod evaluate;
+pub(crate) mod face_view;
 pub(crate) mod labels;
 pub(crate) mod lines;
 pub(crate) mod locality;
@@ -33,6 +36,7 @@ pub(crate) mod seeds;
 pub(crate) mod segment_labels;
 pub(crate) mod shape;
 pub(crate) mod sheets;
+pub(crate) mod strips;
 pub(crate) mod surfaces;
 pub(crate) mod triples;
 pub(crate) mod walk;

@@ -25,14 +25,19 @@ pub(crate) struct Quadrants {
 /// For each segment, one for each piece between its three-face points.
 #[derive(Debug)]
 pub(crate) struct SegmentLabels {
-    starts: Vec<u32>,
-    pieces: Vec<Quadrants>,
+    pub(super) starts: Vec<u32>,
+    pub(super) pieces: Vec<Quadrants>,
 }
 
 /// Segments that are looked at before the limits are checked.
 const SEGMENTS_AT_ONCE: usize = 1 << 12;
 
 impl SegmentLabels {
+    /// Those of no segments.
+    pub(super) fn none() -> Self {
+        Self { starts: Vec::new(), pieces: Vec::new() }
+    }
+
     /// Takes them from the labels along the sides of faces, in which every segment ends.
     ///
     /// # Errors

@@ -7,8 +7,10 @@
 
 use std::sync::OnceLock;
 
+use rustc_hash::FxHashMap;
+
 use super::edges::{Edges, Side};
-use crate::Solid;
+use crate::Mesh;
 use crate::boolean::complex::directions::Directions;
 use crate::boolean::complex::ids::{EdgeId, FaceId, VertexId};
 use crate::boolean::complex::predicates::Perturbed;
@@ -28,8 +30,8 @@ pub(crate) struct Surfaces {
     owners: Vec<u32>,
     /// By face, which triangle of its owner it is (the first, where there were several).
     triangles: Vec<u32>,
-    /// By face, its group in the result; empty if there are no groups.
-    groups: Vec<u32>,
+    /// By owner, the group of each of its triangles in the result; empty if there are no groups.
+    groups: Vec<Vec<u32>>,
     /// By vertex, which piece of surface it belongs to.
     components: Vec<u32>,
     component_count: u32,
@@ -39,31 +41,33 @@ pub(crate) struct Surfaces {
     /// By component, the factor of its directions.
     colours: Vec<u32>,
     directions: OnceLock<Directions>,
+    /// How surfaces that are not closed move; nothing where all are.
+    open: Option<Box<OpenDirections>>,
 }
 
 impl Surfaces {
-    /// The surfaces of operands, with the result's group of each of their triangles (empty lists if there are no groups):
-    /// all arrays one after the other.
-    pub(crate) fn new(operands: &[&Solid], groups: &[Vec<u32>]) -> Self {
-        let count = |of: fn(&Solid) -> usize| operands.iter().map(|solid| of(solid)).sum();
-        let vertex_count: usize = count(|solid| solid.mesh().positions.len());
-        let face_count: usize = count(|solid| solid.mesh().triangles.len());
+    /// The surfaces of meshes: all arrays one after the other.
+    pub(crate) fn new(operands: &[&Mesh]) -> Self {
+        let count = |of: fn(&Mesh) -> usize| operands.iter().map(|mesh| of(mesh)).sum();
+        let vertex_count: usize = count(|mesh| mesh.positions.len());
+        let face_count: usize = count(|mesh| mesh.triangles.len());
         let mut surfaces = Self {
             positions: Vec::with_capacity(vertex_count),
             corners: Vec::with_capacity(face_count),
             steps: vec![1; face_count],
             owners: Vec::with_capacity(face_count),
             triangles: Vec::with_capacity(face_count),
-            groups: groups.concat(),
+            groups: Vec::new(),
             components: Vec::new(),
             component_count: 0,
             largest: 0.0,
             near: Vec::new(),
             colours: Vec::new(),
             directions: OnceLock::new(),
+            open: None,
         };
-        for (owner, solid) in (0..).zip(operands) {
-            let (mesh, first) = (solid.mesh(), surfaces.positions.len() as u32);
+        for (owner, mesh) in (0..).zip(operands) {
+            let first = surfaces.positions.len() as u32;
             surfaces.positions.extend_from_slice(&mesh.positions);
             surfaces.corners.extend(mesh.triangles.iter().map(|corners| corners.map(|v| v + first)));
             surfaces.owners.extend(std::iter::repeat_n(owner, mesh.triangles.len()));
@@ -120,7 +124,7 @@ impl Surfaces {
         let steps = std::mem::take(&mut self.steps);
         let mut keep = steps.iter().map(|&step| step != 0);
         self.corners.retain(|_| keep.next().unwrap_or_default());
-        for list in [&mut self.owners, &mut self.triangles, &mut self.groups] {
+        for list in [&mut self.owners, &mut self.triangles] {
             let mut keep = steps.iter().map(|&step| step != 0);
             list.retain(|_| keep.next().unwrap_or_default());
         }
@@ -146,7 +150,7 @@ impl Surfaces {
         }
         let mut fan_of = vec![u32::MAX; self.positions.len()];
         let mut changed = false;
-        let mut new_vertex_of = rustc_hash::FxHashMap::default();
+        let mut new_vertex_of = FxHashMap::default();
         for face in 0..self.corners.len() {
             for k in 0..3 {
                 let vertex = self.corners[face][k] as usize;
@@ -170,6 +174,11 @@ impl Surfaces {
         }
     }
 
+    /// Says which group of the result each triangle of each operand belongs to; empty lists where there are no groups.
+    pub(crate) fn set_groups(&mut self, groups: Vec<Vec<u32>>) {
+        self.groups = groups;
+    }
+
     /// Says which piece of surface each vertex belongs to, and how many there are.
     pub(crate) fn set_components(&mut self, (count, of_vertices): (usize, Vec<u32>)) {
         (self.component_count, self.components) = (count as u32, of_vertices);
@@ -191,6 +200,12 @@ impl Surfaces {
         beside.sort_unstable();
         beside.dedup();
         self.colours = colour(self.component_count, &beside);
+    }
+
+    /// Says that pieces of surface may be open. Those that are stay where they are, but for their borders, which move on by an
+    /// infinitesimal: so that a surface that ends exactly on another one passes through it.
+    pub(crate) fn extend_borders(&mut self, edges: &Edges) {
+        self.open = Some(Box::new(OpenDirections::new(self, edges)));
     }
 
     /// How many vertices there are.
@@ -274,7 +289,8 @@ impl Surfaces {
 
     /// The result's group of a face.
     pub(crate) fn group(&self, face: FaceId) -> u32 {
-        self.groups.get(face.index()).copied().unwrap_or(0)
+        let of_owner = self.groups.get(self.owner(face) as usize);
+        of_owner.and_then(|groups| groups.get(self.triangle(face) as usize)).copied().unwrap_or(0)
     }
 
     fn directions(&self) -> &Directions {
@@ -291,12 +307,62 @@ impl Perturbed for Surfaces {
     fn first_direction(&self, vertex: VertexId) -> [i32; 3] {
         let Some(&component) = self.components.get(vertex.index()) else { return [0; 3] };
         let colour = self.colours.get(component as usize).copied().unwrap_or(1) as i32;
+        if let Some(open) = &self.open
+            && open.is_open[component as usize]
+        {
+            return open.at_border.get(&vertex.number()).map_or([0; 3], |along| along.map(|x| colour * x));
+        }
         self.directions().of(vertex.number()).map(|component| -colour * component)
     }
 
     fn largest_coordinate(&self) -> f64 {
         self.largest
     }
+}
+
+/// How surfaces that are not closed move.
+#[derive(Debug)]
+struct OpenDirections {
+    /// By component, whether an edge of it has a single face.
+    is_open: Vec<bool>,
+    /// Of vertices on such edges, away from the faces there and along them.
+    at_border: FxHashMap<u32, [i32; 3]>,
+}
+
+impl OpenDirections {
+    fn new(surfaces: &Surfaces, edges: &Edges) -> Self {
+        let mut is_open = vec![false; surfaces.component_count as usize];
+        let mut sums: FxHashMap<u32, [f64; 3]> = FxHashMap::default();
+        for (edge, ends) in edges.iter() {
+            let [side] = edges.sides(edge) else { continue };
+            is_open[surfaces.component(side.face()) as usize] = true;
+            let corners = surfaces.positions(side.face());
+            let k = side.place();
+            let away = away_from_face(corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]);
+            for end in ends {
+                let sum = sums.entry(end.number()).or_default();
+                (0..3).for_each(|axis| sum[axis] += away[axis]);
+            }
+        }
+        let at_border = sums.into_iter().map(|(vertex, sum)| (vertex, quantised(sum))).collect();
+        Self { is_open, at_border }
+    }
+}
+
+/// The unit vector across the edge from p to q, in the plane of a face and away from its third corner r; zero for a face without
+/// area.
+fn away_from_face(p: [f64; 3], q: [f64; 3], r: [f64; 3]) -> [f64; 3] {
+    let from_p = |x: [f64; 3]| -> [f64; 3] { std::array::from_fn(|k| x[k] - p[k]) };
+    let (along, up) = (crate::mesh::unit(from_p(q)), from_p(r));
+    let share: f64 = (0..3).map(|k| along[k] * up[k]).sum();
+    crate::mesh::unit(std::array::from_fn(|k| share * along[k] - up[k]))
+}
+
+/// A vector with integer components, the largest of them of 10 bits (as [`Directions`] has them).
+fn quantised(v: [f64; 3]) -> [i32; 3] {
+    const SCALE: f64 = 511.0;
+    let size = v.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+    if size > 0.0 && size.is_finite() { v.map(|x| (x / size * SCALE).round() as i32) } else { [0; 3] }
 }
 
 /// The lowest colours, from 1 on, that neighbours do not have; those of many neighbours start again.

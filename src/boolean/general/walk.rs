@@ -29,18 +29,31 @@ const FACES_AT_ONCE: usize = 1 << 14;
 pub(crate) struct FaceLabels {
     pub(crate) labels: Labels,
     /// By face: its label where it is not cut, else its place among the cut faces met.
-    of_face: Vec<u32>,
+    pub(super) of_face: Vec<u32>,
     /// By face, the label on the inner side, where it is not cut.
-    inner: Vec<LabelId>,
+    pub(super) inner: Vec<LabelId>,
     /// For each cut face, side by side, the labels of its pieces from the low end of the edge to the high end.
-    of_pieces: Vec<LabelId>,
+    pub(super) of_pieces: Vec<LabelId>,
     /// The same on the inner side.
-    inner_of_pieces: Vec<LabelId>,
+    pub(super) inner_of_pieces: Vec<LabelId>,
     /// By cut face met, where the lists of its three sides begin.
-    starts: Vec<[u32; 3]>,
+    pub(super) starts: Vec<[u32; 3]>,
 }
 
 impl FaceLabels {
+    /// Those of no faces.
+    pub(super) fn none() -> Self {
+        let (inner, of_pieces, inner_of_pieces) = (Vec::new(), Vec::new(), Vec::new());
+        Self {
+            labels: Labels::new(),
+            of_face: Vec::new(),
+            inner,
+            of_pieces,
+            inner_of_pieces,
+            starts: Vec::new(),
+        }
+    }
+
     /// Walks over all pieces of surface, each from its seed.
     ///
     /// # Errors

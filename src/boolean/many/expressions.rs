@@ -72,9 +72,10 @@ pub(super) fn run(
     let groups = merged_groups(operands);
     let of_triangles: Vec<Vec<u32>> =
         operands.iter().enumerate().map(|(i, solid)| groups.of_operand(i, solid)).collect();
-    let classes = classes(operands, &of_triangles, wanted.policy);
     let fuse = wanted.policy.contact == Contact::Fuse;
-    let crossed = Crossed::new(operands, classes.as_ref().unwrap_or(&of_triangles), runner)?;
+    let crossed = Crossed::new(operands, runner)?;
+    let classes = classes(operands, &of_triangles, &crossed, wanted.policy);
+    let crossed = crossed.with_groups(classes.unwrap_or_else(|| of_triangles.clone()));
     let general = General::new(crossed, fuse, runner)?;
     // 2. Each expression.
     let arranged = Arranged {
@@ -152,7 +153,12 @@ impl Arranged<'_> {
 }
 
 /// Which faces may be merged, where attributes have to be kept; `None` where groups alone tell.
-fn classes(operands: &[&Solid], groups: &[Vec<u32>], policy: Policy) -> Option<Vec<Vec<u32>>> {
+fn classes(
+    operands: &[&Solid],
+    groups: &[Vec<u32>],
+    crossed: &Crossed,
+    policy: Policy,
+) -> Option<Vec<Vec<u32>>> {
     let has_attributes = operands.iter().any(|solid| !solid.mesh().attributes.is_empty());
     if !(has_attributes && policy.remove_vertices) {
         return None;
@@ -160,10 +166,9 @@ fn classes(operands: &[&Solid], groups: &[Vec<u32>], policy: Policy) -> Option<V
     let mut first = 0;
     let of_operand = |(operand, solid): (usize, &&Solid)| {
         let Mesh { positions, triangles, .. } = solid.mesh();
-        let all: Vec<u32> = (0..triangles.len() as u32).collect();
         let origin = |triangle| Origin { operand: operand as u32, triangle, reversed: false };
         let faces = Faces { positions, triangles, groups: &groups[operand], origin, givens: operands };
-        let classes = faces.classes(&all, first);
+        let classes = faces.classes(&crossed.near(operand as u32), first);
         first += triangles.len() as u32;
         classes
     };

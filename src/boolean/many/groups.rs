@@ -2,26 +2,31 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::Solid;
 use crate::mesh::FaceGroup;
+use crate::{Mesh, Solid};
 
 /// The groups of all operands together; equal ones become one.
-pub(super) struct MergedGroups {
-    pub(super) list: Vec<FaceGroup>,
+pub(in crate::boolean) struct MergedGroups {
+    pub(in crate::boolean) list: Vec<FaceGroup>,
     /// For each operand the number of each of its groups; a last entry for an operand without any.
     numbers: Vec<Vec<u32>>,
 }
 
 /// The groups of operands.
 pub(super) fn merged_groups(operands: &[&Solid]) -> MergedGroups {
+    merged_groups_of(&operands.iter().map(|solid| solid.mesh()).collect::<Vec<_>>())
+}
+
+/// The groups of meshes.
+pub(in crate::boolean) fn merged_groups_of(meshes: &[&Mesh]) -> MergedGroups {
     let mut merged = MergedGroups { list: Vec::new(), numbers: Vec::new() };
-    if operands.iter().all(|solid| solid.mesh().groups.list.is_empty()) {
+    if meshes.iter().all(|mesh| mesh.groups.list.is_empty()) {
         return merged;
     }
     let unnamed = FaceGroup::default();
     let mut by_name: FxHashMap<&str, Vec<u32>> = FxHashMap::default();
-    for solid in operands {
-        let groups = &solid.mesh().groups;
+    for mesh in meshes {
+        let groups = &mesh.groups;
         let mut numbers: Vec<u32> =
             groups.list.iter().map(|group| number_of(group, &mut merged.list, &mut by_name)).collect();
         if groups.list.is_empty() {
@@ -51,8 +56,12 @@ fn number_of<'a>(
 impl MergedGroups {
     /// The result's group of each triangle of an operand; empty if there are no groups.
     pub(super) fn of_operand(&self, operand: usize, solid: &Solid) -> Vec<u32> {
+        self.of_mesh(operand, solid.mesh())
+    }
+
+    /// The same of a mesh.
+    pub(in crate::boolean) fn of_mesh(&self, operand: usize, mesh: &Mesh) -> Vec<u32> {
         let Some(numbers) = self.numbers.get(operand) else { return Vec::new() };
-        let mesh = solid.mesh();
         (0..mesh.triangles.len())
             .map(|t| numbers[mesh.groups.of_triangle.get(t).map_or(0, |&group| group as usize)])
             .collect()

@@ -6,7 +6,7 @@
 //! - `made`: the last step of both.
 
 pub(super) mod expressions;
-mod groups;
+pub(super) mod groups;
 mod in_pairs;
 pub(super) mod made;
 mod merge_order;

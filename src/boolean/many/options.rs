@@ -188,6 +188,12 @@ impl BooleanOptions {
         Ok(outcomes.swap_remove(0).with_cut_faces(&self.cut_faces))
     }
 
+    /// What cut faces are to show, once their numbers are known to be sound.
+    pub(in crate::boolean) fn checked_cut_faces(&self) -> Result<&CutFaces, Error> {
+        self.check_numbers()?;
+        Ok(&self.cut_faces)
+    }
+
     fn check_numbers(&self) -> Result<(), Error> {
         match self.cut_faces.fault() {
             None => Ok(()),

@@ -54,7 +54,9 @@ impl PlaneCut {
         self
     }
 
-    /// Settings: limits, threads, whether needless vertices are left out, what is inside where the solid crosses itself.
+    /// Settings: limits, threads, whether needless vertices are left out, what is inside where the solid crosses itself, and
+    /// what the cap shows ([`BooleanOptions::cut_faces`]): the group of the faces around, another one, texture coordinates. By
+    /// default it has its own group. Its normals are flat where the solid has normals.
     #[must_use]
     pub fn options(mut self, options: BooleanOptions) -> Self {
         self.options = options;
@@ -89,7 +91,8 @@ impl PlaneCut {
     }
 
     fn run(&self, solid: &Solid, wanted: &[Half]) -> Result<[Option<Outcome>; 2], Error> {
-        self.options.work(|policy, runner| {
+        let faces = self.options.checked_cut_faces()?;
+        let halves: [Option<Outcome>; 2] = self.options.work(|policy, runner| {
             let cut = Cut { solid, plane: &self.plane, cap: self.cap.as_ref(), policy, runner };
             match cut.halves(wanted, Seen::NotYet)? {
                 Some(halves) => Ok(halves),
@@ -101,7 +104,8 @@ impl PlaneCut {
                     Ok(halves.unwrap_or([None, None]))
                 }
             }
-        })
+        })?;
+        Ok(halves.map(|half| half.map(|outcome| outcome.with_cap(faces, 1))))
     }
 }
 
@@ -231,7 +235,7 @@ impl Cut<'_> {
             may_cross: inverted > 0 || !cap.is_simple,
             is_clean: self.solid.is_known_clean(),
         };
-        // (The cap comes from no triangle, and has no attributes.)
+        // (The cap comes from no triangle; what it shows is given to it at the end.)
         made.finish(self.policy, &[given], self.runner)
     }
 

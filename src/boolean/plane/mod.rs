@@ -12,13 +12,14 @@
 //! 5. `separate`: what touches itself in the plane comes apart.
 //! 6. `assemble`: the arrays of each half.
 //!
-//! `sections` does the first, second and fourth for many parallel planes at once, and keeps the outlines: each is a `section`.
+//! `sections` (with `rings`, where there is nothing to decide) does the first, second and fourth for many parallel planes at once, and keeps the outlines: each is a `section`.
 
 mod assemble;
 mod cap;
 mod cut;
 mod nodes;
 mod pieces;
+mod rings;
 mod section;
 mod sections;
 mod separate;

@@ -6,7 +6,7 @@ use super::split::{ABOVE, BELOW, Half, ON, Split};
 use crate::Error;
 use crate::boolean::complex::planes::{lie_in_one_plane, look_same_way};
 use crate::control::Reservation;
-use crate::mesh::UnionFind;
+use crate::mesh::{Mesh, UnionFind};
 use crate::parallel::Runner;
 
 /// A vertex, or a node: nodes are numbered after the vertices.
@@ -240,7 +240,9 @@ fn merge_faces(
     for (node, dropped) in nodes.iter().zip(dropped) {
         let [x, y] = node.faces;
         let [f, g] = [x, y].map(|place| faces[place as usize].triangle);
-        if node.count == 2 && classes.get(f as usize) == classes.get(g as usize) && are_one_plane(split, f, g)
+        if node.count == 2
+            && classes.get(f as usize) == classes.get(g as usize)
+            && are_one_plane(split.mesh, f, g)
         {
             joined.join(x, y);
             *dropped = true;
@@ -263,12 +265,12 @@ fn merge_faces(
 }
 
 /// Whether two triangles that share an edge lie in one plane, look the same way, and are of one group.
-fn are_one_plane(split: &Split<'_>, f: u32, g: u32) -> bool {
-    let groups = &split.mesh.groups.of_triangle;
+pub(super) fn are_one_plane(mesh: &Mesh, f: u32, g: u32) -> bool {
+    let groups = &mesh.groups.of_triangle;
     if groups.get(f as usize) != groups.get(g as usize) {
         return false;
     }
-    let [of_f, of_g] = [f, g].map(|t| split.corners(t).map(|v| split.mesh.positions[v as usize]));
+    let [of_f, of_g] = [f, g].map(|t| mesh.triangles[t as usize].map(|v| mesh.positions[v as usize]));
     // (The first of them too is not always seen from the front: the normals of needles are rounded away.)
     lie_in_one_plane(&of_f, &of_g) && look_same_way(&of_f, &of_f) && look_same_way(&of_f, &of_g)
 }

@@ -3,6 +3,7 @@
 use super::cap::outline;
 use super::nodes::Nodes;
 use super::pieces::numbered;
+use super::rings::{Rings, Twins, Walker};
 use super::section::Section;
 use super::split::{ABOVE, BELOW, ON, Split};
 use crate::boolean::many::expressions::is_simple;
@@ -59,6 +60,8 @@ impl Solid {
 
 /// A triangle meets planes one after another, if they are parallel and ascend.
 const AT_ONCE: usize = 1 << 14;
+/// Layers that one thread makes with the same scratch memory, one bit of which is cleared for each triangle of the solid.
+const LAYERS_AT_ONCE: usize = 64;
 
 impl Sections {
     /// Default settings.
@@ -82,7 +85,8 @@ impl Sections {
         self
     }
 
-    /// The section at each plane. A solid that crosses itself is resolved first; it is looked through for that once. Planes across
+    /// The section at each plane. A solid that crosses itself is resolved first where an outline shows it; it is looked through for that
+    /// once. Planes across
     /// one axis are taken in one pass, whatever their order: O(n + k log k) for k crossings of edges with planes. Others are taken one
     /// by one, in O(n) each.
     ///
@@ -90,30 +94,54 @@ impl Sections {
     /// [`Error::TooLarge`] if the points of a plane cannot be numbered with 32 bits; limits.
     pub fn at(&self, solid: &Solid, planes: &[Plane]) -> Result<Vec<Section>, Error> {
         self.options.work(|policy, runner| {
-            let mut resolved = None;
-            if !is_simple(policy, solid, runner.control)? {
-                resolved = Some(self.options.resolve(solid)?);
+            let merge = policy.remove_vertices;
+            if is_simple(policy, solid, runner.control)? {
+                let found = self.take(solid, planes, merge, Trust::Outlines, runner)?;
+                return Ok(found.into_iter().flatten().collect());
             }
-            let solid = resolved.as_ref().map_or(solid, |outcome| outcome.solid());
-            match levels(planes) {
-                Some((axis, order)) => {
-                    self.sweep(solid, planes, axis, &order, policy.remove_vertices, runner)
-                }
-                None => planes
-                    .iter()
-                    .map(|plane| {
-                        let mesh = solid.mesh();
-                        let numbers = mesh.positions.len() + mesh.triangles.len();
-                        let _numbers = runner.control.reserve((numbers * size_of::<u32>()) as u64)?;
-                        let ranks: Vec<u32> =
-                            mesh.positions.iter().map(|p| (1 + plane.side(p) as i8) as u32).collect();
-                        let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
-                        let split = Split::of_rank(mesh, plane, &ranks, 1, self.mark(), &all);
-                        one(&split, policy.remove_vertices, runner)
-                    })
-                    .collect(),
+            // What outlines show decides, as for a cut: where one crosses itself, or winds other than once around what is inside.
+            let mut found = self.take(solid, planes, merge, Trust::SimpleOutlines, runner)?;
+            let doubtful: Vec<Plane> = planes
+                .iter()
+                .zip(&found)
+                .filter(|(_, found)| found.is_none())
+                .map(|(plane, _)| *plane)
+                .collect();
+            if !doubtful.is_empty() {
+                let resolved = self.options.resolve(solid)?;
+                let mut again =
+                    self.take(resolved.solid(), &doubtful, merge, Trust::Outlines, runner)?.into_iter();
+                found
+                    .iter_mut()
+                    .filter(|found| found.is_none())
+                    .for_each(|found| *found = again.next().flatten());
             }
+            Ok(found.into_iter().flatten().collect())
         })
+    }
+
+    /// The sections of a solid as it is; `None` where an outline is not trusted.
+    fn take(
+        &self,
+        solid: &Solid,
+        planes: &[Plane],
+        merge: bool,
+        trust: Trust,
+        runner: Runner<'_>,
+    ) -> Result<Vec<Option<Section>>, Error> {
+        if let Some((axis, order)) = levels(planes) {
+            return self.sweep(solid, planes, axis, &order, (merge, trust), runner);
+        }
+        let mesh = solid.mesh();
+        let numbers = mesh.positions.len() + mesh.triangles.len();
+        let _numbers = runner.control.reserve((numbers * size_of::<u32>()) as u64)?;
+        let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+        let section = |plane: &Plane| {
+            let ranks: Vec<u32> = mesh.positions.iter().map(|p| (1 + plane.side(p) as i8) as u32).collect();
+            let split = Split::of_rank(mesh, plane, &ranks, 1, self.mark(), &all);
+            one(&split, merge, trust, runner)
+        };
+        planes.iter().map(section).collect()
     }
 
     /// What a vertex on the plane counts as.
@@ -133,9 +161,9 @@ impl Sections {
         planes: &[Plane],
         axis: usize,
         order: &[usize],
-        merge: bool,
+        (merge, trust): (bool, Trust),
         runner: Runner<'_>,
-    ) -> Result<Vec<Section>, Error> {
+    ) -> Result<Vec<Option<Section>>, Error> {
         let mesh = solid.mesh();
         let _ranks = runner.control.reserve((mesh.positions.len() * size_of::<u32>()) as u64)?;
         let levels: Vec<f64> = order.iter().filter_map(|&i| planes[i].as_level()).map(|(_, at)| at).collect();
@@ -162,21 +190,27 @@ impl Sections {
         let met = runner.gather(mesh.triangles.len(), AT_ONCE, 0, meetings)?;
         let _met = runner.control.reserve((met.len() * size_of::<(u32, u32)>()) as u64)?;
         let met = Buckets::new(order.len(), met.into_iter());
-        // 3. Plane by plane, on all threads.
-        let work: Vec<(usize, usize)> = order.iter().copied().enumerate().collect();
-        let mut sections = runner.each(work, |(place, plane)| {
-            let split = Split::of_rank(
-                mesh,
-                &planes[plane],
-                &ranks,
-                2 * place as u32 + 1,
-                self.mark(),
-                met.get(place),
-            );
-            one(&split, merge, runner.serial()).map(|section| (plane, section))
+        // 3. Layers on all threads, so many at once that what a thread needs for one is of use for the others.
+        let is_worth_it = trust == Trust::Outlines && met.total() >= mesh.triangles.len();
+        let twins = if is_worth_it { Twins::of(mesh) } else { None };
+        let found = runner.pieces(order.len(), LAYERS_AT_ONCE, |range| {
+            let mut walker = twins.as_ref().map(|twins| Walker::new(mesh, twins));
+            let layer = |place: usize| {
+                let plane = &planes[order[place]];
+                let rank = 2 * place as u32 + 1;
+                let split = Split::of_rank(mesh, plane, &ranks, rank, self.mark(), met.get(place));
+                if let Some(rings) = walker.as_mut().and_then(|walker| walker.rings(&split, merge)) {
+                    return Ok(Some(of_rings(plane, rings)));
+                }
+                one(&split, merge, trust, runner.serial())
+            };
+            range.map(layer).collect::<Result<Vec<Option<Section>>, Error>>()
         })?;
-        sections.sort_by_key(|section| section.as_ref().map_or(0, |(plane, _)| *plane));
-        sections.into_iter().map(|section| section.map(|(_, section)| section)).collect()
+        let found: Vec<Vec<Option<Section>>> = found.into_iter().collect::<Result<_, Error>>()?;
+        let mut sections: Vec<(usize, Option<Section>)> =
+            order.iter().copied().zip(found.into_iter().flatten()).collect();
+        sections.sort_by_key(|(plane, _)| *plane);
+        Ok(sections.into_iter().map(|(_, section)| section).collect())
     }
 }
 
@@ -193,22 +227,42 @@ fn levels(planes: &[Plane]) -> Option<(usize, Vec<usize>)> {
     order.windows(2).all(|pair| at[pair[0]] != at[pair[1]]).then_some((axis, order))
 }
 
-/// The section at one plane.
-fn one(split: &Split<'_>, merge: bool, runner: Runner<'_>) -> Result<Section, Error> {
+/// The section that outlines make.
+fn of_rings(plane: &Plane, rings: Rings) -> Section {
+    let Rings { points: places, loops } = rings;
+    let projection = plane.projection();
+    let flat: Vec<[f64; 2]> = places.iter().map(|place| projection.project(place)).collect();
+    Section::new(*plane, &in_space(polygon::polygons_of_loops(&flat, loops), &places))
+}
+
+/// Polygons by the numbers of their corners, with their places.
+fn in_space(polygons: Vec<Vec<Vec<u32>>>, places: &[[f64; 3]]) -> Vec<Vec<Vec<[f64; 3]>>> {
+    let ring = |ring: Vec<u32>| ring.into_iter().map(|number| places[number as usize]).collect();
+    polygons.into_iter().map(|polygon| polygon.into_iter().map(ring).collect()).collect()
+}
+
+/// What outlines are taken for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Trust {
+    /// The solid does not cross itself: all are right.
+    Outlines,
+    /// Those that wind once around all that is inside, and neither cross nor touch themselves.
+    SimpleOutlines,
+}
+
+/// The section at one plane; `None` where its outline is not trusted.
+fn one(split: &Split<'_>, merge: bool, trust: Trust, runner: Runner<'_>) -> Result<Option<Section>, Error> {
     // (Outlines have no attributes: faces of all classes are one.)
     let nodes = Nodes::new(split, merge.then_some(&[]), runner)?;
     let (points, edges) = numbered(&outline(split, &nodes));
     let places: Vec<[f64; 3]> = points.iter().map(|&point| nodes.position(split, point)).collect();
     let projection = split.plane.projection();
     let flat: Vec<[f64; 2]> = places.iter().map(|place| projection.project(place)).collect();
-    let polygons: Vec<Vec<Vec<[f64; 3]>>> = polygon::polygons(&flat, &edges)
-        .into_iter()
-        .map(|polygon| {
-            let ring = |ring: Vec<u32>| ring.into_iter().map(|number| places[number as usize]).collect();
-            polygon.into_iter().map(ring).collect()
-        })
-        .collect();
-    Ok(Section::new(*split.plane, &polygons))
+    if trust == Trust::SimpleOutlines && !polygon::fill_wound(&flat, &edges).is_simple {
+        return Ok(None);
+    }
+    let polygons = in_space(polygon::polygons(&flat, &edges), &places);
+    Ok(Some(Section::new(*split.plane, &polygons)))
 }
 
 #[cfg(test)]

@@ -119,6 +119,11 @@ impl<'a> Split<'a> {
         }
     }
 
+    /// Whether there are triangles on one side that have a corner in the plane, or lie in it.
+    pub(super) fn has_touching(&self) -> bool {
+        !self.touching.is_empty()
+    }
+
     /// The number of vertices.
     pub(super) fn vertex_count(&self) -> usize {
         self.mesh.positions.len()

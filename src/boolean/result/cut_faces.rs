@@ -96,6 +96,18 @@ impl CutFaces {
         self.material == CutMaterial::Tool && self.texture.is_none()
     }
 
+    /// Gives the faces that close a cut at a plane what they are to show: as [`apply`](Self::apply), but where that is what the
+    /// tool has, they keep their group. Normals are flat in any case, and only the mesh's own attributes are given. O(n).
+    pub(crate) fn apply_to_cap(&self, mesh: &mut Mesh, cap: &[bool]) {
+        if !cap.contains(&true) {
+            return;
+        }
+        if self.material == CutMaterial::Tool {
+            strip(mesh, cap);
+        }
+        self.apply(mesh, cap);
+    }
+
     /// Gives the cut faces of a result what they are to show; `cut` tells for each triangle whether it is one. O(n).
     pub(crate) fn apply(&self, mesh: &mut Mesh, cut: &[bool]) {
         if !cut.contains(&true) {

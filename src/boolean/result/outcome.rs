@@ -56,6 +56,15 @@ impl Outcome {
         self
     }
 
+    /// The same with other faces where a plane has cut: those that come from none of `operands`.
+    pub(crate) fn with_cap(mut self, faces: &CutFaces, operands: u32) -> Self {
+        if !faces.are_the_tools() || !self.solid.mesh().attributes.is_empty() {
+            let cap: Vec<bool> = self.origins.iter().map(|origin| origin.operand >= operands).collect();
+            self.solid.change_faces(|mesh| faces.apply_to_cap(mesh, &cap));
+        }
+        self
+    }
+
     /// The result; an empty one is a success.
     #[must_use]
     pub fn solid(&self) -> &Solid {

@@ -1,5 +1,8 @@
 //! The numbers of accessors. Every count, offset and stride is checked against the bytes that are there.
 
+use std::collections::HashMap;
+use std::rc::Rc;
+
 use gltf::json::accessor::{
     BYTE, ComponentType, FLOAT, SHORT, Type, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT,
 };
@@ -86,6 +89,8 @@ impl Items<'_> {
 pub(super) struct Accessors<'a> {
     pub(super) reader: &'a Reader<'a>,
     pub(super) buffers: &'a Buffers<'a>,
+    /// The items of accessors that are there in compressed form only, decoded.
+    pub(super) decoded: HashMap<u32, Rc<Vec<u8>>>,
 }
 
 impl<'a> Accessors<'a> {
@@ -117,10 +122,9 @@ impl<'a> Accessors<'a> {
             }
             numbers
         };
-        let mut list = match accessor.buffer_view {
+        let mut list = match self.found(index, accessor, component, N, count, &pointer)? {
             None => vec![[0.0; N]; count],
-            Some(view) => {
-                let items = self.items(layout(accessor, view, component, N, count), &pointer)?;
+            Some(items) => {
                 if component == ComponentType::F32 {
                     // The usual case by itself, so that the loop is free of choices.
                     let number = |bytes: &[u8; 4]| f64::from(f32::from_le_bytes(*bytes));
@@ -151,6 +155,7 @@ impl<'a> Accessors<'a> {
     /// The accessor's indices.
     pub(super) fn indices(&self, accessor: u32, pointer: &str) -> Result<Vec<u32>, Error> {
         let here = format!("/accessors/{accessor}");
+        let number = accessor;
         let accessor = self.get(accessor, Type::Scalar, pointer)?;
         let component = self.component(accessor.component_type, &here)?;
         if index(component, &[0; 4]).is_none() {
@@ -158,10 +163,9 @@ impl<'a> Accessors<'a> {
         }
         let count = self.count(accessor.count, &here)?;
         let item = |bytes: &[u8]| index(component, bytes).unwrap_or(0);
-        let mut list = match accessor.buffer_view {
+        let mut list = match self.found(number, accessor, component, 1, count, &here)? {
             None => vec![0; count],
-            Some(view) => {
-                let items = self.items(layout(accessor, view, component, 1, count), &here)?;
+            Some(items) => {
                 if component == ComponentType::U32 && items.stride == 4 {
                     let bytes = items.at(0).get(..count * 4).unwrap_or_default();
                     bytes.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect()
@@ -172,6 +176,30 @@ impl<'a> Accessors<'a> {
         };
         self.replace(accessor, component, 1, &here, |at, bytes| list[at] = item(bytes))?;
         Ok(list)
+    }
+
+    /// The items of an accessor, if it has any but zeros.
+    fn found(
+        &self,
+        index: u32,
+        accessor: &Accessor,
+        component: ComponentType,
+        width: usize,
+        count: usize,
+        pointer: &str,
+    ) -> Result<Option<Items<'a>>, Error> {
+        if let Some(bytes) = self.decoded.get(&index) {
+            let (size, length) = (component.size() * width, bytes.len());
+            if length < size * count {
+                return Err(self
+                    .reader
+                    .error(pointer, format!("has {count} items, of which some are not there")));
+            }
+            let bytes = Bytes::Shared { bytes: Rc::clone(bytes), start: 0, length };
+            return Ok(Some(Items { bytes, offset: 0, stride: size, component }));
+        }
+        let Some(view) = accessor.buffer_view else { return Ok(None) };
+        self.items(layout(accessor, view, component, width, count), pointer).map(Some)
     }
 
     fn component(&self, code: u32, pointer: &str) -> Result<ComponentType, Error> {

@@ -10,9 +10,10 @@ use base64::alphabet::{STANDARD, URL_SAFE};
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
 use super::super::ReadOptions;
-use super::super::beside::read_beside;
+use super::super::beside::{beside, read_beside};
 use super::Reader;
 use crate::Error;
+use crate::control::Reservation;
 
 /// The buffers of a document.
 pub(super) struct Buffers<'a> {
@@ -21,6 +22,8 @@ pub(super) struct Buffers<'a> {
     options: &'a ReadOptions,
     fetched: RefCell<HashMap<Source, Rc<Vec<u8>>>>,
     external: Cell<u64>,
+    /// The memory of files beside.
+    reserved: RefCell<Vec<Reservation>>,
 }
 
 /// Where the bytes of a buffer come from; equal sources are fetched once.
@@ -47,7 +50,14 @@ impl Bytes<'_> {
 
 impl<'a> Buffers<'a> {
     pub(super) fn new(reader: &'a Reader<'a>, binary: Option<&'a [u8]>, options: &'a ReadOptions) -> Self {
-        Self { reader, binary, options, fetched: RefCell::default(), external: Cell::new(0) }
+        Self {
+            reader,
+            binary,
+            options,
+            fetched: RefCell::default(),
+            external: Cell::new(0),
+            reserved: RefCell::default(),
+        }
     }
 
     /// How many bytes came from other files so far.
@@ -139,6 +149,10 @@ impl<'a> Buffers<'a> {
                 format!("is in the file {:?}, but the folder is not known; use a GLB file", shorten(name)),
             )
         })?;
+        // A file that cannot be asked for its length cannot be read either.
+        let length = beside(folder, name).ok().and_then(|path| std::fs::metadata(path).ok());
+        let length = length.map_or(0, |metadata| metadata.len());
+        self.reserved.borrow_mut().push(self.options.control.reserve(length)?);
         let bytes = read_beside(folder, name, u64::from(u32::MAX) * 8).map_err(|reason| {
             self.reader.error(pointer, format!("cannot read the file {:?}: {reason}", shorten(name)))
         })?;

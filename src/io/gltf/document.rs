@@ -16,6 +16,7 @@
 //! So a file of nothing but `{},{},{}` does not grow in memory; `tests/format_memory.rs` measures it.
 
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::fmt;
 
 use gltf::json::Asset;
@@ -158,7 +159,18 @@ pub(super) struct Primitive<'a> {
 #[derive(Debug, Deserialize)]
 pub(super) struct PrimitiveExtensions {
     #[serde(rename = "KHR_draco_mesh_compression")]
-    pub(super) draco: Option<IgnoredAny>,
+    pub(super) draco: Option<Draco>,
+}
+
+/// Where the compressed form of a primitive is, and which of its attributes have which numbers there.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+#[cfg_attr(not(feature = "draco"), expect(dead_code, reason = "Draco is left out"))]
+pub(super) struct Draco {
+    #[serde(default)]
+    pub(super) buffer_view: u32,
+    #[serde(default)]
+    pub(super) attributes: HashMap<String, u32>,
 }
 
 #[derive(Debug, Deserialize)]

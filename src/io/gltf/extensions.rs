@@ -4,7 +4,12 @@ use super::super::{Format, unsupported};
 use crate::Error;
 
 /// Extensions that change geometry and are understood.
-const UNDERSTOOD: [&str; 3] = ["KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_mesh_manifold"];
+const UNDERSTOOD: [&str; 4] = [
+    "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",
+    "EXT_mesh_manifold",
+    if cfg!(feature = "draco") { "KHR_draco_mesh_compression" } else { "EXT_mesh_manifold" },
+];
 
 /// Beginnings of the names of extensions that do not change geometry: materials, textures, lights, metadata.
 const HARMLESS: [&str; 14] = [

@@ -10,6 +10,8 @@ mod buffers;
 mod container;
 mod corners;
 mod document;
+#[cfg(feature = "draco")]
+mod draco;
 mod extensions;
 mod joints;
 mod json;

@@ -6,16 +6,15 @@ use glam::{DAffine3, DVec3};
 use gltf::json::accessor::Type;
 use gltf::json::mesh::{LINE_STRIP, POINTS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 
+use super::super::ReadOptions;
 use super::super::notes::Notes;
 use super::super::outline::{NOWHERE, Outline};
-use super::super::{ReadOptions, unsupported};
 use super::Reader;
 use super::accessor::Accessors;
 use super::budget::Budget;
 use super::buffers::Buffers;
 use super::corners::{Corners, Names, Shown};
 use super::document::{Accessor, MeshObject, Primitive};
-use super::extensions::DRACO_ADVICE;
 use super::manifold::Merged;
 use super::materials::Materials;
 use super::morph::Morph;
@@ -55,7 +54,7 @@ impl<'a> Builder<'a> {
     ) -> Self {
         Self {
             reader,
-            accessors: Accessors { reader, buffers },
+            accessors: Accessors { reader, buffers, decoded: HashMap::new() },
             notes,
             budget: Budget::new(buffers, options, file_bytes),
             mesh: Mesh::default(),
@@ -193,7 +192,7 @@ impl<'a> Builder<'a> {
         let (morph, has_targets) = Morph::new(primitive.targets, weights, pointer, &self.accessors)?;
         let here = format!("{pointer}/attributes/POSITION");
         let accessor = self.accessors.get(position, Type::Vec3, &here)?;
-        self.refuse_compressed(primitive, accessor, pointer)?;
+        self.decompress(primitive, &names, pointer)?;
         let vertices = accessor.count;
         let first = self.place(position, vertices, world, &morph, &here)?;
         let indices = self.indices(primitive, mode, vertices, &format!("{pointer}/indices"))?;
@@ -214,21 +213,37 @@ impl<'a> Builder<'a> {
         Ok((indices.len(), has_targets))
     }
 
-    /// Refuses positions that are there in compressed form only.
-    fn refuse_compressed(
-        &self,
+    /// Decodes what is there in compressed form only.
+    fn decompress(
+        &mut self,
         primitive: &Primitive<'_>,
-        accessor: &Accessor,
+        names: &Names<'_>,
         pointer: &str,
     ) -> Result<(), Error> {
-        let compressed = primitive.extensions.as_ref().is_some_and(|extensions| extensions.draco.is_some());
-        if compressed && accessor.buffer_view.is_none() && accessor.sparse.is_none() {
-            return Err(unsupported(
-                self.reader.format,
-                format!("{pointer} is compressed with KHR_draco_mesh_compression{DRACO_ADVICE}"),
-            ));
+        let draco = primitive.extensions.as_ref().and_then(|extensions| extensions.draco.as_ref());
+        let position = names.get("POSITION").copied().unwrap_or(u32::MAX);
+        let accessor = self.reader.document.accessors.get(position as usize);
+        let is_there = |accessor: &Accessor| accessor.buffer_view.is_some() || accessor.sparse.is_some();
+        let Some(draco) = draco.filter(|_| accessor.is_some_and(|accessor| !is_there(accessor))) else {
+            return Ok(());
+        };
+        #[cfg(feature = "draco")]
+        if self.accessors.decoded.contains_key(&position) {
+            return Ok(());
         }
-        Ok(())
+        #[cfg(feature = "draco")]
+        return super::draco::decode(primitive, draco, names, pointer, &mut self.accessors, &mut self.budget);
+        #[cfg(not(feature = "draco"))]
+        {
+            let _ = draco;
+            Err(super::super::unsupported(
+                self.reader.format,
+                format!(
+                    "{pointer} is compressed with KHR_draco_mesh_compression{}",
+                    super::extensions::DRACO_ADVICE
+                ),
+            ))
+        }
     }
 
     /// The indices of a primitive of `vertices` vertices, all of them of vertices there are; without any in the file,

@@ -12,9 +12,7 @@ use super::super::scan::quote;
 use super::library::{Known, Materials};
 use crate::Error;
 use crate::control::Reservation;
-use crate::mesh::{
-    Image, Material, MaterialLanguage, MaterialText, Texture, TextureMatrix, TextureUse, Wrap,
-};
+use crate::mesh::{Image, Material, MaterialLanguage, MaterialText, Texture, TextureUse, Wrap};
 
 /// Larger pictures are not read, bytes.
 const LARGEST_PICTURE: u64 = 1 << 30;
@@ -105,12 +103,10 @@ fn read_picture(folder: &Path, name: &str) -> Result<Vec<u8>, String> {
     read_beside(folder, name, LARGEST_PICTURE)
 }
 
-/// How a picture lies in coordinates from the upper edge: what the options say counts from the lower one.
+/// How a picture lies in coordinates from the upper edge.
 fn texture_use(image: Arc<Image>, how: &MapOptions) -> TextureUse {
-    let ([width, height], [x, y]) = (how.scale, how.offset);
-    let transform: TextureMatrix = [[width, 0.0, x], [0.0, height, 1.0 - height - y]];
     let wrap = if how.clamp { Wrap::Clamp } else { Wrap::Repeat };
-    TextureUse { image, coordinates: 0, wrap: [wrap; 2], nearest: false, transform }
+    TextureUse { image, coordinates: 0, wrap: [wrap; 2], nearest: false, transform: how.transform() }
 }
 
 #[cfg(test)]

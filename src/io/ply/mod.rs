@@ -15,12 +15,12 @@ pub(super) use write::write;
 use super::faces::{index_error, too_large};
 use super::finish::check_finite;
 use super::notes::Notes;
-use super::scan::line_place;
+use super::scan::{line_place, quote};
 use super::{Format, ReadOptions, malformed};
 use crate::mesh::Polygons;
 use crate::{Error, Mesh};
 use body::{AsciiSource, Body};
-use header::{Coding, Header};
+use header::{Coding, Header, Property, Role};
 
 /// The corners of attributes may take this many times the bytes of the file. Usual files take five times.
 const ROOM: usize = 16;
@@ -40,12 +40,36 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<Str
     let mut notes = std::mem::take(&mut body.notes);
     let left_out = header.elements.iter().map(|element| element.left_out).sum();
     notes.add("property after the first 64 of vertices or faces not read", left_out);
+    unread(&header, &mut notes);
     let mesh = assemble(positions, body, ROOM * bytes.len().max(1 << 12), &mut notes, options)?;
     let place = |offset| match header.coding {
         Coding::Ascii => line_place(bytes, offset),
         _ => format!("byte {offset}"),
     };
     Ok((mesh, notes.into_warnings(place)))
+}
+
+/// Says which elements and lists a mesh has no place for.
+fn unread(header: &Header, notes: &mut Notes) {
+    for element in header.elements.iter().filter(|element| element.count > 0) {
+        let name = quote(element.name.as_bytes());
+        let known = match element.role {
+            Role::Other => {
+                notes.add(
+                    format!("element {name} not read"),
+                    usize::try_from(element.count).unwrap_or(usize::MAX),
+                );
+                continue;
+            }
+            Role::Vertices(_) => None,
+            Role::Faces(indices) | Role::Strips(indices) => Some(indices),
+        };
+        let is_texture = |p: usize| element.further.iter().any(|(known, _)| *known == p);
+        let lists = (0..element.properties.len()).filter(|&p| {
+            matches!(element.properties[p], Property::List { .. }) && known != Some(p) && !is_texture(p)
+        });
+        notes.add(format!("list of the element {name} not read"), lists.count());
+    }
 }
 
 fn assemble(

@@ -2,7 +2,7 @@
 
 use super::interpolate::Found;
 use super::lists::{missing, turn_over, widened};
-use super::plan::{NEW, NewCorner, Plan};
+use super::plan::{NEW, NewCorner, Plan, Taken};
 use super::{Attribute, AttributeKind};
 use crate::control::Limit;
 use crate::parallel::Runner;
@@ -16,10 +16,12 @@ pub(super) fn attributes(plan: &Plan<'_>, runner: Runner<'_>) -> Result<Vec<Attr
             None => named.push((&attribute.name, attribute.components)),
         }
     }
-    runner.each(named, |(name, components)| Table::new(plan, name, components).attribute())
+    let made = |(name, components)| Table::new(plan, name, components).map(Table::attribute);
+    runner.each(named, made)?.into_iter().collect()
 }
 
-/// The rows that a source has in the table, as they are or for faces that are turned round.
+/// The rows that a source has in the table, as they are or for faces that are turned round. Those of sources of which unused rows
+/// go come after all others: so what goes changes no number but theirs and those of what was made.
 #[derive(Clone, Copy, Debug)]
 struct Rows {
     source: usize,
@@ -45,6 +47,12 @@ fn counts(plan: &Plan<'_>) -> [Vec<usize>; 2] {
     counts
 }
 
+/// The limit for tables of more values than 32-bit numbers can name, by what they would take.
+fn too_many(rows: usize, most: usize, components: usize) -> Limit {
+    let bytes = |rows: usize| (rows as u64).saturating_mul(8 * components as u64);
+    Limit::Memory { needed: bytes(rows), limit: bytes(most) }
+}
+
 /// An attribute of the new mesh while it is being made.
 struct Table<'a> {
     plan: &'a Plan<'a>,
@@ -54,47 +62,71 @@ struct Table<'a> {
     rows: Vec<Rows>,
     /// By source the place in the list of its rows as they are, and of those turned round.
     places: Vec<[Option<u32>; 2]>,
-    /// The number of the first value that was made.
+    /// The number of the first row that may go.
+    compact_from: u32,
+    /// The number of the first value that was made, before rows go.
     made_from: u32,
     made: Vec<f64>,
 }
 
 impl<'a> Table<'a> {
-    fn new(plan: &'a Plan<'a>, name: &'a str, components: usize) -> Self {
+    fn new(plan: &'a Plan<'a>, name: &'a str, components: usize) -> Result<Self, Limit> {
         let kind = AttributeKind::of(name).unwrap_or(AttributeKind::Plain);
         let mut rows = Vec::new();
         let mut places = vec![[None; 2]; plan.of.sources.len()];
-        let mut next = 0;
+        let mut next = 0_u32;
+        // Values that may be made have numbers too, and the last number means none.
+        let most = (u32::MAX as usize).saturating_sub(plan.new.len());
         let mut counts = counts(plan);
         if !kind.has_sides() {
             let [straight, reversed] = &mut counts;
             straight.iter_mut().zip(reversed).for_each(|(count, more)| *count += std::mem::take(more));
         }
-        for reversed in [false, true] {
+        let mut compact_from = None;
+        let order = [false, true].map(|compact| [false, true].map(|reversed| (compact, reversed)));
+        for (compact, reversed) in order.into_iter().flatten() {
             for (source, mesh) in plan.of.sources.iter().enumerate() {
                 let place = mesh.attributes.iter().position(|attribute| attribute.name == name);
                 let triangles = counts[usize::from(reversed)][source];
                 let Some(attribute) = place.filter(|_| triangles > 0) else { continue };
+                if compact != ((triangles as f64) < MOSTLY_LEFT * mesh.triangles.len() as f64) {
+                    continue;
+                }
+                if compact {
+                    compact_from.get_or_insert(next);
+                }
                 let count = mesh.attributes[attribute].len() as u32;
-                let compact = (triangles as f64) < MOSTLY_LEFT * mesh.triangles.len() as f64;
                 places[source][usize::from(reversed)] = Some(rows.len() as u32);
                 rows.push(Rows { source, attribute, reversed, first: next, count, compact });
-                next += count;
+                let sum = next as usize + count as usize;
+                if sum >= most {
+                    return Err(too_many(sum, most, components));
+                }
+                next = sum as u32;
             }
         }
-        Self { plan, name, kind, components, rows, places, made_from: next, made: Vec::new() }
+        Ok(Self {
+            plan,
+            name,
+            kind,
+            components,
+            rows,
+            places,
+            compact_from: compact_from.unwrap_or(next),
+            made_from: next,
+            made: Vec::new(),
+        })
     }
 
     fn attribute(mut self) -> Attribute {
         // 1. What was made, and its numbers.
-        let new = self.values_of_new_corners();
-        // 2. The value of each corner.
-        let mut of_corner = self.of_corners(&new);
-        // 3. What is not in use goes.
-        let count = self.made_from as usize + self.made.len() / self.components.max(1);
-        let compacts = self.rows.iter().any(|rows| rows.compact);
-        let numbers = if compacts { self.numbers_in_use(&mut of_corner, count) } else { None };
-        let values = self.values(numbers.as_deref());
+        let mut new = self.values_of_new_corners();
+        // 2. What is not in use goes.
+        let left = Left::new(&self, &new);
+        new.iter_mut().for_each(|index| *index = left.number(*index));
+        // 3. The value of each corner, and the table.
+        let of_corner = self.of_corners(&new, &left);
+        let values = self.values(&left);
         Attribute { name: self.name.into(), components: self.components, values, of_corner }
     }
 
@@ -150,21 +182,19 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The value of each corner of the new mesh.
-    fn of_corners(&self, new: &[u32]) -> Vec<u32> {
+    /// The value of each corner of the new mesh; `new` are the values of new corners.
+    fn of_corners(&self, new: &[u32], left: &Left) -> Vec<u32> {
         let of = self.plan.of;
         let mut of_corner = Vec::with_capacity(3 * of.triangles.len());
         let mut taken = self.plan.taken.iter();
         for run in of.runs {
             let rows = self.rows_of(run.source, run.reversed);
-            let given = rows.map(|rows| (&of.sources[rows.source].attributes[rows.attribute], rows.first));
-            let shifted = |index: u32, first: u32| {
-                if index == Attribute::NONE { index } else { index.saturating_add(first) }
-            };
+            let given =
+                rows.map(|rows| (&of.sources[rows.source].attributes[rows.attribute].of_corner, rows));
+            let renumbered = |index: u32, rows: &Rows| left.number(shifted(index, rows.first));
             let at = |triangle: u32, corner: u32| match given {
-                Some((attribute, first)) => {
-                    let place = 3 * triangle as usize + corner as usize;
-                    shifted(attribute.of_corner[place], first)
+                Some((of_corner, rows)) => {
+                    renumbered(of_corner[3 * triangle as usize + corner as usize], rows)
                 }
                 None => Attribute::NONE,
             };
@@ -180,16 +210,19 @@ impl<'a> Table<'a> {
             let corners = 3 * run.triangle as usize..3 * (run.triangle + run.count) as usize;
             match given {
                 None => of_corner.resize(of_corner.len() + corners.len(), Attribute::NONE),
-                Some((attribute, 0)) if !run.reversed => {
-                    of_corner.extend_from_slice(&attribute.of_corner[corners]);
+                Some((given, Rows { first: 0, compact: false, .. })) if !run.reversed => {
+                    of_corner.extend_from_slice(&given[corners]);
                 }
-                Some((attribute, first)) if !run.reversed => {
-                    of_corner.extend(attribute.of_corner[corners].iter().map(|&index| shifted(index, first)));
+                Some((given, &Rows { first, compact: false, .. })) if !run.reversed => {
+                    of_corner.extend(given[corners].iter().map(|&index| shifted(index, first)));
                 }
-                Some((attribute, first)) => {
-                    for corners in attribute.of_corner[corners].chunks_exact(3) {
+                Some((given, rows)) if !run.reversed => {
+                    of_corner.extend(given[corners].iter().map(|&index| renumbered(index, rows)));
+                }
+                Some((given, rows)) => {
+                    for corners in given[corners].chunks_exact(3) {
                         let turned = [corners[0], corners[2], corners[1]];
-                        of_corner.extend_from_slice(&turned.map(|index| shifted(index, first)));
+                        of_corner.extend_from_slice(&turned.map(|index| renumbered(index, rows)));
                     }
                 }
             }
@@ -197,55 +230,103 @@ impl<'a> Table<'a> {
         of_corner
     }
 
-    /// The table, or what is in use of it.
-    fn values(&self, numbers: Option<&[u32]>) -> Vec<f64> {
-        let is_used = |row: u32| numbers.is_none_or(|numbers| numbers[row as usize] != Attribute::NONE);
-        let rows_left = numbers.map_or(self.made_from as usize, <[u32]>::len);
-        let mut values = Vec::with_capacity(rows_left * self.components + self.made.len());
+    /// The table without what has gone.
+    fn values(&self, left: &Left) -> Vec<f64> {
+        let count = self.compact_from as usize + left.count;
+        let mut values = Vec::with_capacity(count * self.components + self.made.len());
         for rows in &self.rows {
             let attribute = &self.plan.of.sources[rows.source].attributes[rows.attribute];
-            let is_wide = attribute.components == self.components;
-            if is_wide && !rows.reversed && numbers.is_none() {
+            let start = values.len();
+            if attribute.components == self.components && !rows.compact {
                 values.extend_from_slice(&attribute.values);
-                continue;
-            }
-            for (_, index) in (rows.first..).zip(0..rows.count).filter(|&(row, _)| is_used(row)) {
-                let start = values.len();
-                if let Some(value) = attribute.value(index) {
+            } else {
+                let numbered = (rows.first..).zip(0..rows.count);
+                for (_, index) in numbered.filter(|&(row, _)| left.number(row) != Attribute::NONE) {
+                    let value = attribute.value(index).unwrap_or_default();
                     values.extend(widened(value, self.kind, self.components));
                 }
-                if rows.reversed {
-                    turn_over(self.kind, &mut values[start..]);
-                }
+            }
+            if rows.reversed {
+                let own = values[start..].chunks_exact_mut(self.components.max(1));
+                own.for_each(|value| turn_over(self.kind, value));
             }
         }
-        let made = (self.made_from..).zip(self.made.chunks_exact(self.components.max(1)));
-        made.filter(|&(row, _)| is_used(row)).for_each(|(_, value)| values.extend_from_slice(value));
+        values.extend_from_slice(&self.made);
         values
     }
+}
 
-    /// Gives rows numbers without gaps, in their order, but those that are not in use and may go; `None` if all `count` stay.
-    fn numbers_in_use(&self, of_corner: &mut [u32], count: usize) -> Option<Vec<u32>> {
-        let mut numbers = vec![0; count];
-        for rows in self.rows.iter().filter(|rows| rows.compact) {
-            numbers[rows.first as usize..][..rows.count as usize].fill(Attribute::NONE);
+/// The number of a value of a source whose rows begin at one.
+fn shifted(index: u32, first: u32) -> u32 {
+    if index == Attribute::NONE { index } else { index.saturating_add(first) }
+}
+
+/// What is left of the rows that may go, without gaps, in their order.
+struct Left {
+    /// The first row that may go.
+    from: u32,
+    /// For each of them its new number; none for what has gone.
+    numbers: Vec<u32>,
+    /// How many are left.
+    count: usize,
+}
+
+impl Left {
+    /// `new` are the values of new corners.
+    fn new(table: &Table<'_>, new: &[u32]) -> Self {
+        let from = table.compact_from;
+        let mut left =
+            Self { from, numbers: vec![Attribute::NONE; (table.made_from - from) as usize], count: 0 };
+        if left.numbers.is_empty() {
+            return left;
         }
-        for &index in of_corner.iter() {
-            if let Some(number) = numbers.get_mut(index as usize) {
-                *number = 0;
+        // 1. What is in use: by new corners, and by those of the sources in question.
+        new.iter().for_each(|&index| left.mark(index));
+        let of = table.plan.of;
+        let mut taken = table.plan.taken.iter();
+        for run in of.runs {
+            let pieces = taken.by_ref().take(if run.whole { 0 } else { run.count as usize });
+            let Some(rows) = table.rows_of(run.source, run.reversed).filter(|rows| rows.compact) else {
+                pieces.for_each(drop);
+                continue;
+            };
+            let of_corner = &of.sources[rows.source].attributes[rows.attribute].of_corner;
+            let corner = |corner: &Taken| of_corner[3 * corner.of as usize + corner.corner as usize];
+            for corner in pieces.flatten().filter(|taken| taken.corner != NEW).map(corner) {
+                left.mark(shifted(corner, rows.first));
+            }
+            if run.whole {
+                let corners = 3 * run.triangle as usize..3 * (run.triangle + run.count) as usize;
+                of_corner[corners].iter().for_each(|&index| left.mark(shifted(index, rows.first)));
             }
         }
-        let mut next = 0;
-        for number in numbers.iter_mut().filter(|number| **number == 0) {
-            *number = next;
-            next += 1;
+        // 2. Numbers.
+        for number in left.numbers.iter_mut().filter(|number| **number == 0) {
+            *number = from + left.count as u32;
+            left.count += 1;
         }
-        if next as usize == count {
-            return None;
+        left
+    }
+
+    /// Notes that a row is in use.
+    fn mark(&mut self, index: u32) {
+        let row = index.checked_sub(self.from).and_then(|row| self.numbers.get_mut(row as usize));
+        if let Some(number) = row {
+            *number = 0;
         }
-        for index in of_corner.iter_mut().filter(|index| **index != Attribute::NONE) {
-            *index = numbers.get(*index as usize).copied().unwrap_or(Attribute::NONE);
+    }
+
+    /// The new number of a row or of a value that was made.
+    #[inline]
+    fn number(&self, index: u32) -> u32 {
+        if index < self.from || index == Attribute::NONE {
+            return index;
         }
-        Some(numbers)
+        let row = (index - self.from) as usize;
+        match self.numbers.get(row) {
+            Some(&number) => number,
+            // What was made comes right after what is left.
+            None => index - (self.numbers.len() - self.count) as u32,
+        }
     }
 }

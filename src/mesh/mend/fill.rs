@@ -7,7 +7,8 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::super::places::Spots;
-use super::super::{Bounds, measure, weld};
+use super::super::weld::{self, OpenEdge};
+use super::super::{Bounds, measure};
 use super::Surface;
 
 /// Loops of up to so many edges are filled by the smallest of all triangulations: 200^3 / 6 sums, some 5 ms.
@@ -17,11 +18,7 @@ const SMALL: usize = 200;
 pub(super) fn fill(surface: &mut Surface<'_>, most: usize) {
     let positions = &surface.mesh.positions;
     let boundary = weld::boundary(&surface.triangles, positions.len());
-    let edges: Vec<(u32, u32)> = boundary
-        .iter()
-        .flat_map(|edge| std::iter::repeat_n((edge.from, edge.to), edge.count as usize))
-        .collect();
-    let loops: Vec<Vec<u32>> = loops(&edges).into_iter().filter(|ring| ring.len() <= most).collect();
+    let loops: Vec<Vec<u32>> = rings(&boundary).into_iter().filter(|ring| ring.len() <= most).collect();
     if loops.is_empty() {
         return;
     }
@@ -40,11 +37,7 @@ pub(super) fn fill(surface: &mut Surface<'_>, most: usize) {
     let spots = Spots { mesh: surface.mesh };
     for ring in loops {
         let has_edge = |u: u32, v: u32| beside.contains_key(&(u, v)) || beside.contains_key(&(v, u));
-        let triangles = if ring.len() <= SMALL {
-            smallest(positions, &ring, has_edge)
-        } else {
-            ear_by_ear(positions, &ring)
-        };
+        let triangles = filling(positions, &ring, has_edge);
         let source = beside.get(&(ring[0], ring[ring.len() - 1])).or_else(|| beside.get(&(ring[1], ring[0])));
         let source = source.copied().unwrap_or(0);
         if let Some(bounds) = Bounds::of(ring.iter().map(|&v| &positions[v as usize])) {
@@ -55,6 +48,96 @@ pub(super) fn fill(surface: &mut Surface<'_>, most: usize) {
         surface.source.extend(std::iter::repeat_n(source, triangles.len()));
         surface.triangles.extend(triangles);
     }
+}
+
+/// The triangles that fill a loop.
+fn filling(positions: &[[f64; 3]], ring: &[u32], has_edge: impl Fn(u32, u32) -> bool) -> Vec<[u32; 3]> {
+    if ring.len() <= SMALL { smallest(positions, ring, has_edge) } else { ear_by_ear(positions, ring) }
+}
+
+/// Triangles that fill a loop, or the space between two.
+pub(super) struct Filling {
+    /// Two vertices of the rim, as the surface beside it runs.
+    pub(super) rim: [u32; 2],
+    pub(super) triangles: Vec<[u32; 3]>,
+}
+
+/// All loops filled, and bands between each loop and the one nearest to it where a band is smaller than both fillings.
+pub(super) fn fillings(
+    positions: &[[f64; 3]],
+    loops: &[Vec<u32>],
+    has_edge: impl Fn(u32, u32) -> bool,
+) -> Vec<Filling> {
+    let rim = |ring: &[u32]| [ring[1], ring[0]];
+    let area_of = |triangles: &[[u32; 3]]| {
+        triangles.iter().map(|t| t.map(|v| positions[v as usize])).map(|[p, q, r]| area(p, q, r)).sum::<f64>()
+    };
+    let mut all: Vec<Filling> = loops
+        .iter()
+        .map(|ring| Filling { rim: rim(ring), triangles: filling(positions, ring, &has_edge) })
+        .collect();
+    let areas: Vec<f64> = all.iter().map(|filling| area_of(&filling.triangles)).collect();
+    for (first, second, at) in neighbours(positions, loops) {
+        // Along the first loop, over to the second, along that and back.
+        let (x, y) = (&loops[first], &loops[second]);
+        let round = |ring: &[u32], from: usize| {
+            let ring = ring.to_vec();
+            (0..=ring.len()).map(move |i| ring[(from + i) % ring.len()])
+        };
+        let joined: Vec<u32> = round(x, at[0]).chain(round(y, at[1])).collect();
+        if joined.len() > SMALL {
+            continue;
+        }
+        let mut band = smallest(positions, &joined, |u, v| u == v || has_edge(u, v));
+        band.retain(|[a, b, c]| a != b && b != c && c != a);
+        if area_of(&band) < areas[first] + areas[second] {
+            all.push(Filling { rim: rim(x), triangles: band });
+        }
+    }
+    all
+}
+
+/// Pairs of loops one of which is the nearest to the other, with the places on them where they are nearest.
+fn neighbours(positions: &[[f64; 3]], loops: &[Vec<u32>]) -> Vec<(usize, usize, [usize; 2])> {
+    /// More pairs of vertices are not looked through (a fifth of a second).
+    const MOST_PAIRS: usize = 100_000_000;
+    let vertices: usize = loops.iter().map(Vec::len).sum();
+    if vertices.saturating_mul(vertices) > MOST_PAIRS {
+        return Vec::new();
+    }
+    let squared = |u: u32, v: u32| {
+        let (p, q) = (positions[u as usize], positions[v as usize]);
+        (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>()
+    };
+    let nearest = |ring: usize| {
+        let mut found: Option<(f64, usize, [usize; 2])> = None;
+        for (other, vertices) in loops.iter().enumerate().filter(|(other, _)| *other != ring) {
+            for (i, &u) in loops[ring].iter().enumerate() {
+                for (j, &v) in vertices.iter().enumerate() {
+                    let apart = squared(u, v);
+                    if found.is_none_or(|found| apart < found.0) {
+                        found = Some((apart, other, [i, j]));
+                    }
+                }
+            }
+        }
+        found.map(
+            |(_, other, [i, j])| if ring < other { (ring, other, [i, j]) } else { (other, ring, [j, i]) },
+        )
+    };
+    let mut pairs: Vec<(usize, usize, [usize; 2])> = (0..loops.len()).filter_map(nearest).collect();
+    pairs.sort_unstable();
+    pairs.dedup_by_key(|pair| (pair.0, pair.1));
+    pairs
+}
+
+/// The loops around holes; see [`loops`].
+pub(super) fn rings(boundary: &[OpenEdge]) -> Vec<Vec<u32>> {
+    let edges: Vec<(u32, u32)> = boundary
+        .iter()
+        .flat_map(|edge| std::iter::repeat_n((edge.from, edge.to), edge.count as usize))
+        .collect();
+    loops(&edges)
 }
 
 /// The loops around holes, each directed so that its filling lies to the left: against the open edges. A loop passes no vertex twice.

@@ -9,20 +9,25 @@
 //! 2. Further copies of triangles are left out ([`duplicates`]).
 //! 3. Fins, stray triangles and walls stored once are left out ([`cells`]).
 //!
-//! Holes are filled only on request ([`fill`]), where nothing else does.
+//! Holes are filled only on request ([`fill`]), where nothing else does; the fillings are refined ([`refine`]) if that is asked for as well.
 //!
 //! Triangles without area are left out before, where that leaves fewer edges open.
 
 mod cells;
 mod fill;
 mod points;
+mod refine;
 mod report;
 mod rounding;
 mod seams;
 mod sew;
+mod soup;
 mod splits;
 
+pub(super) use refine::refine;
 pub use report::Mending;
+pub use soup::Readied;
+pub(crate) use soup::Soup;
 pub(crate) use splits::fan_around_splits;
 
 use super::places::{Fault, Spots};

@@ -26,6 +26,8 @@ pub struct Mending {
     pub filled: Fault,
     /// How many triangles fill them.
     pub filled_triangles: usize,
+    /// How many new vertices these have, where fillings were refined.
+    pub filled_vertices: usize,
     /// The area of these, in squared units of the coordinates.
     pub filled_area: f64,
     /// Further copies of a triangle left out.
@@ -57,6 +59,7 @@ impl Mending {
         zero_area: Fault::NONE,
         filled: Fault::NONE,
         filled_triangles: 0,
+        filled_vertices: 0,
         filled_area: 0.0,
         copies: Fault::NONE,
         copied_shells: Fault::NONE,
@@ -122,7 +125,12 @@ impl fmt::Display for Mending {
             if std::ptr::eq(fault, &self.filled) && self.filled_triangles > 0 {
                 let count = self.filled_triangles;
                 let triangles = if count == 1 { "triangle" } else { "triangles" };
-                let text = format!(" ({count} {triangles}, area {})", short(self.filled_area));
+                let vertices = match self.filled_vertices {
+                    0 => String::new(),
+                    1 => " with 1 new vertex".to_owned(),
+                    vertices => format!(" with {vertices} new vertices"),
+                };
+                let text = format!(" ({count} {triangles}{vertices}, area {})", short(self.filled_area));
                 words.last_mut().into_iter().for_each(|word| word.push_str(&text));
             }
         }

@@ -1,6 +1,7 @@
 //! The JSON of a file.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 use gltf::json::accessor::ComponentType;
@@ -11,8 +12,8 @@ use super::super::super::pictures::PictureFile;
 use super::frame::Frame;
 use super::layout::{Layout, Part, Section};
 use super::materials::{Known, Lists, MaterialList};
-use crate::mesh::is_two_manifold;
-use crate::{Error, Mesh};
+use crate::mesh::{MaterialText, is_two_manifold};
+use crate::{Error, Material, Mesh};
 
 const ARRAY_BUFFER: u32 = 34_962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34_963;
@@ -34,6 +35,23 @@ pub(in crate::io::gltf) struct Additions {
     pub(in crate::io::gltf) lists: Vec<(&'static str, Vec<Value>)>,
     pub(in crate::io::gltf) used: Vec<String>,
     pub(in crate::io::gltf) required: Vec<String>,
+}
+
+/// The numbers of materials so far: groups mostly share them, and their text is parsed once.
+#[derive(Default)]
+struct MaterialNumbers<'a>(HashMap<(*const MaterialText, &'a str), Vec<(&'a Material, u32)>>);
+
+impl<'a> MaterialNumbers<'a> {
+    fn of(&mut self, material: &'a Material, list: &mut MaterialList<'_>) -> u32 {
+        let text = material.text.as_ref().map_or(std::ptr::null(), Arc::as_ptr);
+        let known = self.0.entry((text, &material.name)).or_default();
+        if let Some(&(_, number)) = known.iter().find(|(other, _)| *other == material) {
+            return number;
+        }
+        let number = list.add(material);
+        known.push((material, number));
+        number
+    }
 }
 
 impl<'a> Fragment<'a> {
@@ -73,9 +91,10 @@ impl<'a> Fragment<'a> {
         // 1. Materials first: their pictures are the last sections of the buffer.
         let mut materials = MaterialList::new(pictures, known);
         let groups = &layout.mesh.groups.list;
+        let mut numbers = MaterialNumbers::default();
         let of_group: Vec<Option<u32>> = groups
             .iter()
-            .map(|group| group.material.as_ref().map(|material| materials.add(material)))
+            .map(|group| group.material.as_ref().map(|material| numbers.of(material, &mut materials)))
             .collect();
         layout.images = materials.embedded();
         // 2. Accessors and meshes.

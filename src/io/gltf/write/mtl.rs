@@ -31,7 +31,8 @@ pub(super) fn translate(
             }
             _ => {}
         }
-        let texture = MapStatement::parse(line).and_then(|_| textures.next());
+        let statement = MapStatement::parse(line);
+        let texture = statement.as_ref().and_then(|_| textures.next());
         let place = match keyword {
             "norm" => "normalTexture",
             "map_Ke" => "emissiveTexture",
@@ -46,14 +47,13 @@ pub(super) fn translate(
             }
         };
         let image = texture.and_then(|texture| texture.images.first());
+        let (wrap, transform) = statement.map_or(([Wrap::Repeat; 2], TextureUse::UNMOVED), |statement| {
+            let wrap = if statement.how.clamp { Wrap::Clamp } else { Wrap::Repeat };
+            ([wrap; 2], statement.how.transform())
+        });
+        warnings.extend(statement.and_then(|statement| lost_options(&statement)));
         let said = image.and_then(|image| {
-            info(&TextureUse {
-                image: image.clone(),
-                coordinates: 0,
-                wrap: [Wrap::Repeat; 2],
-                nearest: false,
-                transform: TextureUse::UNMOVED,
-            })
+            info(&TextureUse { image: image.clone(), coordinates: 0, wrap, nearest: false, transform })
         });
         if let Some(said) = said {
             material[place] = said;
@@ -63,4 +63,40 @@ pub(super) fn translate(
         }
     }
     warnings
+}
+
+/// What is said of options for which glTF has no words.
+fn lost_options(statement: &MapStatement<'_>) -> Option<String> {
+    let is_lost = |word: &&str| {
+        word.starts_with('-') && word.parse::<f64>().is_err() && !matches!(*word, "-o" | "-s" | "-clamp")
+    };
+    let lost: Vec<&str> = statement.options.split_whitespace().filter(is_lost).collect();
+    (!lost.is_empty()).then(|| {
+        format!("options {} of {} not written: glTF has no word for them", lost.join(" "), statement.keyword)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Image, MaterialLanguage, Texture};
+    use std::sync::Arc;
+
+    #[test]
+    fn a_picture_of_normals_lies_as_its_options_say() {
+        let texture = Texture { text: "n.png".into(), images: vec![Arc::new(Image::default())] };
+        let text = MaterialText {
+            language: MaterialLanguage::Mtl,
+            text: "norm -s 2 3 -clamp on -bm 0.5 n.png\n".into(),
+            textures: vec![Arc::new(texture)],
+        };
+        let (mut material, mut asked) = (json!({"pbrMetallicRoughness": {}}), Vec::new());
+        let warnings = translate(&text, &mut material, &mut |texture| {
+            asked.push((texture.wrap, texture.transform));
+            Some(json!({"index": 0}))
+        });
+        assert_eq!(asked, [([Wrap::Clamp; 2], [[2.0, 0.0, 0.0], [0.0, 3.0, -2.0]])]);
+        assert_eq!(material["normalTexture"], json!({"index": 0}));
+        assert_eq!(warnings, ["options -bm of norm not written: glTF has no word for them"]);
+    }
 }

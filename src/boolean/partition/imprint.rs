@@ -1,0 +1,177 @@
+//! The curve in which two surfaces meet, on both, with nothing taken away.
+
+use super::{of_surface, without_needless};
+use crate::boolean::complex::ids::{FaceId, PointId};
+use crate::boolean::general::arrangement::{Crossed, General};
+use crate::boolean::many::options::BooleanOptions;
+use crate::exact::Projection;
+use crate::mesh::{Descent, Run, carry};
+use crate::parallel::Runner;
+use crate::polygon::{Overlay, Triangulator};
+use crate::{Error, Mesh};
+
+/// A surface with the curve in which another meets it.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Imprinted {
+    /// The surface. Where it was not met its triangles and vertices are as they were.
+    pub mesh: Mesh,
+    /// By triangle the one of the given surface that it is a piece of.
+    pub origins: Vec<u32>,
+    /// Triangles on which the curve is not drawn in full, because rounding has made it cross itself there; 0 nearly always.
+    pub incomplete: usize,
+}
+
+impl BooleanOptions {
+    /// Two surfaces, open or closed, with the curve in which they meet as edges of both: its vertices are the same on both, bit for
+    /// bit. Nothing is taken away, and each is as closed as it was. Where they lie on each other in a plane nothing is drawn.
+    ///
+    /// ```
+    /// use trisect::{BooleanOptions, Mesh};
+    ///
+    /// let corners = vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
+    /// let flat = Mesh::new(corners, vec![[0, 1, 2], [0, 2, 3]]);
+    /// let upright = flat.clone().rotated([1.0, 0.0, 0.0], 90.0)?;
+    /// let [a, b] = BooleanOptions::new().imprint(&flat, &upright)?;
+    /// assert_eq!([a.mesh.area(), b.mesh.area()], [4.0, 4.0]);
+    /// let on_both = a.mesh.positions.iter().filter(|point| b.mesh.positions.contains(point)).count();
+    /// assert_eq!(on_both, 3);
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`trim`](Self::trim), of both.
+    pub fn imprint(&self, a: &Mesh, b: &Mesh) -> Result<[Imprinted; 2], Error> {
+        for (number, surface) in [a, b].into_iter().enumerate() {
+            surface.check().map_err(|error| of_surface(error, number))?;
+        }
+        self.work(|_, runner| {
+            let meshes = [without_needless(a), without_needless(b)];
+            let crossed = Crossed::of_open(&[&meshes[0], &meshes[1]], runner)?;
+            let general = General::without_labels(crossed, runner)?;
+            let [a, b] = [0, 1].map(|owner| imprinted(&general, owner, &meshes[owner as usize], runner));
+            Ok([a?, b?])
+        })
+    }
+}
+
+/// One of the surfaces.
+fn imprinted(general: &General, owner: u32, given: &Mesh, runner: Runner<'_>) -> Result<Imprinted, Error> {
+    let surfaces = &general.surfaces;
+    let mut numbers = vec![u32::MAX; general.lines.point_count() as usize];
+    let (mut positions, mut triangles, mut origins, mut incomplete) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let mut drawing = Drawing::default();
+    for face in surfaces.faces().filter(|&face| surfaces.owner(face) == owner) {
+        let vertices = surfaces.vertices(face).map(|v| PointId::new(v.number()));
+        drawing.triangles.clear();
+        if general.crossings.of_face(face).is_empty() {
+            drawing.triangles.push(vertices.map(|point| general.identification.representative(point)));
+        } else if !drawing.draw(general, face) {
+            incomplete += 1;
+        }
+        for corners in &drawing.triangles {
+            triangles.push(corners.map(|point| {
+                let number = &mut numbers[point.index()];
+                if *number == u32::MAX {
+                    *number = positions.len() as u32;
+                    positions.push(*general.lines.position(surfaces, point));
+                }
+                *number
+            }));
+            origins.push(surfaces.triangle(face));
+        }
+    }
+    let mut mesh = Mesh::new(positions, triangles);
+    mesh.groups = given.groups.clone();
+    mesh.groups.select(&origins);
+    let run = |&triangle: &u32| Run { source: 0, triangle, count: 1, reversed: false, whole: false };
+    let runs: Vec<Run> = origins.iter().map(run).collect();
+    let descent = Descent {
+        sources: &[given],
+        positions: &mesh.positions,
+        triangles: &mesh.triangles,
+        runs: &runs,
+        unit: f64::EPSILON,
+        beyond: &|_, _, _| None,
+    };
+    mesh.attributes = carry(&descent, runner)?;
+    Ok(Imprinted { mesh, origins, incomplete })
+}
+
+/// Triangulates faces along all lines on them.
+#[derive(Default)]
+struct Drawing {
+    triangulator: Triangulator,
+    triangles: Vec<[PointId; 3]>,
+}
+
+impl Drawing {
+    /// The triangles of a face; whether all lines on it are edges of them.
+    fn draw(&mut self, general: &General, face: FaceId) -> bool {
+        let General { surfaces, edges, crossings, lines, identification, .. } = general;
+        let seen = Projection::of(&surfaces.positions(face));
+        // 1. The outline, and the lines within.
+        let mut outline: Vec<PointId> = Vec::new();
+        let mut add = |point: PointId| {
+            let point = identification.representative(point);
+            if outline.last() != Some(&point) {
+                outline.push(point);
+            }
+        };
+        for k in 0..3 {
+            let (edge, is_forward) = edges.of_side(surfaces, face, k);
+            add(PointId::new(surfaces.vertices(face)[k].number()));
+            let nodes = lines.on_edge(edge).iter().map(|&node| crossings.point(node));
+            if is_forward { nodes.for_each(&mut add) } else { nodes.rev().for_each(&mut add) }
+        }
+        if outline.len() > 1 && outline.first() == outline.last() {
+            outline.pop();
+        }
+        let mut within: Vec<[PointId; 2]> = Vec::new();
+        for &id in crossings.of_face(face) {
+            let segment = crossings.segment(id);
+            // Only where it meets the other surface.
+            if surfaces.owner(segment.partner(face)) == surfaces.owner(face) {
+                continue;
+            }
+            let points = lines.on_segment(id).iter().map(|&triple| lines.point(triple));
+            let mut from = identification.representative(segment.tail);
+            for to in points.chain([segment.head]).map(|point| identification.representative(point)) {
+                if to != from {
+                    within.push([from, to]);
+                }
+                from = to;
+            }
+        }
+        // 2. Local numbers.
+        let mut ids: Vec<PointId> = outline.iter().copied().chain(within.iter().flatten().copied()).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        let local = |point: PointId| ids.partition_point(|&other| other < point) as u32;
+        let points: Vec<[f64; 2]> =
+            ids.iter().map(|&point| seen.project(lines.position(surfaces, point))).collect();
+        let ring: Vec<u32> = outline.iter().map(|&point| local(point)).collect();
+        let sides: Vec<[u32; 2]> = (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]).collect();
+        let lines: Vec<[u32; 2]> = within.iter().map(|ends| ends.map(local)).collect();
+        // 3. One triangulation with all of them; the outline alone where that cannot be.
+        let all = [&sides[..], &lines[..]].concat();
+        let found = Overlay::new(&points, &all).and_then(|overlay| overlay.inside(&points, &ring));
+        let mut is_complete = found.is_some();
+        let found = found.unwrap_or_else(|| {
+            let mut triangles = Vec::new();
+            self.triangulator.triangulate(&points, &sides, &mut triangles);
+            triangles
+        });
+        if is_complete {
+            let mut drawn: Vec<[u32; 2]> =
+                found.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+            drawn.sort_unstable();
+            let is_drawn = |&[u, v]: &[u32; 2]| {
+                drawn.binary_search(&[u, v]).is_ok() || drawn.binary_search(&[v, u]).is_ok()
+            };
+            is_complete = lines.iter().all(is_drawn);
+        }
+        self.triangles.extend(found.into_iter().map(|corners| corners.map(|v| ids[v as usize])));
+        is_complete
+    }
+}

@@ -1,0 +1,90 @@
+//! `imprint`: the curve in which two surfaces meet, on both.
+
+use std::time::Instant;
+
+use clap::ArgMatches;
+use trisect::Imprinted;
+
+use super::argument_groups::Colours;
+use super::cut_arguments::Imprint;
+use super::fault::{Exit, Fault};
+use super::output::{self, Product, Shown, Target};
+use super::recenter;
+use super::report::Measures;
+use super::requests;
+use super::scenes;
+use super::selection;
+use super::session::Session;
+use super::trim::{self, Sheet};
+use super::words;
+
+/// Draws the curve in which two inputs meet on both.
+pub(crate) fn run(
+    arguments: &Imprint,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let requests = requests::requests(matches, arguments.reading.format)?;
+    let writing = &arguments.results.writing;
+    let targets = output::targets(writing, &arguments.results.drawing, session.common)?;
+    if targets.is_empty() && !session.is_reported() {
+        return Err(Fault::usage("nowhere to put the results: add -o FILE, --png FILE or --json"));
+    }
+    let control = session.control();
+    let requests = selection::joined(requests, &session.limits, &control)?;
+    let write_options =
+        scenes::kept(output::write_options(writing, &session.limits), writing, requests.first())?;
+    let both = <[_; 2]>::try_from(requests)
+        .map_err(|_| Fault::usage("imprint takes two inputs, whose curve is drawn on both"))?;
+    let places: Vec<Vec<Target>> = ["-1", "-2"]
+        .iter()
+        .map(|suffix| targets.iter().map(|target| target.with_suffix(suffix)).collect())
+        .collect::<Result<_, _>>()?;
+    places.iter().try_for_each(|targets| output::probe(targets, &session.limits))?;
+
+    let start = Instant::now();
+    let mut sheets: Vec<Sheet> = Vec::new();
+    for (number, request) in both.iter().enumerate() {
+        sheets.push(trim::sheet(request, number, writing, &control, session)?);
+    }
+    session.took("read", start);
+    let [a, b] = &sheets[..] else { return Err(Fault::usage("two inputs are needed")) };
+    let start = Instant::now();
+    let made = session.boolean_options(control).imprint(&a.mesh, &b.mesh)?;
+    let seconds = session.took("run", start);
+
+    let (mut results, mut outputs) = (Vec::new(), Vec::new());
+    for (((made, targets), sheet), request) in made.iter().zip(&places).zip(&sheets).zip(&both) {
+        let Imprinted { mesh, incomplete, .. } = made;
+        if *incomplete > 0 {
+            let triangles = words::counted(*incomplete, "triangle");
+            session.warn(format!("{}: the curve is not drawn in full on {triangles}", request.name()));
+        }
+        let measures = Measures::of_mesh(mesh);
+        let placed = recenter::placed(mesh, writing, session);
+        let placed = placed.as_ref();
+        let drawing = &arguments.results.drawing;
+        let picture = || {
+            let operands = placed.triangles.iter().map(|_| 0);
+            let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
+            trisect::render::mesh(placed, &output::view(drawing, Some(sheet.format)), colours.as_deref())
+        };
+        let options = write_options.clone();
+        let shown = Shown::new(drawing, Some(sheet.format), None);
+        let product = Product { mesh: placed, options, picture: &picture, documents: &[], shown };
+        let (written, warnings) = output::write_all(targets, &product, &session.limits)?;
+        warnings.into_iter().for_each(|warning| session.warn(warning));
+        outputs.extend(written);
+        results.push(measures.to_json());
+        let arrow = output::arrow(targets);
+        session.console.say(&format!(
+            "{}: {} ({}){arrow}",
+            request.name(),
+            measures.line(),
+            words::time(seconds)
+        ));
+    }
+    session.note("results", results);
+    session.note("outputs", outputs);
+    Ok(Exit::Fine)
+}

@@ -1,0 +1,130 @@
+//! `solidify`: a solid of any soup of triangles.
+
+use std::time::Instant;
+
+use clap::ArgMatches;
+use trisect::{Embed, Grid, Solidified, Solidify};
+
+use super::argument_groups::Colours;
+use super::cut_arguments::Solidify as Arguments;
+use super::fault::{Exit, Fault};
+use super::json::json_of;
+use super::output::{self, Product, Shown, Target};
+use super::reading::{self, Input};
+use super::recenter;
+use super::report::Measures;
+use super::requests;
+use super::scenes;
+use super::selection;
+use super::session::Session;
+use super::words;
+
+/// Makes a solid of an input.
+pub(crate) fn run(
+    arguments: &Arguments,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let mut requests = requests::requests(matches, arguments.reading.format)?;
+    let writing = &arguments.results.writing;
+    scenes::name_node(&mut requests, writing)?;
+    let targets = output::targets(writing, &arguments.results.drawing, session.common)?;
+    if targets.is_empty() && !session.is_reported() {
+        return Err(Fault::usage("nowhere to put the result: add -o FILE, --png FILE or --json"));
+    }
+    let control = session.control();
+    let requests = selection::joined(requests, &session.limits, &control)?;
+    let write_options =
+        scenes::kept(output::write_options(writing, &session.limits), writing, requests.first())?;
+    let [request] = <[_; 1]>::try_from(requests)
+        .map_err(|_| Fault::usage("solidify takes one input; union puts several together afterwards"))?;
+    output::probe(&targets, &session.limits)?;
+
+    let start = Instant::now();
+    let Input { mesh, format, mut warnings, contents, reserved: _reserved } =
+        reading::read(&request, &session.limits, &control)
+            .map_err(|error| error.of_operand(0, request.name()))?;
+    session.took("read", start);
+    warnings.extend(scenes::lost(&contents, writing, 0));
+    warnings.into_iter().for_each(|warning| session.warn(format!("{}: {warning}", request.name())));
+    session.console.say(&format!("{}: {}", request.name(), Measures::of_mesh(&mesh).line()));
+
+    let start = Instant::now();
+    let single = writing.single || targets.iter().any(Target::is_single);
+    let embed = Embed::OnGrid(if single { Grid::Single } else { Grid::Double });
+    let options = session.boolean_options(control).embed(embed);
+    let how = Solidify::new().options(options).weld(request.repairs.weld);
+    let made = mesh.solidify(&how).map_err(|error| error.of_operand(0, request.name()))?;
+    let seconds = session.took("run", start);
+    tell(&made, &targets, seconds, session);
+
+    let start = Instant::now();
+    let placed = recenter::placed(made.solid.mesh(), writing, session);
+    let placed = placed.as_ref();
+    let drawing = &arguments.results.drawing;
+    let picture = || {
+        let operands = made.origins.iter().map(|origin| origin.operand as usize);
+        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), operands);
+        trisect::render::mesh(placed, &output::view(drawing, Some(format)), colours.as_deref())
+    };
+    let shown = Shown::new(drawing, Some(format), None);
+    let product = Product { mesh: placed, options: write_options, picture: &picture, documents: &[], shown };
+    let (outputs, warnings) = output::write_all(&targets, &product, &session.limits)?;
+    warnings.into_iter().for_each(|warning| session.warn(warning));
+    session.note("outputs", outputs);
+    session.took("write", start);
+    Ok(Exit::Fine)
+}
+
+/// Says what was done, and what the result is.
+fn tell(made: &Solidified, targets: &[Target], seconds: f64, session: &mut Session<'_>) {
+    let report = &made.report;
+    let readied = &report.readied;
+    // 1. To the triangles.
+    let mut done: Vec<String> = Vec::new();
+    let mut count = |count: usize, one: &str, several: &str| {
+        if count > 0 {
+            done.push(format!("{count} {}", if count == 1 { one } else { several }));
+        }
+    };
+    count(readied.joined, "vertex joined", "vertices joined");
+    count(readied.copies, "copy of a triangle left out", "copies of triangles left out");
+    count(readied.without_area, "triangle without area left out", "triangles without area left out");
+    count(readied.split_edges, "edge split", "edges split");
+    count(readied.turned, "triangle turned", "triangles turned");
+    if readied.distance > 0.0 {
+        done.push(format!("joined within {}", words::short(readied.distance)));
+    }
+    if !done.is_empty() {
+        session.console.say(&format!("  {}", done.join(", ")));
+    }
+    // 2. To what they enclose.
+    session.console.say(&format!(
+        "  {}, {} inside; added an area of {} across {}, dropped one of {}",
+        words::counted(report.cells, "cell"),
+        report.cells_inside,
+        words::short(report.added_area),
+        words::counted(readied.holes, "hole"),
+        words::short(report.dropped_area),
+    ));
+    if report.doubtful_volume > 0.0 || report.dropped_volume > 0.0 {
+        session.warn(format!(
+            "not much more than half of what surrounds it is there: a volume of {} was taken for inside, and one of {} for outside",
+            words::short(report.doubtful_volume),
+            words::short(report.dropped_volume),
+        ));
+    }
+    if made.solid.is_empty() {
+        session.warn("the triangles enclose nothing: the result is empty".to_owned());
+    }
+    if report.still_crossing > 0 {
+        let triangles = words::counted(report.still_crossing, "triangle");
+        session.warn(format!("{triangles} still cross others or lie on them after rounding"));
+    }
+    let measures = Measures::of_solid(&made.solid);
+    let mut result = measures.to_json();
+    result.insert("solidify".into(), json_of(report));
+    session.note("result", result);
+    let arrow = output::arrow(targets);
+    session.console.say(&format!("result: {} ({}){arrow}", measures.line(), words::time(seconds)));
+}
