@@ -47,7 +47,7 @@
 //!
 //! | Feature | Default | Adds | Crates (30 without any) |
 //! |---|---|---|---|
-//! | `cli` | yes | the program; brings `field`, `formats`, `model`, `render`, `serde` | 51 |
+//! | `cli` | yes | the program; brings `field`, `formats`, `model`, `render`, `serde` | 56 |
 //! | `draco` | yes | Draco-compressed glTF in the module `io`; brings `formats` | 17 |
 //! | `field` | yes | the module `field`: signed distances, formulas, R-functions, and their surfaces as meshes | 1 |
 //! | `formats` | yes | the module `io`, `Mesh::load` and `Mesh::save`: OBJ, glTF, STL, PLY, OFF | 16 |
@@ -56,6 +56,7 @@
 //! | `parametric` | yes | the module `parametric`: curves, regions, patches, solids of them | 31 |
 //! | `render` | with `cli` | the module `render`: pictures of meshes as PNG | 11 |
 //! | `serde` | with `cli` | `Serialize` and `Deserialize` for meshes, settings and reports | 3 |
+//! | `text` | yes | text in TrueType and OpenType fonts as solids, in the module `making` | 1 |
 //! | `subdivision` | yes | the module `subdivision`: subdivision surfaces given by cages, and their booleans as cages | none |
 //! | `threemf` | yes | 3MF files in the module `io`; brings `formats` | 32 |
 //! | `viewer` | yes | results as pages for browsers, of the program; brings `cli` | 53 |
@@ -66,7 +67,7 @@
 //!
 //! In the package, `docs/semantics.md` has the whole of what is promised, `docs/algorithm.md` the algorithm, `docs/guide.md`
 //! the way from the first cut to chains; `examples/` has programs to start from. Modules: [`mesh`], [`primitives`],
-//! [`control`], [`spatial`], [`exact`].
+//! [`making`], [`control`], [`spatial`], [`exact`].
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
 // Where a room is left out, what only that room uses of the rooms below is not used. The whole set is checked.
@@ -83,6 +84,7 @@ pub mod exact;
 pub mod field;
 #[cfg(feature = "formats")]
 pub mod io;
+pub mod making;
 pub mod mesh;
 #[cfg(feature = "model")]
 pub mod model;

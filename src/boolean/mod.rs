@@ -114,4 +114,22 @@ impl Solid {
     pub fn symmetric_difference(&self, other: &Self) -> Result<Outcome, Error> {
         boolean(Operation::SymmetricDifference, self, other)
     }
+
+    /// The volume of what is in both: zero where they do not overlap, and where they only touch. As
+    /// [`BooleanOptions::overlap_volume`] with default options.
+    ///
+    /// ```
+    /// use trisect::{Solid, primitives};
+    ///
+    /// let a = Solid::try_from(primitives::cuboid([0.0; 3], [1.0; 3])?)?;
+    /// let b = Solid::try_from(primitives::cuboid([0.5; 3], [1.5; 3])?)?;
+    /// assert_eq!(a.overlap_volume(&b)?, 0.125);
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`boolean`].
+    pub fn overlap_volume(&self, other: &Self) -> Result<f64, Error> {
+        BooleanOptions::new().overlap_volume(self, other)
+    }
 }

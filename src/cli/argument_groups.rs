@@ -7,7 +7,9 @@ use clap::{Args, ColorChoice, ValueEnum};
 use trisect::io::Format;
 use trisect::mesh::Welding;
 
+use super::shapes::Justify;
 use super::surface::{self, Normals};
+use super::transforms::{self, Alignment, Repetition};
 use super::values;
 
 /// Options that every verb takes.
@@ -99,15 +101,59 @@ pub(crate) struct Placing {
     /// Move by x, y, z
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
     translate: Vec<[f64; 3]>,
-    /// Turn by x degrees about the x axis, then y about y, then z about z
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vector, allow_hyphen_values = true)]
+    /// Turn by so many degrees about the z axis; or by x degrees about x, then y about y, then z about z
+    #[arg(long, value_name = "Z|X,Y,Z", value_parser = transforms::rotation, allow_hyphen_values = true)]
     rotate: Vec<[f64; 3]>,
-    /// Scale by one factor, or by one for each axis
+    /// Scale by one factor, or by one for each axis; 200% is 2
     #[arg(long, value_name = "S|X,Y,Z", value_parser = values::scale, allow_hyphen_values = true)]
     scale: Vec<[f64; 3]>,
     /// Apply an affine map: 16 numbers, row by row, the translation in the fourth column
     #[arg(long, value_name = "M11,M12,...", value_parser = values::matrix, allow_hyphen_values = true)]
     matrix: Vec<[[f64; 4]; 4]>,
+    /// Move the middle of the bounds to the origin, along all axes or along those given, as --center=xy
+    #[arg(
+        long, value_name = "AXES", value_parser = transforms::axes, num_args = 0..=1, require_equals = true,
+        default_missing_value = "xyz", action = clap::ArgAction::Append
+    )]
+    center: Vec<[bool; 3]>,
+    /// Move a side of the bounds (low, middle or high) to a coordinate, 0 if none is given: z=low, x=middle:25
+    #[arg(long, value_name = "AXIS=SIDE[:AT]", value_parser = transforms::alignment, allow_hyphen_values = true)]
+    align: Vec<Alignment>,
+    /// Move the lowest point to z = 0, as z=low of --align does
+    #[arg(long, num_args = 0, default_missing_value = "true", action = clap::ArgAction::Append)]
+    drop: Vec<bool>,
+    /// Mirror in the plane through the origin across an axis
+    #[arg(long, value_name = "x|y|z", value_parser = transforms::axis)]
+    mirror: Vec<usize>,
+    /// Scale evenly so that the largest extent is this, or so that it just fits into a box
+    #[arg(long, value_name = "SIZE|X,Y,Z", value_parser = transforms::size, allow_hyphen_values = true)]
+    fit: Vec<[f64; 3]>,
+    /// Repeat as one input: linear:COUNT:X,Y,Z, grid:NXxNYxNZ:X,Y,Z, circular:COUNT[:AXIS[:DEGREES]], points:FILE, or
+    /// along:FILE:COUNT[:turn]
+    #[arg(long, value_name = "PATTERN", value_parser = transforms::repetition, allow_hyphen_values = true)]
+    pattern: Vec<Repetition>,
+    #[command(flatten)]
+    texts: Texts,
+}
+
+/// How inputs that are text are set. The values are taken from the matches together with their positions.
+#[derive(Debug, Args)]
+#[command(
+    next_help_heading = "Text, of the input text:... just before them, or of all before the first input"
+)]
+pub(crate) struct Texts {
+    /// The font: a file *.ttf, *.otf or *.ttc
+    #[arg(long, value_name = "FILE")]
+    font: Vec<PathBuf>,
+    /// The size of the font, its em: capitals are about 0.7 of it [default: 10]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    size: Vec<f64>,
+    /// How far text is extruded, from z = 0 upwards [default: 1]
+    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
+    depth: Vec<f64>,
+    /// To which side lines are flush [default: left]
+    #[arg(long, value_name = "SIDE", value_enum)]
+    justify: Vec<Justify>,
 }
 
 /// What is mended in inputs where it is asked for. Each applies to the input just before it, or to all inputs if it stands

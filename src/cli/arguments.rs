@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use trisect::Operation;
 
 use super::argument_groups::{Common, Inputs, Placing, Reading, Repair, Results};
@@ -12,6 +12,7 @@ use super::cut_arguments::{Cut, Imprint, Section, Solidify, Split, Trim};
 #[cfg(feature = "parametric")]
 use super::field_arguments::CurveVerb;
 use super::field_arguments::{Eval, SampleGrid, Slice};
+use super::making_arguments::{Completions, Distance, Hollow, Hull, Man, Measure, Minkowski, Offset, Text};
 use super::surface::{self, CutUv};
 use super::values;
 
@@ -45,10 +46,17 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
     /// What is in any of the inputs
-    #[command(after_help = "Example:\n  trisect union a.obj b.glb --translate 10,0,0 -o out.stl")]
+    #[command(
+        visible_aliases = ["merge", "add"],
+        after_help = "Example:\n  trisect union a.obj b.glb --translate 10,0,0 -o out.stl"
+    )]
     Union(Combine),
     /// What is in the first input and in none of the others
-    #[command(after_help = "Example:\n  trisect difference body.stl tool1.obj tool2.obj -o part.obj")]
+    #[command(
+        visible_alias = "subtract",
+        after_help = "Examples:\n  trisect difference body.stl tool1.obj tool2.obj -o part.obj\n  trisect difference plate.stl \
+                            drill.stl --pattern grid:10x10:5,5 -o drilled.stl"
+    )]
     Difference(Combine),
     /// What is in all of the inputs
     #[command(
@@ -100,6 +108,34 @@ pub(crate) enum Verb {
     /// A solid of any soup of triangles: holes closed, what is inside found by winding numbers
     #[command(after_help = "Example:\n  trisect solidify scan.ply -o solid.stl --png solid.png")]
     Solidify(Solidify),
+    /// The convex hull of all inputs together
+    #[command(after_help = "Example:\n  trisect hull a.stl b.obj -o hull.stl")]
+    Hull(Hull),
+    /// Text in a TrueType or OpenType font, as a solid
+    #[command(
+        after_help = "Examples:\n  trisect text 'No 42' --font DejaVuSans.ttf --size 8 --depth 2 -o text.stl\n  trisect difference \
+                            part.stl 'text:No 42' --font DejaVuSans.ttf --size 8 --translate 5,5,9 -o engraved.stl"
+    )]
+    Text(Text),
+    /// What a convex tool sweeps while its origin goes through all of a solid
+    #[command(after_help = "Example:\n  trisect minkowski body.stl ball.stl -o rounded.stl")]
+    Minkowski(Minkowski),
+    /// A solid grown by a distance, or shrunk
+    #[command(
+        after_help = "Examples:\n  trisect offset part.stl --distance 0.5 -o larger.stl\n  trisect offset part.stl --distance -0.2 -o smaller.stl"
+    )]
+    Offset(Offset),
+    /// A solid made hollow, with a wall of even thickness and drain holes
+    #[command(after_help = "Example:\n  trisect hollow bust.stl --wall 2 --drain 0,0,0:1.5 -o hollow.stl")]
+    Hollow(Hollow),
+    /// Volume, area, centroid and moments of inertia of solids, and what is at points
+    #[command(
+        after_help = "Examples:\n  trisect measure part.stl --json\n  trisect measure part.stl --at 0,0,5 --points probes.csv"
+    )]
+    Measure(Measure),
+    /// How far two solids are apart and where, or how much of them overlaps
+    #[command(after_help = "Example:\n  trisect distance a.stl b.stl --translate 10,0,0")]
+    Distance(Distance),
     /// Say whether files can be used as operands, and if not, why and where
     #[command(
         after_help = "Exit code 0: all usable; 3: at least one is not; 2: at least one cannot be read."
@@ -145,6 +181,18 @@ pub(crate) enum Verb {
         after_help = "Example:\n  trisect freeform difference mug.obj inside.obj -o cup.obj --tolerance 0.02 --png cup.png"
     )]
     Freeform(FreeFormVerb),
+    /// Print what a shell needs to complete command lines of this program
+    #[command(
+        after_help = "Examples:\n  trisect completions bash > ~/.local/share/bash-completion/completions/trisect\n  trisect \
+                            completions zsh > ~/.zfunc/_trisect\n  trisect completions fish > \
+                            ~/.config/fish/completions/trisect.fish"
+    )]
+    Completions(Completions),
+    /// Print a page of the manual, for `man`
+    #[command(
+        after_help = "Examples:\n  trisect man | man -l -\n  trisect man --folder /usr/local/share/man/man1"
+    )]
+    Man(Man),
 }
 
 impl Verb {
@@ -163,6 +211,15 @@ impl Verb {
             Self::Trim(_) => "trim",
             Self::Imprint(_) => "imprint",
             Self::Solidify(_) => "solidify",
+            Self::Hull(_) => "hull",
+            Self::Text(_) => "text",
+            Self::Minkowski(_) => "minkowski",
+            Self::Offset(_) => "offset",
+            Self::Hollow(_) => "hollow",
+            Self::Measure(_) => "measure",
+            Self::Distance(_) => "distance",
+            Self::Completions(_) => "completions",
+            Self::Man(_) => "man",
             Self::Check(_) => "check",
             Self::Info(_) => "info",
             Self::Convert(_) => "convert",
@@ -196,12 +253,22 @@ pub(crate) struct Combine {
     /// Lay texture coordinates on cut faces: planar or box, with how many to a unit of length (box:0.5)
     #[arg(long, value_name = "KIND[:DENSITY]", value_parser = surface::cut_uv, help_heading = "Results")]
     pub(crate) cut_uv: Option<CutUv>,
+    /// Put the faces of each input into a group of its name, with a colour of its own
+    #[arg(long, value_name = "WHAT", value_enum, alias = "colour-by", help_heading = "Results")]
+    pub(crate) color_by: Option<ColorBy>,
     /// Before the operation, make the same what is no further apart than this: vertices, edges and faces of all inputs
     #[arg(long, value_name = "UNITS", value_parser = values::length, help_heading = "Results", allow_hyphen_values = true)]
     pub(crate) snap: Option<f64>,
     /// Read and check the inputs, say what would be done, write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,
+}
+
+/// What faces are coloured by in outputs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ColorBy {
+    /// The input they come from
+    Operand,
 }
 
 /// Expressions of several inputs.

@@ -14,9 +14,10 @@ use super::documents::Document;
 use super::fault::Fault;
 use super::output;
 use super::reading;
-use super::requests::{self, Request, Transform};
+use super::requests::{self, Request};
 use super::session::Session;
 use super::stream::STANDARD;
+use super::transforms::Transform;
 
 /// A cage that was read.
 pub(crate) struct Read {
@@ -59,9 +60,11 @@ fn one(request: &Request, choice: Cages, session: &Session<'_>) -> Result<(Contr
     };
     if !request.transforms.is_empty() {
         // Details turn with the surface, but keep their lengths: a cage that is scaled loses them first.
-        let rigid =
-            |transform: &Transform| matches!(transform, Transform::Translate(_) | Transform::Rotate(_));
-        if !request.transforms.iter().all(rigid) {
+        if request.transforms.iter().any(Transform::is_repetition) {
+            let what = "a cage cannot be repeated by --pattern: repeat the mesh that `subdivide` makes of it";
+            return Err(Error::InvalidArgument(what.into()));
+        }
+        if !request.transforms.iter().all(Transform::is_rigid) {
             cage = cage.subdivided(0)?;
         }
         let mut mesh = cage.mesh();

@@ -1,12 +1,15 @@
-//! Whether messages are coloured, and the word that each of them begins with.
+//! Whether messages are coloured, and what each of them begins with.
 
 use std::ffi::OsString;
 use std::io::IsTerminal as _;
 
 use clap::ColorChoice;
 
-/// What every error and warning begins with.
-pub(crate) const PREFIX: &str = "trisect:";
+/// What every error begins with: the program and what it is, as compilers have it.
+pub(crate) const PREFIX: &str = "trisect: error:";
+
+/// What every warning begins with.
+pub(crate) const WARNING: &str = "trisect: warning:";
 
 /// The choice on a command line that may make no sense otherwise: that of the last `--color`.
 pub(crate) fn choice(line: &[OsString]) -> ColorChoice {
@@ -35,15 +38,14 @@ pub(crate) fn is_on(choice: ColorChoice) -> bool {
     }
 }
 
-/// A message with its first word coloured: red for errors, yellow for warnings.
+/// A message with its beginning coloured: red for errors, yellow for warnings.
 pub(crate) fn painted(text: &str) -> String {
-    match text.strip_prefix(PREFIX) {
-        None => text.to_owned(),
-        Some(rest) => {
-            let color = if rest.starts_with(" warning:") { 33 } else { 31 };
-            format!("\x1b[1;{color}m{PREFIX}\x1b[0m{rest}")
+    for (prefix, color) in [(PREFIX, 31), (WARNING, 33)] {
+        if let Some(rest) = text.strip_prefix(prefix) {
+            return format!("\x1b[1;{color}m{prefix}\x1b[0m{rest}");
         }
     }
+    text.to_owned()
 }
 
 #[cfg(test)]
@@ -59,9 +61,9 @@ mod tests {
     }
 
     #[test]
-    fn the_first_word_alone_is_coloured() {
-        assert_eq!(painted("trisect: no"), "\x1b[1;31mtrisect:\x1b[0m no");
-        assert_eq!(painted("trisect: warning: no"), "\x1b[1;33mtrisect:\x1b[0m warning: no");
+    fn the_beginning_alone_is_coloured() {
+        assert_eq!(painted("trisect: error: no"), "\x1b[1;31mtrisect: error:\x1b[0m no");
+        assert_eq!(painted("trisect: warning: no"), "\x1b[1;33mtrisect: warning:\x1b[0m no");
         assert_eq!(painted("a.stl: usable"), "a.stl: usable");
     }
 }

@@ -5,7 +5,9 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::Value;
 use trisect::io::{Format, WriteOptions};
-use trisect::{BooleanOptions, Control, Embed, Grid, OperandState, Operation, Outcome, Rule, Solid};
+use trisect::{
+    BooleanOptions, Control, Embed, FaceGroup, Grid, OperandState, Operation, Outcome, Rule, Solid,
+};
 
 use super::argument_groups::{Colours, Results, Writing};
 use super::arguments::{Combination, Combine};
@@ -21,6 +23,7 @@ use super::selection;
 use super::session::Session;
 use super::surface;
 use super::task::Task;
+use super::values;
 use super::words;
 
 /// Runs a boolean of the inputs.
@@ -96,6 +99,7 @@ fn run_task(
     )?;
     session.took("read", start);
     describe(&operands, Some(&arguments.results.writing), session);
+    let operands = if arguments.color_by.is_some() { grouped(operands) } else { operands };
     if arguments.dry_run {
         announce(task, &operands, &targets.concat(), session);
         return Ok(Exit::Fine);
@@ -231,6 +235,21 @@ pub(super) fn tell(
         session.console.detail(&outcome.certificate().to_string());
     }
     result.into()
+}
+
+/// The operands with all faces of each in a group of its name, in the colour that pictures give it.
+fn grouped(operands: Vec<Operand>) -> Vec<Operand> {
+    let mut names: Vec<String> = Vec::new();
+    let mut one = |(index, mut operand): (usize, Operand)| {
+        let name = operand.request.short_name();
+        let count = names.iter().filter(|&other| *other == name).count();
+        names.push(name.clone());
+        let name = if count == 0 { name } else { format!("{name} {}", count + 1) };
+        let material = Some(values::plain_material(&name, trisect::render::palette(index)));
+        operand.solid = operand.solid.in_group(FaceGroup { name, material });
+        operand
+    };
+    operands.into_iter().enumerate().map(&mut one).collect()
 }
 
 /// What becomes of crossings that rounding makes.

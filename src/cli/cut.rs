@@ -22,10 +22,7 @@ use super::words;
 pub(crate) fn run(arguments: &Cut, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
     let mut requests = requests::requests(matches, arguments.inputs.reading.format)?;
     if arguments.plane.is_empty() {
-        return Err(Fault::usage(
-            "cut needs a plane to cut at (--plane z=12.5); to take files off the first one, see `difference`, and for sections \
-             `section` and `slice`",
-        ));
+        return Err(without_plane(&requests));
     }
     if requests.len() > 1 {
         return Err(Fault::usage("cut takes one input; cut others by runs of their own"));
@@ -85,6 +82,21 @@ pub(crate) fn run(arguments: &Cut, matches: &ArgMatches, session: &mut Session<'
     session.note("results", results);
     session.note("outputs", outputs);
     Ok(Exit::Fine)
+}
+
+/// What somebody may have meant who gave no plane.
+fn without_plane(requests: &[requests::Request]) -> Fault {
+    let names: Vec<String> = requests.iter().map(requests::Request::name).collect();
+    Fault::usage(if names.len() > 1 {
+        format!(
+            "cut cuts at planes (--plane z=12.5); to take files off the first one: `trisect difference {} -o OUTPUT`",
+            names.join(" ")
+        )
+    } else {
+        "cut needs a plane to cut at (--plane z=12.5); to take files off the first one, see `difference`, and for sections \
+         `section` and `slice`"
+            .into()
+    })
 }
 
 /// What a piece is called in messages.

@@ -3,9 +3,11 @@
 use std::time::Instant;
 
 use clap::ArgMatches;
-use trisect::Imprinted;
+use serde_json::Value;
+use trisect::{Imprinted, Mesh};
 
-use super::argument_groups::Colours;
+use super::argument_groups::{Colours, Results};
+use super::combine::Style;
 use super::cut_arguments::Imprint;
 use super::fault::{Exit, Fault};
 use super::output::{self, Product, Shown, Target};
@@ -61,19 +63,8 @@ pub(crate) fn run(
             session.warn(format!("{}: the curve is not drawn in full on {triangles}", request.name()));
         }
         let measures = Measures::of_mesh(mesh);
-        let placed = recenter::placed(mesh, writing, session);
-        let placed = placed.as_ref();
-        let drawing = &arguments.results.drawing;
-        let picture = || {
-            let operands = placed.triangles.iter().map(|_| 0);
-            let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
-            trisect::render::mesh(placed, &output::view(drawing, Some(sheet.format)), colours.as_deref())
-        };
-        let options = write_options.clone();
-        let shown = Shown::new(drawing, Some(sheet.format), None);
-        let product = Product { mesh: placed, options, picture: &picture, documents: &[], shown };
-        let (written, warnings) = output::write_all(targets, &product, &session.limits)?;
-        warnings.into_iter().for_each(|warning| session.warn(warning));
+        let style = Style { format: Some(sheet.format), options: write_options.clone() };
+        let written = write(&arguments.results, targets, mesh, style, session)?;
         outputs.extend(written);
         results.push(measures.to_json());
         let arrow = output::arrow(targets);
@@ -87,4 +78,27 @@ pub(crate) fn run(
     session.note("results", results);
     session.note("outputs", outputs);
     Ok(Exit::Fine)
+}
+
+/// Writes one of the surfaces.
+fn write(
+    results: &Results,
+    targets: &[Target],
+    mesh: &Mesh,
+    style: Style,
+    session: &mut Session<'_>,
+) -> Result<Vec<Value>, Fault> {
+    let placed = recenter::placed(mesh, &results.writing, session);
+    let placed = placed.as_ref();
+    let drawing = &results.drawing;
+    let picture = || {
+        let operands = placed.triangles.iter().map(|_| 0);
+        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
+        trisect::render::mesh(placed, &output::view(drawing, style.format), colours.as_deref())
+    };
+    let shown = Shown::new(drawing, style.format, None);
+    let product = Product { mesh: placed, options: style.options, picture: &picture, documents: &[], shown };
+    let (written, warnings) = output::write_all(targets, &product, &session.limits)?;
+    warnings.into_iter().for_each(|warning| session.warn(warning));
+    Ok(written)
 }

@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use trisect::{CancelToken, Control, Error};
 
 use super::argument_groups::Common;
+use super::color::PREFIX;
 use super::fault::Fault;
 
 /// How long after the deadline a run that does not notice it is ended by force.
@@ -105,7 +106,7 @@ impl Shared {
         for folder in unfinished.iter() {
             let _ = std::fs::remove_dir_all(folder);
         }
-        let _ = writeln!(std::io::stderr(), "trisect: {}", fault.message);
+        let _ = writeln!(std::io::stderr(), "{PREFIX} {}", fault.message);
         if self.json {
             let _ = writeln!(std::io::stdout(), "{}", fault.to_object());
         }

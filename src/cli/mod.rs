@@ -31,11 +31,16 @@ mod imprint;
 mod info;
 mod json;
 mod limits;
+mod made;
+mod making;
+mod making_arguments;
+mod measure;
 mod mended;
 mod operands;
 mod output;
 #[cfg(feature = "viewer")]
 mod page;
+mod points;
 mod progress;
 mod reading;
 mod recenter;
@@ -47,6 +52,8 @@ mod scenes;
 mod section;
 mod selection;
 mod session;
+mod shapes;
+mod shell;
 mod slice;
 mod solidify;
 mod source;
@@ -57,6 +64,7 @@ mod stream;
 mod subdivide;
 mod surface;
 mod task;
+mod transforms;
 mod trim;
 mod usable;
 mod values;
@@ -64,6 +72,7 @@ mod verbs;
 mod words;
 
 use std::any::Any;
+use std::ffi::OsString;
 use std::io::Write as _;
 use std::panic::{self, AssertUnwindSafe};
 use std::process::ExitCode;
@@ -89,13 +98,13 @@ pub(crate) fn run() -> ExitCode {
     });
     let exit = match parsed {
         Ok((arguments, matches)) => run_verb(&arguments, &matches),
-        Err(error) => usage(&error, json, color),
+        Err(error) => usage(&error, &line, json, color),
     };
     ExitCode::from(exit.code())
 }
 
 /// Help, version, and command lines that clap refuses.
-fn usage(error: &clap::Error, json: bool, color: ColorChoice) -> Exit {
+fn usage(error: &clap::Error, line: &[OsString], json: bool, color: ColorChoice) -> Exit {
     // Nobody is left to tell if a stream is closed.
     if !error.use_stderr() {
         let _ = error.print();
@@ -104,7 +113,7 @@ fn usage(error: &clap::Error, json: bool, color: ColorChoice) -> Exit {
     let text = error.render();
     let plain = text.to_string();
     let plain = plain.trim_start_matches("error: ");
-    let hint = verbs::hint(error);
+    let hint = verbs::hint(error, line);
     let message = hint.as_deref().or(plain.lines().next()).unwrap_or_default();
     let is_help = error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand;
     let _ = match (&hint, color::is_on(color)) {
@@ -127,7 +136,7 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
     let mut session = match Session::begin(&arguments.common, arguments.verb.name()) {
         Ok(session) => session,
         Err(fault) => {
-            let _ = writeln!(std::io::stderr(), "trisect: {}", fault.message);
+            let _ = writeln!(std::io::stderr(), "{PREFIX} {}", fault.message);
             return fault.exit;
         }
     };
@@ -151,6 +160,15 @@ fn run_verb(arguments: &Arguments, matches: &ArgMatches) -> Exit {
             Verb::Trim(trim) => trim::run(trim, matches, &mut session),
             Verb::Imprint(imprint) => imprint::run(imprint, matches, &mut session),
             Verb::Solidify(solidify) => solidify::run(solidify, matches, &mut session),
+            Verb::Hull(hull) => making::run(hull, matches, &mut session),
+            Verb::Text(text) => making::run_text(text, matches, &mut session),
+            Verb::Minkowski(sum) => making::run_minkowski(sum, matches, &mut session),
+            Verb::Offset(offset) => making::run_offset(offset, matches, &mut session),
+            Verb::Hollow(hollow) => making::run_hollow(hollow, matches, &mut session),
+            Verb::Measure(measure) => measure::run(measure, matches, &mut session),
+            Verb::Distance(distance) => measure::run_distance(distance, matches, &mut session),
+            Verb::Completions(completions) => shell::run_completions(completions),
+            Verb::Man(man) => shell::run_man(man, &mut session),
             Verb::Check(check) => check::run(check, matches, &mut session),
             Verb::Info(info) => info::run(info, matches, &mut session),
             Verb::Convert(convert) => convert::run(convert, matches, &mut session),
@@ -247,6 +265,39 @@ mod tests {
             }
             let inner = verb.get_subcommands();
             verbs.extend(inner.map(|inner| (format!("{name} {}", inner.get_name()), inner)));
+        }
+    }
+
+    #[test]
+    fn every_option_of_the_page_is_one_of_the_program() {
+        let text = include_str!("../../docs/program.md");
+        let mut known: std::collections::BTreeSet<String> =
+            ["help", "version"].into_iter().map(str::to_owned).collect();
+        let mut verbs = vec![Arguments::command()];
+        while let Some(verb) = verbs.pop() {
+            known.extend(verb.get_arguments().filter_map(clap::Arg::get_long).map(str::to_owned));
+            known.extend(
+                verb.get_arguments().filter_map(clap::Arg::get_all_aliases).flatten().map(str::to_owned),
+            );
+            verbs.extend(verb.get_subcommands().cloned());
+        }
+        for (at, _) in text.match_indices("--") {
+            let word: String =
+                text[at + 2..].chars().take_while(|c| c.is_ascii_alphabetic() || *c == '-').collect();
+            let begins = at == 0 || !text[..at].ends_with(['-', '|']);
+            // (Rules of tables, and dashes between words, are no options.)
+            if begins && word.starts_with(|c: char| c.is_ascii_lowercase()) {
+                assert!(known.contains(&word), "the page has --{word}, which no verb takes");
+            }
+        }
+        // Verbs in tables and examples.
+        for line in text.lines().filter_map(|line| line.strip_prefix("    trisect ")) {
+            let word: String = line.chars().take_while(char::is_ascii_lowercase).collect();
+            let command = Arguments::command();
+            let is_known = command
+                .get_subcommands()
+                .any(|verb| verb.get_name() == word || verb.get_all_aliases().any(|alias| alias == word));
+            assert!(is_known || word.is_empty() || word == "help", "the page has the verb {word}");
         }
     }
 

@@ -94,7 +94,7 @@ fn with_origins(mesh: &Mesh, outcome: &Outcome) -> Option<Mesh> {
     }
     let mut attribute = Attribute::new(ORIGIN, 1);
     let mut known: Vec<(u32, u32)> = Vec::new();
-    for origin in origins.iter() {
+    for origin in origins {
         let code = origin.operand.saturating_mul(2).saturating_add(u32::from(origin.reversed));
         let index = match known.iter().find(|(other, _)| *other == code) {
             Some(&(_, index)) => index,

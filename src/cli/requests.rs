@@ -1,55 +1,18 @@
 //! Inputs as the command line names them: which transforms belong to which file, and its format.
 
-use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ArgMatches;
+use trisect::Rule;
 use trisect::io::Format;
-use trisect::{Mesh, MeshError, Rule};
 
 use super::chosen::{self, Chosen};
 use super::fault::Fault;
 use super::repairs::Repairs;
+use super::shapes::{self, Setting};
 use super::stream::STANDARD;
-
-/// A transform of an input.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Transform {
-    Translate([f64; 3]),
-    /// Degrees about x, then y, then z.
-    Rotate([f64; 3]),
-    Scale([f64; 3]),
-    /// Rows of an affine map.
-    Matrix([[f64; 4]; 4]),
-}
-
-impl Transform {
-    /// The mesh, moved.
-    pub(crate) fn apply(&self, mesh: Mesh) -> Result<Mesh, MeshError> {
-        match self {
-            Self::Translate(by) => Ok(mesh.translated(*by)),
-            Self::Rotate([x, y, z]) => {
-                mesh.rotated([1.0, 0.0, 0.0], *x)?.rotated([0.0, 1.0, 0.0], *y)?.rotated([0.0, 0.0, 1.0], *z)
-            }
-            Self::Scale(by) => mesh.scaled(*by),
-            Self::Matrix(rows) => mesh.transformed(rows.as_flattened()),
-        }
-    }
-}
-
-impl fmt::Display for Transform {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (name, values) = match self {
-            Self::Translate(by) => ("translate", by.as_slice()),
-            Self::Rotate(degrees) => ("rotate", degrees.as_slice()),
-            Self::Scale(by) => ("scale", by.as_slice()),
-            Self::Matrix(rows) => ("matrix", rows.as_flattened()),
-        };
-        let values: Vec<String> = values.iter().map(ToString::to_string).collect();
-        write!(f, "{name} {}", values.join(","))
-    }
-}
+use super::transforms::{self, Transform};
 
 /// An input as the command line names it.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,6 +42,16 @@ impl Request {
         }
     }
 
+    /// What the result's groups are called by: the name of the part, or else of the file without folders and ending.
+    pub(crate) fn short_name(&self) -> String {
+        let chosen = self.chosen.as_ref().and_then(|chosen| chosen.name.as_ref());
+        if let Some(part) = chosen.or(self.part.as_ref()) {
+            return part.clone();
+        }
+        let stem = self.path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        stem.filter(|stem| !stem.is_empty() && stem != STANDARD).unwrap_or_else(|| "input".into())
+    }
+
     /// Whether this is standard input.
     pub(crate) fn is_standard(&self) -> bool {
         self.path == Path::new(STANDARD)
@@ -97,43 +70,34 @@ pub(crate) fn requests(matches: &ArgMatches, format: Option<Format>) -> Result<V
 /// clap numbers every value by its place on the command line ([`ArgMatches::indices_of`]); sorting files and
 /// transforms by that number restores the order in which they were written.
 pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Fault> {
-    enum Item {
-        File(PathBuf),
-        Transform(&'static str, Transform),
-        Repair(Repairs),
-        Rule(Rule),
-    }
-    let mut items: Vec<(usize, Item)> =
-        placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(path))).collect();
-    let mut transforms = |name, values: Vec<(usize, Transform)>| {
-        items.extend(values.into_iter().map(|(at, transform)| (at, Item::Transform(name, transform))));
-    };
-    transforms(
-        "--translate",
-        placed(matches, "translate").map(|(at, v)| (at, Transform::Translate(v))).collect(),
-    );
-    transforms("--rotate", placed(matches, "rotate").map(|(at, v)| (at, Transform::Rotate(v))).collect());
-    transforms("--scale", placed(matches, "scale").map(|(at, v)| (at, Transform::Scale(v))).collect());
-    transforms("--matrix", placed(matches, "matrix").map(|(at, v)| (at, Transform::Matrix(v))).collect());
-    items.extend(placed_repairs(matches).into_iter().map(|(at, repairs)| (at, Item::Repair(repairs))));
-    if matches.try_contains_id("rule").is_ok() {
-        items.extend(placed(matches, "rule").map(|(at, rule)| (at, Item::Rule(rule))));
-    }
-    items.sort_by_key(|&(at, _)| at);
+    placed_inputs(matches, |path| path)
+}
 
+/// The same with other names for the inputs.
+pub(crate) fn placed_inputs(
+    matches: &ArgMatches,
+    name: impl Fn(PathBuf) -> PathBuf,
+) -> Result<Vec<Request>, Fault> {
     let expansion = matches.try_get_one::<u64>("expansion").ok().flatten().copied();
     let mut requests: Vec<Request> = Vec::new();
     let (mut for_all, mut rule_for_all) = (Repairs::default(), Rule::default());
-    for (_, item) in items {
+    let (mut settings, mut setting_for_all) = (Vec::<Setting>::new(), Setting::default());
+    for item in items(matches, name) {
         match (item, requests.last_mut()) {
             (Item::File(path), _) => {
-                let (path, part) = chosen::split(path);
+                let (path, part) =
+                    if shapes::named(&path).is_some() { (path, None) } else { chosen::split(path) };
+                settings.push(Setting::default());
                 let (format, chosen, transforms) = (None, None, Vec::new());
                 let (repairs, rule) = (Repairs::default(), rule_for_all);
                 requests.push(Request { path, part, chosen, format, expansion, transforms, repairs, rule });
             }
             (Item::Rule(rule), Some(request)) => request.rule = rule,
             (Item::Rule(rule), None) => rule_for_all = rule,
+            (Item::Setting(setting), _) => match settings.last_mut() {
+                Some(last) => *last = setting.or(last),
+                None => setting_for_all = setting.or(&setting_for_all),
+            },
             (Item::Transform(_, transform), Some(request)) => request.transforms.push(transform),
             (Item::Repair(repairs), Some(request)) => request.repairs = repairs.with(request.repairs),
             (Item::Repair(repairs), None) => for_all = repairs.with(for_all),
@@ -144,7 +108,8 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
             }
         }
     }
-    for request in &mut requests {
+    for (request, setting) in requests.iter_mut().zip(settings) {
+        make_shape(request, setting, &setting_for_all)?;
         request.repairs = request.repairs.with(for_all);
         if let Some(other) = request.repairs.contradiction() {
             return Err(Fault::usage(format!(
@@ -154,6 +119,46 @@ pub(crate) fn placed_requests(matches: &ArgMatches) -> Result<Vec<Request>, Faul
         }
     }
     Ok(requests)
+}
+
+/// An input, or something that is said of one.
+enum Item {
+    File(PathBuf),
+    Transform(&'static str, Transform),
+    Repair(Repairs),
+    Rule(Rule),
+    Setting(Setting),
+}
+
+/// All inputs and what is said of them, in the order of the command line.
+fn items(matches: &ArgMatches, name: impl Fn(PathBuf) -> PathBuf) -> Vec<Item> {
+    let mut items: Vec<(usize, Item)> =
+        placed::<PathBuf>(matches, "files").map(|(at, path)| (at, Item::File(name(path)))).collect();
+    let transforms = transforms::all(matches).into_iter();
+    items.extend(transforms.map(|(at, name, what)| (at, Item::Transform(name, what))));
+    items.extend(placed_repairs(matches).into_iter().map(|(at, repairs)| (at, Item::Repair(repairs))));
+    if matches.try_contains_id("rule").is_ok() {
+        items.extend(placed(matches, "rule").map(|(at, rule)| (at, Item::Rule(rule))));
+    }
+    items.extend(placed_settings(matches).into_iter().map(|(at, setting)| (at, Item::Setting(setting))));
+    items.sort_by_key(|&(at, _)| at);
+    items.into_iter().map(|(_, item)| item).collect()
+}
+
+/// Makes the mesh of an input that is no file; refuses options for text at inputs that are none.
+fn make_shape(request: &mut Request, setting: Setting, for_all: &Setting) -> Result<(), Fault> {
+    let kind = shapes::named(&request.path).map(|(kind, _)| kind);
+    if setting.is_some() && kind != Some("text") {
+        return Err(Fault::usage(format!(
+            "{}: --font, --size, --depth and --justify are for inputs text:...",
+            request.name()
+        )));
+    }
+    if kind.is_some() {
+        let made = shapes::made(&request.path, &setting.or(for_all))?;
+        request.chosen = Some(Arc::new(made));
+    }
+    Ok(())
 }
 
 /// What is asked to be mended, each with its place on the command line. Not every verb takes such options.
@@ -182,8 +187,26 @@ fn placed_repairs(matches: &ArgMatches) -> Vec<(usize, Repairs)> {
     repairs
 }
 
+/// How texts are to be set, each option with its place on the command line.
+fn placed_settings(matches: &ArgMatches) -> Vec<(usize, Setting)> {
+    let none = Setting::default;
+    let mut settings: Vec<(usize, Setting)> = Vec::new();
+    if matches.try_contains_id("font").is_ok() {
+        settings
+            .extend(placed(matches, "font").map(|(at, font)| (at, Setting { font: Some(font), ..none() })));
+        settings
+            .extend(placed(matches, "size").map(|(at, size)| (at, Setting { size: Some(size), ..none() })));
+        settings.extend(
+            placed(matches, "depth").map(|(at, depth)| (at, Setting { depth: Some(depth), ..none() })),
+        );
+        let justified = placed(matches, "justify");
+        settings.extend(justified.map(|(at, justify)| (at, Setting { justify: Some(justify), ..none() })));
+    }
+    settings
+}
+
 /// The values of an argument, each with its place on the command line.
-fn placed<T: Clone + Send + Sync + 'static>(
+pub(crate) fn placed<T: Clone + Send + Sync + 'static>(
     matches: &ArgMatches,
     id: &str,
 ) -> impl Iterator<Item = (usize, T)> {

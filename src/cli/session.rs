@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 use trisect::{BooleanOptions, Control};
 
 use super::argument_groups::Common;
+use super::color::{PREFIX, WARNING};
 use super::fault::{Exit, Fault, SCHEMA};
 use super::limits::Limits;
 use super::output;
@@ -69,7 +70,7 @@ impl<'a> Session<'a> {
     /// Warns: prints the text, and remembers it for the report and for `--strict`.
     pub(crate) fn warn(&mut self, text: impl Into<String>) {
         let text = text.into();
-        self.console.warn(&format!("trisect: warning: {text}"));
+        self.console.warn(&format!("{WARNING} {text}"));
         self.warnings.push(text);
     }
 
@@ -87,13 +88,13 @@ impl<'a> Session<'a> {
             Ok(exit) => exit,
             Err(fault) if fault.is_broken_pipe() => Exit::Fine,
             Err(fault) => {
-                self.console.warn(&format!("trisect: {}", fault.message));
+                self.console.warn(&format!("{PREFIX} {}", fault.message));
                 self.note("error", fault.to_json());
                 fault.exit
             }
         };
         if exit == Exit::Fine && self.common.strict && !self.warnings.is_empty() {
-            self.console.warn(&format!("trisect: {}, and --strict", counted(self.warnings.len(), "warning")));
+            self.console.warn(&format!("{PREFIX} {}, and --strict", counted(self.warnings.len(), "warning")));
             exit = Exit::Warnings;
         }
         let warnings = std::mem::take(&mut self.warnings);
@@ -106,7 +107,7 @@ impl<'a> Session<'a> {
         if let (Some(path), true) = (&self.common.report, exit != Exit::Usage) {
             let report = Value::Object(self.report.clone());
             if let Err(fault) = output::write_report(path, &report, &self.limits) {
-                self.console.warn(&format!("trisect: {}", fault.message));
+                self.console.warn(&format!("{PREFIX} {}", fault.message));
                 if matches!(exit, Exit::Fine | Exit::Warnings) {
                     exit = fault.exit;
                     self.note("error", fault.to_json());
@@ -117,7 +118,7 @@ impl<'a> Session<'a> {
         if self.common.json
             && let Err(fault) = stream::print(&format!("{}\n", Value::Object(self.report)))
         {
-            self.console.warn(&format!("trisect: {}", fault.message));
+            self.console.warn(&format!("{PREFIX} {}", fault.message));
             exit = if exit == Exit::Fine { fault.exit } else { exit };
         }
         exit

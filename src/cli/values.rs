@@ -114,13 +114,17 @@ pub(crate) fn material(text: &str) -> Result<FaceGroup, String> {
     if name.is_empty() {
         return Err("expected a name, such as cap or cap#d08030".into());
     }
-    // Colours are written as screens show them; materials have them linear.
+    let material = colour.map(|colour| plain_material(name, colour));
+    Ok(FaceGroup { name: name.to_owned(), material })
+}
+
+/// A material of one colour, which is given as screens show it; materials have it linear.
+pub(crate) fn plain_material(name: &str, [r, g, b]: [u8; 3]) -> Material {
     let linear = |byte: u8| {
         let x = f32::from(byte) / 255.0;
         if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) }
     };
-    let material = colour.map(|[r, g, b]| Material::plain(name, [linear(r), linear(g), linear(b), 1.0]));
-    Ok(FaceGroup { name: name.to_owned(), material })
+    Material::plain(name, [linear(r), linear(g), linear(b), 1.0])
 }
 
 /// A length that is positive.
@@ -152,9 +156,19 @@ pub(crate) fn corners(text: &str) -> Result<[[f64; 3]; 2], String> {
 
 /// `s` or `x,y,z`, none of them zero.
 pub(crate) fn scale(text: &str) -> Result<[f64; 3], String> {
+    let words = text.split([',', ' ']).filter(|word| !word.is_empty());
+    let per_cent: Vec<bool> = words.clone().map(|word| word.ends_with('%')).collect();
+    let text = &words.map(|word| word.strip_suffix('%').unwrap_or(word)).collect::<Vec<_>>().join(",");
+    let in_hundredths = |factor: f64, word: usize| match per_cent.get(word) {
+        Some(true) => factor / 100.0,
+        _ => factor,
+    };
     let factors = match numbers::<1>(text) {
-        Ok([factor]) => [factor; 3],
-        Err(_) if text.contains([',', ' ']) => vector(text)?,
+        Ok([factor]) => [in_hundredths(factor, 0); 3],
+        Err(_) if text.contains([',', ' ']) => {
+            let factors = vector(text)?;
+            [0, 1, 2].map(|k| in_hundredths(factors[k], k))
+        }
         Err(error) => return Err(error.replace("1 numbers separated by commas", "one number or three")),
     };
     match factors.contains(&0.0) {
@@ -264,6 +278,9 @@ mod tests {
     fn scale_takes_one_or_three_factors_but_not_zero() {
         assert_eq!(scale("2"), Ok([2.0; 3]));
         assert_eq!(scale("1,-1,2"), Ok([1.0, -1.0, 2.0]));
+        assert_eq!(scale("200%"), Ok([2.0; 3]));
+        assert_eq!(scale("50%,1,-25%"), Ok([0.5, 1.0, -0.25]));
+        assert!(scale("%").is_err() && scale("0%").is_err());
         assert!(scale("0").is_err());
         assert!(scale("1,2").is_err());
         assert!(scale("big").is_err());

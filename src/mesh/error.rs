@@ -197,6 +197,17 @@ pub enum TransformFault {
     /// A matrix without an inverse.
     #[error("transformation matrix: it is singular: it would flatten the mesh")]
     MatrixSingular,
+    /// A size to fit into that is none, or a mesh without any extent.
+    #[error(
+        "cannot fit a mesh with extents {extents:?} into {size:?}: sizes must be positive and finite, and a mesh that has no \
+         extent has none to fit"
+    )]
+    Fit {
+        /// The box to fit into.
+        size: [f64; 3],
+        /// The extents of the mesh.
+        extents: [f64; 3],
+    },
 }
 
 /// The first place of a fault, after a comma.

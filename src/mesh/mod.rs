@@ -20,6 +20,7 @@ mod error;
 mod fans;
 mod gate;
 mod groups;
+mod inertia;
 mod links;
 mod manifold;
 mod material;
@@ -30,6 +31,7 @@ mod normals;
 mod orient;
 mod patches;
 mod places;
+mod placing;
 mod polygons;
 mod recenter;
 pub(crate) mod scale;
@@ -63,6 +65,7 @@ pub use error::{AttributeFault, GroupFault, MeshError, TransformFault};
 pub(crate) use fans::plain_fans;
 pub use gate::{Gate, Refusal, Welding};
 pub use groups::{FaceGroup, FaceGroups};
+pub use inertia::MassProperties;
 pub(crate) use manifold::{HalfEdges, Surface, make_manifold};
 pub use material::{
     Image, Material, MaterialLanguage, MaterialText, Texture, TextureMatrix, TextureUse, Wrap,
@@ -73,6 +76,7 @@ pub(crate) use mend::fan_around_splits;
 pub use mend::{Mending, Readied};
 pub(crate) use normals::{area_vector, cross, unit};
 pub use places::{Fault, Place};
+pub use placing::BoundsSide;
 #[cfg(feature = "formats")]
 pub(crate) use polygons::Faces;
 pub use polygons::Polygons;

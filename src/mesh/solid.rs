@@ -6,7 +6,9 @@ use super::edges::EdgeTable;
 use super::measure::{area, signed_volume};
 use super::patches::Patches;
 use super::topology::{self, Shape};
-use super::{Attribute, Bounds, FaceGroups, Fault, Links, Mending, Mesh, Polygons, SelfCrossings, chain};
+use super::{
+    Attribute, Bounds, FaceGroup, FaceGroups, Fault, Links, Mending, Mesh, Polygons, SelfCrossings, chain,
+};
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
 /// often as it occurs. Every vertex belongs to a triangle, no triangle has a repeated corner, and the enclosed
@@ -121,6 +123,27 @@ impl Solid {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.mesh.is_empty()
+    }
+
+    /// The same solid with all its faces in one group, which takes the place of its groups, of their materials and of colours at
+    /// corners. Booleans keep groups apart, so that their results show which operand a face comes from.
+    ///
+    /// ```
+    /// use trisect::{FaceGroup, Solid, primitives};
+    ///
+    /// let named = |name: &str| FaceGroup { name: name.into(), material: None };
+    /// let a = Solid::try_from(primitives::cuboid([0.0; 3], [1.0; 3])?)?.in_group(named("a"));
+    /// let b = Solid::try_from(primitives::cuboid([0.5; 3], [1.5; 3])?)?.in_group(named("b"));
+    /// let both = a.union(&b)?;
+    /// assert_eq!(both.solid().mesh().groups.list, [named("a"), named("b")]);
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
+    #[must_use]
+    pub fn in_group(mut self, group: FaceGroup) -> Self {
+        let triangles = self.mesh.triangles.len();
+        self.mesh.groups = FaceGroups { list: vec![group], of_triangle: vec![0; triangles] };
+        self.mesh.attributes.retain(|attribute| !attribute.name.starts_with("COLOR_"));
+        self
     }
 
     /// The smallest box around the solid; `None` if it is empty.

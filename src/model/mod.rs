@@ -26,6 +26,7 @@ mod cage;
 mod contour;
 mod evaluate;
 mod half_space;
+mod made;
 #[cfg(feature = "parametric")]
 mod parametric;
 mod parse;
@@ -48,6 +49,7 @@ use cage::Cage;
 use contour::PlaneRegion;
 use glam::DAffine3;
 use half_space::HalfSpace;
+use made::Made;
 #[cfg(feature = "parametric")]
 use parametric::Parametric;
 use primitive::Primitive;
@@ -138,6 +140,8 @@ enum Kind {
         allow(dead_code, reason = "nothing is parametric in such a build")
     )]
     Parametric(Parametric),
+    /// Something made of other nodes as meshes, or of text.
+    Made(Made, Vec<usize>),
     /// A cage: the solid of its limit surface.
     #[cfg_attr(not(feature = "subdivision"), allow(dead_code, reason = "there are no cages in such a build"))]
     Cage(Box<Cage>),
@@ -194,7 +198,7 @@ impl Model {
     /// The nodes a node is made of.
     fn operands(&self, node: usize) -> Vec<usize> {
         match &self.nodes[node].kind {
-            Kind::Operation(_, operands) => operands.clone(),
+            Kind::Operation(_, operands) | Kind::Made(_, operands) => operands.clone(),
             Kind::Complement(operand) | Kind::Reference(_, operand) => vec![*operand],
             Kind::Formula { uses, .. } => uses.iter().map(|used| used.1).collect(),
             Kind::Mesh(_)

@@ -12,7 +12,7 @@ use super::contour::PlaneRegion;
 use super::half_space::HalfSpace;
 #[cfg(feature = "parametric")]
 use super::parametric::{self, Curves, Described, Parametric};
-use super::{Defaults, Kind, Mode, Model, Node, contour, fault, primitive, references, transform};
+use super::{Defaults, Kind, Mode, Model, Node, contour, fault, made, primitive, references, transform};
 use crate::Error;
 use crate::boolean::Operation;
 use crate::field::{Formula, System, named_system};
@@ -24,7 +24,7 @@ const CUSTOM: &str = "x-";
 const PARAMETRIC: [&str; 4] = ["patches", "extrusion", "revolution", "sweep"];
 const KINDS: &str = "union, intersection, difference, xor, complement, mesh, box, sphere, cylinder, cone, torus, half_space, \
                      formula, contour, region, patches, extrusion, revolution, sweep, parametric, \
-                     freeform";
+                     freeform, hull, minkowski, offset, hollow, pattern, text";
 
 struct ModelReader<'a> {
     nodes: Vec<Node>,
@@ -298,6 +298,7 @@ impl ModelReader<'_> {
                 let file = file_of(&mut object).map_err(within(label))?;
                 self.described(&file).map_err(within(label))?
             }
+            kind if made::KINDS.contains(&kind) => self.made(kind, &mut object, label, path)?,
             "freeform" => self.cage(std::mem::take(&mut object)).map_err(within(label))?,
             kind if PARAMETRIC.contains(&kind) => {
                 solid_of(kind, std::mem::take(&mut object)).map_err(within(label))?
@@ -312,6 +313,20 @@ impl ModelReader<'_> {
             Some(key) => Err(fault(format!("unknown key `{key}` for the kind `{name}`")).in_node(label)),
             None => Ok(kind),
         }
+    }
+
+    /// What is made of other nodes, or of text.
+    fn made(
+        &mut self,
+        kind: &str,
+        object: &mut Map<String, Value>,
+        label: &str,
+        path: &str,
+    ) -> Result<Kind, Error> {
+        let (made, operands) = made::parse(kind, object).map_err(within(label))?;
+        let path = path.trim_end_matches('/');
+        let operands = operands.into_iter().map(|(place, value)| self.add(value, &format!("{path}/{place}")));
+        Ok(Kind::Made(made, operands.collect::<Result<Vec<usize>, Error>>()?))
     }
 
     /// The solid or region described by a JSON file.

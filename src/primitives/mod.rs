@@ -17,12 +17,14 @@ mod extrusion;
 mod loft;
 mod polygon;
 mod polyhedra;
+mod prism;
 mod round;
 mod sphere;
 
 pub use extrusion::extrusion;
 pub(crate) use loft::{boundary_edges, loft};
 pub use polyhedra::{cuboid, octahedron, tetrahedron};
+pub(crate) use prism::prism;
 pub use round::{cone, cylinder, frustum, torus};
 pub use sphere::{geodesic_sphere, icosphere, uv_sphere};
 

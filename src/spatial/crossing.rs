@@ -9,6 +9,7 @@ use glam::DVec3;
 
 use super::TriangleTree;
 use crate::exact::{Sign, orient2d, orient3d};
+use crate::parallel::map_chunks;
 
 /// Where a point is with respect to a closed surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -50,6 +51,38 @@ impl TriangleTree {
             None => {}
         });
         found
+    }
+
+    /// Where a point is: on the surface, or inside where the surface winds around it more often outwards than inwards. Exact for
+    /// a closed surface.
+    #[must_use]
+    pub fn side(&self, query: [f64; 3]) -> Side {
+        if self.touches(query) {
+            Side::On
+        } else if self.crossings(query).winding > 0 {
+            Side::Inside
+        } else {
+            Side::Outside
+        }
+    }
+
+    /// [`side`](Self::side) of many points, in their order, on all threads.
+    ///
+    /// ```
+    /// use trisect::primitives;
+    /// use trisect::spatial::{Side, TriangleTree};
+    ///
+    /// let cube = TriangleTree::new(&primitives::cuboid([0.0; 3], [1.0; 3])?);
+    /// let sides = cube.sides(&[[0.5; 3], [0.5, 0.5, 1.0], [0.5, 0.5, 1.1]]);
+    /// assert_eq!(sides, [Side::Inside, Side::On, Side::Outside]);
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
+    #[must_use]
+    pub fn sides(&self, queries: &[[f64; 3]]) -> Vec<Side> {
+        // Points asked for at once.
+        const CHUNK: usize = 1024;
+        map_chunks(queries, CHUNK, |chunk| chunk.iter().map(|&query| self.side(query)).collect::<Vec<_>>())
+            .concat()
     }
 
     /// Calls `visit` with the corners of every triangle whose box meets the ray from `query` in +x.

@@ -50,6 +50,12 @@ impl Frame {
         (position - self.centre) * self.scale
     }
 
+    /// A point of the frame where it was before, to rounding.
+    #[inline]
+    pub(crate) fn outside(&self, local: DVec3) -> DVec3 {
+        local / self.scale + self.centre
+    }
+
     /// A point in the frame. Coordinates far outside the region saturate instead of becoming infinite.
     #[inline]
     pub(crate) fn point(&self, position: &[f64; 3]) -> Vec3A {

@@ -123,6 +123,13 @@ impl Ran {
         self
     }
 
+    /// Asserts that standard output contains `text`.
+    #[track_caller]
+    pub(crate) fn prints(self, text: &str) -> Self {
+        assert!(self.out.contains(text), "'{text}' is missing: {self:?}");
+        self
+    }
+
     /// Asserts that standard error contains `text`.
     #[track_caller]
     pub(crate) fn says(self, text: &str) -> Self {

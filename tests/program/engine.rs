@@ -283,7 +283,7 @@ fn ctrl_c_stops_a_running_operation_and_leaves_nothing() {
         let child = folder.start("union a.off b.off -o c.off -o d.obj --threads 1 -v");
         // The operands are described after reading and before the operation.
         let (code, rest) = program::interrupted(child, |line| line.starts_with("b.off: "), name);
-        assert_eq!((code, rest.as_str()), (Some(4), "trisect: cancelled\n"), "{name}");
+        assert_eq!((code, rest.as_str()), (Some(4), "trisect: error: cancelled\n"), "{name}");
         assert_eq!(folder.names(), before);
         assert_eq!(folder.read("c.off"), "precious");
     }

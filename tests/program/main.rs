@@ -13,6 +13,7 @@ mod cuts;
 mod engine;
 mod eval;
 mod kept;
+mod making;
 mod operations;
 #[cfg(feature = "threemf")]
 mod packages;
@@ -20,5 +21,6 @@ mod packages;
 mod pages;
 mod parts;
 mod repairs;
+mod stranger;
 mod streams;
 mod written;

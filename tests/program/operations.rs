@@ -84,11 +84,11 @@ fn a_transform_that_overflows_is_a_usage_error_of_its_input() {
 fn unreadable_inputs_say_which_and_where() {
     let folder = workshop();
     let before = folder.names();
-    folder.run("union a.obj none.obj -o c.obj").exits(2).says("trisect: operand 2 (none.obj): cannot");
+    folder.run("union a.obj none.obj -o c.obj").exits(2).says("trisect: error: operand 2 (none.obj): cannot");
     folder
         .run("union damaged.obj a.obj -o c.obj")
         .exits(2)
-        .says("trisect: operand 1 (damaged.obj): damaged OBJ file, line 4");
+        .says("trisect: error: operand 1 (damaged.obj): damaged OBJ file, line 4");
     folder.run("convert damaged.obj c.off").exits(2).says("line 4");
     folder.run("info a.obj none.obj").exits(2).says("operand 2 (none.obj)");
     folder.run("union a.obj b.obj -o none/c.obj").exits(2).says("none/c.obj");
@@ -401,22 +401,25 @@ fn thread_counts_do_not_change_a_byte() {
 fn help_is_a_verb_and_words_that_mean_verbs_get_a_hint() {
     let folder = workshop();
     assert!(folder.run("help union").exits(0).out.contains("Usage: trisect union"));
-    for (word, verb) in
-        [("subtract", "`difference`"), ("cut", "`difference`"), ("merge", "`union`"), ("repair", "`check`")]
-    {
+    for (word, verb) in [
+        ("minus", "`difference`"),
+        ("cut", "`trisect difference a.obj b.obj"),
+        ("unite", "`union`"),
+        ("repair", "`check`"),
+    ] {
         let ran = folder.run(&format!("{word} a.obj b.obj")).exits(1).says(verb);
         assert_eq!(ran.err.lines().count(), 1, "{ran:?}");
     }
-    let object = folder.run("add a.obj b.obj --json").exits(1).json();
+    let object = folder.run("plus a.obj b.obj --json").exits(1).json();
     assert!(object["error"]["message"].as_str().unwrap().contains("`union`"), "{object}");
 }
 
 #[test]
 fn all_errors_begin_alike_and_are_coloured_on_request() {
     let folder = workshop();
-    for line in ["union a.obj", "union a.obj b.obj --outpt c.obj", "unin", "subtract"] {
+    for line in ["union a.obj", "union a.obj b.obj --outpt c.obj", "unin", "minus"] {
         let ran = folder.run(line).exits(1);
-        assert!(ran.err.starts_with("trisect: "), "{ran:?}");
+        assert!(ran.err.starts_with("trisect: error: "), "{ran:?}");
         let ran = folder.run(&format!("{line} --color always")).exits(1);
         assert!(
             ran.err.starts_with("\x1b[1m\x1b[31mtrisect:") || ran.err.starts_with("\x1b[1;31mtrisect:"),
@@ -424,7 +427,7 @@ fn all_errors_begin_alike_and_are_coloured_on_request() {
         );
     }
     let ran = folder.run("convert warned.obj c.off --color=always").exits(0);
-    assert!(ran.err.starts_with("\x1b[1;33mtrisect:\x1b[0m warning:"), "{ran:?}");
+    assert!(ran.err.starts_with("\x1b[1;33mtrisect: warning:\x1b[0m"), "{ran:?}");
     let ran = folder.run("union a.obj b.obj -o c.obj --threads -1").exits(1).says("-1 is not in 1..=1024");
     assert!(!ran.err.contains("-- -1"), "{ran:?}");
 }

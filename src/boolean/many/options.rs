@@ -175,6 +175,22 @@ impl BooleanOptions {
         self.run_all(operation, &operands)
     }
 
+    /// The volume of what is in both solids, without attributes, groups and clean-up of faces, which do not change it.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn overlap_volume(&self, a: &Solid, b: &Solid) -> Result<f64, Error> {
+        // Boxes that have no inside in common tell at once.
+        let apart = |(a, b): (crate::mesh::Bounds, crate::mesh::Bounds)| {
+            (0..3).any(|k| a.high[k] <= b.low[k] || b.high[k] <= a.low[k])
+        };
+        if a.bounds().zip(b.bounds()).is_none_or(apart) {
+            return Ok(0.0);
+        }
+        let options = self.clone().remove_vertices(false);
+        Ok(options.run(Operation::Intersection, [a, b])?.solid().volume())
+    }
+
     fn run_all(&self, operation: Operation, operands: &[&Solid]) -> Result<Outcome, Error> {
         self.control.check()?;
         if operands.is_empty() {

@@ -108,41 +108,10 @@ struct Drawing {
 impl Drawing {
     /// The triangles of a face; whether all lines on it are edges of them.
     fn draw(&mut self, general: &General, face: FaceId) -> bool {
-        let General { surfaces, edges, crossings, lines, identification, .. } = general;
+        let General { surfaces, lines, .. } = general;
         let seen = Projection::of(&surfaces.positions(face));
         // 1. The outline, and the lines within.
-        let mut outline: Vec<PointId> = Vec::new();
-        let mut add = |point: PointId| {
-            let point = identification.representative(point);
-            if outline.last() != Some(&point) {
-                outline.push(point);
-            }
-        };
-        for k in 0..3 {
-            let (edge, is_forward) = edges.of_side(surfaces, face, k);
-            add(PointId::new(surfaces.vertices(face)[k].number()));
-            let nodes = lines.on_edge(edge).iter().map(|&node| crossings.point(node));
-            if is_forward { nodes.for_each(&mut add) } else { nodes.rev().for_each(&mut add) }
-        }
-        if outline.len() > 1 && outline.first() == outline.last() {
-            outline.pop();
-        }
-        let mut within: Vec<[PointId; 2]> = Vec::new();
-        for &id in crossings.of_face(face) {
-            let segment = crossings.segment(id);
-            // Only where it meets the other surface.
-            if surfaces.owner(segment.partner(face)) == surfaces.owner(face) {
-                continue;
-            }
-            let points = lines.on_segment(id).iter().map(|&triple| lines.point(triple));
-            let mut from = identification.representative(segment.tail);
-            for to in points.chain([segment.head]).map(|point| identification.representative(point)) {
-                if to != from {
-                    within.push([from, to]);
-                }
-                from = to;
-            }
-        }
+        let (outline, within) = (outline(general, face), lines_within(general, face));
         // 2. Local numbers.
         let mut ids: Vec<PointId> = outline.iter().copied().chain(within.iter().flatten().copied()).collect();
         ids.sort_unstable();
@@ -174,4 +143,47 @@ impl Drawing {
         self.triangles.extend(found.into_iter().map(|corners| corners.map(|v| ids[v as usize])));
         is_complete
     }
+}
+
+/// The points round a face.
+fn outline(general: &General, face: FaceId) -> Vec<PointId> {
+    let General { surfaces, edges, crossings, lines, identification, .. } = general;
+    let mut outline: Vec<PointId> = Vec::new();
+    let mut add = |point: PointId| {
+        let point = identification.representative(point);
+        if outline.last() != Some(&point) {
+            outline.push(point);
+        }
+    };
+    for k in 0..3 {
+        let (edge, is_forward) = edges.of_side(surfaces, face, k);
+        add(PointId::new(surfaces.vertices(face)[k].number()));
+        let nodes = lines.on_edge(edge).iter().map(|&node| crossings.point(node));
+        if is_forward { nodes.for_each(&mut add) } else { nodes.rev().for_each(&mut add) }
+    }
+    if outline.len() > 1 && outline.first() == outline.last() {
+        outline.pop();
+    }
+    outline
+}
+
+/// The pieces of lines on a face where it meets the other surface.
+fn lines_within(general: &General, face: FaceId) -> Vec<[PointId; 2]> {
+    let General { surfaces, crossings, lines, identification, .. } = general;
+    let mut within: Vec<[PointId; 2]> = Vec::new();
+    for &id in crossings.of_face(face) {
+        let segment = crossings.segment(id);
+        if surfaces.owner(segment.partner(face)) == surfaces.owner(face) {
+            continue;
+        }
+        let points = lines.on_segment(id).iter().map(|&triple| lines.point(triple));
+        let mut from = identification.representative(segment.tail);
+        for to in points.chain([segment.head]).map(|point| identification.representative(point)) {
+            if to != from {
+                within.push([from, to]);
+            }
+            from = to;
+        }
+    }
+    within
 }

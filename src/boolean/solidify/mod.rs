@@ -157,11 +157,11 @@ impl Work<'_> {
             let of = |&winding: &f64| {
                 (winding > INSIDE_FROM) == is_in && winding > DOUBTFUL && winding < 1.0 - DOUBTFUL
             };
-            self.volume(&general, winding.iter().map(of).collect())
+            self.volume(&general, &winding.iter().map(of).collect::<Vec<_>>())
         };
         let (doubtful_volume, dropped_volume) = (doubt(true)?, doubt(false)?);
         drop(general);
-        let (parts, still_crossing) = self.embedded(arrays, groups)?;
+        let (parts, still_crossing) = self.embedded(arrays, &groups)?;
         // 4. The solid, and what it has of what was given.
         let mut report = SolidifyReport {
             readied: soup.done,
@@ -207,16 +207,16 @@ impl Work<'_> {
     }
 
     /// The volume of some cells.
-    fn volume(&self, general: &General, inside: Vec<bool>) -> Result<f64, Error> {
+    fn volume(&self, general: &General, inside: &[bool]) -> Result<f64, Error> {
         if !inside.contains(&true) {
             return Ok(0.0);
         }
-        let arrays = self.boundary(general, &inside)?;
+        let arrays = self.boundary(general, inside)?;
         Ok(Mesh::new(arrays.positions, arrays.triangles).volume())
     }
 
     /// The result without crossings that rounding has made, and how many triangles cross all the same.
-    fn embedded(&self, arrays: Assembled, groups: Vec<u32>) -> Result<(Parts, usize), Error> {
+    fn embedded(&self, arrays: Assembled, groups: &[u32]) -> Result<(Parts, usize), Error> {
         let origins: Vec<Origin> = arrays.origins.iter().collect();
         let group = |origin: &Origin| groups.get(origin.triangle as usize).copied();
         let groups = origins.iter().filter_map(group).collect();

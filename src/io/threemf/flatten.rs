@@ -26,10 +26,10 @@ struct Instance {
 }
 
 /// The mesh of all build items, in millimetres.
-pub(super) fn flatten(document: Document, budget: &mut Budget, notes: &mut Notes) -> Result<Mesh, Error> {
-    let instances = instances(&document, budget, notes)?;
+pub(super) fn flatten(document: &Document, budget: &mut Budget, notes: &mut Notes) -> Result<Mesh, Error> {
+    let instances = instances(document, budget, notes)?;
     let mut builder = Builder {
-        document: &document,
+        document,
         mesh: Mesh::default(),
         groups: Vec::new(),
         list: Vec::new(),
@@ -102,8 +102,11 @@ fn joined(above: &str, own: &str) -> String {
     }
 }
 
-/// What a group is known by: its name, and which base material of which part it has.
-type GroupKey = (u32, Option<(u32, u32, u32)>);
+/// A base material: its part, its list, its number there.
+type BaseKey = (u32, u32, u32);
+
+/// What a group is known by: its name, and which base material it has.
+type GroupKey = (u32, Option<BaseKey>);
 
 struct Builder<'d> {
     document: &'d Document,
@@ -165,7 +168,7 @@ impl Builder<'_> {
         label: Option<Label>,
         is_mirrored: bool,
         notes: &mut Notes,
-    ) -> Option<(u32, u32, u32)> {
+    ) -> Option<BaseKey> {
         let triangle = self.mesh.triangles.len() - 1;
         let label = label?;
         let model = self.document.models.get(part as usize)?;
@@ -197,7 +200,7 @@ impl Builder<'_> {
     }
 
     /// The number of a group.
-    fn group(&mut self, name: &str, material: Option<(u32, u32, u32)>) -> u32 {
+    fn group(&mut self, name: &str, material: Option<BaseKey>) -> u32 {
         let number = match self.names.get(name) {
             Some(&number) => number,
             None => {
@@ -230,16 +233,12 @@ impl Builder<'_> {
 struct GroupFinder<'i> {
     name: &'i str,
     mesh: &'i ObjectMesh,
-    last: Option<(u32, Option<(u32, u32, u32)>, u32)>,
+    /// The triangle set and the material of the last one, and its group.
+    last: Option<(u32, Option<BaseKey>, u32)>,
 }
 
 impl GroupFinder<'_> {
-    fn group(
-        &mut self,
-        builder: &mut Builder<'_>,
-        triangle: usize,
-        material: Option<(u32, u32, u32)>,
-    ) -> u32 {
+    fn group(&mut self, builder: &mut Builder<'_>, triangle: usize, material: Option<BaseKey>) -> u32 {
         let set = self.mesh.sets.get(triangle).copied().unwrap_or(0);
         if let Some((_, _, group)) = self.last.filter(|&(s, m, _)| (s, m) == (set, material)) {
             return group;
@@ -252,7 +251,7 @@ impl GroupFinder<'_> {
 }
 
 /// A base material; its colour is encoded for screens.
-fn base(document: &Document, (part, property, index): (u32, u32, u32)) -> Option<Material> {
+fn base(document: &Document, (part, property, index): BaseKey) -> Option<Material> {
     let model = document.models.get(part as usize)?;
     let Some(Property::Base(list)) = model.properties.get(&property) else { return None };
     let (name, [red, green, blue, opacity]) = list.get(index as usize)?;

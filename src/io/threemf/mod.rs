@@ -47,7 +47,7 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Content
         attachments: package.attachments(document.paths.len()),
         ..Contents::default()
     };
-    let mut mesh = flatten::flatten(document, &mut budget, &mut notes)?;
+    let mut mesh = flatten::flatten(&document, &mut budget, &mut notes)?;
     check_finite(&mut mesh, Format::ThreeMf, &mut notes, |vertex| format!("vertex {vertex} of the build"))?;
     Ok((mesh, contents, notes.into_warnings(|offset| format!("byte {offset}"))))
 }

@@ -187,13 +187,8 @@ fn angle(at: [f64; 3], to: [[f64; 3]; 2]) -> f64 {
     across.iter().map(|x| x * x).sum::<f64>().sqrt().atan2(dot)
 }
 
-/// Places the vertices from `given` on where the sum of the squared bends at them and at the rim is least: a bend is how far a vertex is
-/// from the mean of its neighbours. (Conjugate gradients on the normal equations.)
-fn make_fair(positions: &mut [[f64; 3]], filling: &[[u32; 3]], given: usize, around: &Around) {
-    if positions.len() == given {
-        return;
-    }
-    // 1. One row for each vertex of the filling: itself, and its neighbours here and in the surface.
+/// By vertex of a filling, its neighbours there and in the surface, ascending.
+fn rows(filling: &[[u32; 3]], around: &Around) -> Vec<(u32, Vec<u32>)> {
     let mut neighbours: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
     for corners in filling {
         for k in 0..3 {
@@ -209,6 +204,17 @@ fn make_fair(positions: &mut [[f64; 3]], filling: &[[u32; 3]], given: usize, aro
         others.sort_unstable();
         others.dedup();
     }
+    rows
+}
+
+/// Places the vertices from `given` on where the sum of the squared bends at them and at the rim is least: a bend is how far a vertex is
+/// from the mean of its neighbours. (Conjugate gradients on the normal equations.)
+fn make_fair(positions: &mut [[f64; 3]], filling: &[[u32; 3]], given: usize, around: &Around) {
+    if positions.len() == given {
+        return;
+    }
+    // 1. One row for each vertex of the filling.
+    let rows = rows(filling, around);
     let unknown = positions.len() - given;
     let place = |v: u32| (v as usize).checked_sub(given);
     // 2. Axis by axis.

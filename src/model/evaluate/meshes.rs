@@ -12,7 +12,7 @@ use crate::boolean::{BooleanOptions, Expression, Operation, PlaneCut};
 use crate::exact::Plane;
 use crate::field::{Extracted, Extraction, extrude};
 use crate::io::ReadOptions;
-use crate::model::{Kind, Mode};
+use crate::model::{Kind, Made, Mode};
 use crate::{Error, Mesh, MeshError, Solid};
 
 /// The leaves of a tree of operations, each once.
@@ -82,6 +82,7 @@ impl State<'_> {
                 Kind::Parametric(solid) => {
                     solid.mesh(self.given_tolerance(node), control).map_err(|error| error.in_node(label))?
                 }
+                Kind::Made(made, operands) => self.made(node, made, operands)?,
                 #[cfg(feature = "subdivision")]
                 Kind::Cage(cage) => self.limit_mesh(node, cage)?,
                 #[cfg(not(feature = "subdivision"))]
@@ -104,6 +105,21 @@ impl State<'_> {
             self.warnings.push(format!("{label}: {}", fault.text(one, several, 2)));
         }
         Ok(solid)
+    }
+
+    /// A hull, a sum, a pattern or text, of nodes that are meshed first.
+    fn made(&mut self, node: usize, made: &Made, operands: &[usize]) -> Result<Mesh, Error> {
+        let solids: Vec<Arc<Solid>> = operands
+            .iter()
+            .map(|&operand| match self.mode(operand, None) {
+                Mode::Field => self.meshed(operand),
+                Mode::Exact | Mode::FreeForm => self.exact(operand),
+            })
+            .collect::<Result<_, Error>>()?;
+        let solids: Vec<&Solid> = solids.iter().map(Arc::as_ref).collect();
+        let tolerance = self.given_tolerance(node);
+        made.mesh(&solids, tolerance, &self.model.folder, &self.settings.control)
+            .map_err(|error| error.in_node(self.label(node)))
     }
 
     /// What an exact operation gives.

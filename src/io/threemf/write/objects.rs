@@ -76,7 +76,8 @@ fn welded(mesh: &Mesh) -> Result<Option<Selection>, Error> {
     let is_whole = corners.iter().all(|&[a, b, c]| a != b && b != c && c != a);
     let alone = Mesh::new(vec![[0.0; 3]; vertices.len()], corners);
     let triangles = (0..mesh.triangles.len() as u32).collect();
-    Ok((is_whole && is_closed(&alone)).then(|| Selection { triangles, vertices, corners: alone.triangles }))
+    let is_closed = is_whole && is_closed(&alone);
+    Ok(is_closed.then_some(Selection { triangles, vertices, corners: alone.triangles }))
 }
 
 /// The names of groups that have triangles, each once, and for every group the number of its name.

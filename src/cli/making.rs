@@ -1,0 +1,184 @@
+//! `hull`, `text`, `minkowski`, `offset` and `hollow`.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::ArgMatches;
+use serde_json::{Value, json};
+use trisect::making as library;
+use trisect::{Control, Error, Solid};
+
+use super::argument_groups::{Inputs, Results};
+use super::combine;
+use super::fault::{Exit, Fault};
+use super::made;
+use super::making_arguments::{Hollow, Hull, Minkowski, Offset, Text};
+use super::operands;
+use super::reading;
+use super::requests;
+use super::selection;
+use super::session::Session;
+use super::words;
+
+/// Makes the convex hull of all inputs.
+pub(crate) fn run(arguments: &Hull, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
+    let control = session.control();
+    let requests = requests::requests(matches, arguments.reading.format)?;
+    let requests = selection::each(requests, &session.limits, &control)?;
+    let targets = made::targets(&arguments.results, session)?;
+    let start = Instant::now();
+    let (mut points, mut format, mut described) = (Vec::new(), None, Vec::<Value>::new());
+    for (index, request) in requests.into_iter().enumerate() {
+        let name = request.name();
+        session.console.stage(&format!("reading {name}"), 0.0);
+        let input = reading::read(&request, &session.limits, &control)
+            .map_err(|error| error.of_operand(index, name.clone()))?;
+        for warning in input.warnings {
+            session.warn(format!("{name}: {warning}"));
+        }
+        // Vertices that no triangle uses are no part of the surface.
+        let mut used: Vec<u32> = input.mesh.triangles.iter().flatten().copied().collect();
+        used.sort_unstable();
+        used.dedup();
+        let corners = used.iter().filter_map(|&vertex| input.mesh.positions.get(vertex as usize));
+        points.extend(corners);
+        format.get_or_insert(input.format);
+        let triangles = input.mesh.triangles.len();
+        session.console.say(&format!("{name}: {}", words::counted(triangles, "triangle")));
+        described.push(
+            json!({ "operand": index + 1, "file": name, "triangles": triangles, "points": used.len() }),
+        );
+    }
+    session.took("read", start);
+    session.note("operands", described);
+
+    let start = Instant::now();
+    let hull = library::convex_hull(&points).map_err(unusable)?;
+    let solid = Solid::try_from(hull).map_err(Error::from)?;
+    let seconds = session.took("run", start);
+    made::deliver(&solid, &arguments.results, &targets, format, seconds, session)?;
+    Ok(Exit::Fine)
+}
+
+/// Sets text.
+pub(crate) fn run_text(
+    arguments: &Text,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let control = session.control();
+    let start = Instant::now();
+    let named = |text: PathBuf| format!("text:{}", text.display()).into();
+    let mut requests = requests::placed_inputs(matches, named)?;
+    let Some(request) = requests.pop() else { return Err(Fault::usage("a text is needed")) };
+    let targets = made::targets(&arguments.results, session)?;
+    let mesh = reading::read(&request, &session.limits, &control)?.mesh;
+    let solid = Solid::try_from(mesh).map_err(Error::from)?;
+    let seconds = session.took("run", start);
+    made::deliver(&solid, &arguments.results, &targets, None, seconds, session)?;
+    Ok(Exit::Fine)
+}
+
+/// Makes the Minkowski sum of two inputs.
+pub(crate) fn run_minkowski(
+    arguments: &Minkowski,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let control = session.control();
+    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = selection::joined(requests, &session.limits, &control)?;
+    if requests.len() != 2 {
+        return Err(Fault::usage(format!(
+            "minkowski takes two inputs, the solid and the convex tool, not {}: minkowski BODY TOOL -o OUTPUT",
+            requests.len()
+        )));
+    }
+    let targets = made::targets(&arguments.results, session)?;
+    let start = Instant::now();
+    let assume_clean = arguments.inputs.using.assume_clean;
+    let operands = operands::operands(requests, assume_clean, &session.limits, &control, &session.console)?;
+    session.took("read", start);
+    combine::describe(&operands, Some(&arguments.results.writing), session);
+    let [body, tool] = &*operands else { return Err(Fault::internal("two operands")) };
+    if !tool.solid.is_convex() {
+        return Err(Fault::unusable(format!(
+            "operand 2 ({}): the tool of a Minkowski sum must be convex, and this is not; `trisect hull {} -o hull.stl` makes its \
+             hull",
+            tool.request.name(),
+            tool.request.name()
+        )));
+    }
+    let start = Instant::now();
+    session.console.stage("summing up", 0.0);
+    let solid = library::minkowski_sum(&body.solid, &tool.solid, &control)?;
+    let seconds = session.took("run", start);
+    made::deliver(&solid, &arguments.results, &targets, Some(body.format), seconds, session)?;
+    Ok(Exit::Fine)
+}
+
+/// Grows or shrinks one input.
+pub(crate) fn run_offset(
+    arguments: &Offset,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let of = |solid: &Solid, control: &Control| {
+        library::offset(solid, arguments.distance, arguments.tolerance, control)
+    };
+    from_distance("offset", &arguments.inputs, &arguments.results, matches, session, of)
+}
+
+/// Hollows one input.
+pub(crate) fn run_hollow(
+    arguments: &Hollow,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+) -> Result<Exit, Fault> {
+    let of = |solid: &Solid, control: &Control| {
+        library::hollow(solid, arguments.wall, &arguments.drain, arguments.tolerance, control)
+    };
+    from_distance("hollow", &arguments.inputs, &arguments.results, matches, session, of)
+}
+
+/// Makes something of the distance field of one input.
+fn from_distance(
+    verb: &str,
+    inputs: &Inputs,
+    results: &Results,
+    matches: &ArgMatches,
+    session: &mut Session<'_>,
+    make: impl Fn(&Solid, &Control) -> Result<library::Offset, Error>,
+) -> Result<Exit, Fault> {
+    let control = session.control();
+    let requests = requests::requests(matches, inputs.reading.format)?;
+    let requests = selection::joined(requests, &session.limits, &control)?;
+    if requests.len() != 1 {
+        return Err(Fault::usage(format!("{verb} takes one input, not {}", requests.len())));
+    }
+    let targets = made::targets(results, session)?;
+    let start = Instant::now();
+    let operands =
+        operands::operands(requests, inputs.using.assume_clean, &session.limits, &control, &session.console)?;
+    session.took("read", start);
+    combine::describe(&operands, Some(&results.writing), session);
+    let [operand] = &*operands else { return Err(Fault::internal("one operand")) };
+    let start = Instant::now();
+    session.console.stage(verb, 0.0);
+    let made = make(&operand.solid, &control).map_err(unusable)?;
+    let seconds = session.took("run", start);
+    session.note("tolerance", made.tolerance);
+    session.note("deviation", made.deviation);
+    made::deliver(&made.solid, results, &targets, Some(operand.format), seconds, session)?;
+    let (deviation, tolerance) = (words::short(made.deviation), words::short(made.tolerance));
+    session.console.say(&format!("within {deviation} of the true {verb} (tolerance {tolerance})"));
+    Ok(Exit::Fine)
+}
+
+/// Points without a hull are no fault of the command line.
+fn unusable(error: Error) -> Fault {
+    match error {
+        Error::InvalidArgument(what) => Fault::unusable(what),
+        other => other.into(),
+    }
+}
