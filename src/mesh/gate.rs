@@ -48,7 +48,7 @@ pub enum Welding {
     /// Those too that are no further apart than this.
     Within(f64),
     /// Those too that are no further apart than the least distance that closes the surface, if one up to a thousandth of its
-    /// size does.
+    /// size does. With [`closed_parts`](Gate::closed_parts), where none closes all: the least that closes as much as any does.
     Closing,
 }
 
@@ -215,18 +215,19 @@ impl Gate {
         }
         let leave = Leave { distance: None, closed_parts: false };
         let mend = |leave| mend::mend(mesh, &cleaned.triangles, &cleaned.source, leave);
-        let distance = || match self.weld {
+        let distance_for = |closed_parts| match self.weld {
             Welding::Rounding => None,
             Welding::Within(distance) => Some(distance),
-            Welding::Closing => mend::closing_distance(mesh, &cleaned.triangles),
+            Welding::Closing => mend::closing_distance(mesh, &cleaned.triangles, closed_parts),
         };
+        let distance = || distance_for(false);
         // What is asked for is done only where what is certain does not do.
         let by_distance = || {
             let leave = Leave { distance: Some(distance()?), ..leave };
             Some(mend(leave)?.within(leave.distance))
         };
         let parts = || {
-            let leave = Leave { distance: distance(), closed_parts: true };
+            let leave = Leave { distance: distance_for(true), closed_parts: true };
             Some(mend(leave)?.within(leave.distance))
         };
         let filled = || {

@@ -199,6 +199,28 @@ fn the_least_distance_that_closes_is_found() {
 }
 
 #[test]
+fn the_distance_that_closes_parts_is_found_beside_what_stays_open() {
+    // A ball that gapes by a thousandth in one corner, over an open floor.
+    let mut ball = primitives::icosphere(1.0, 2).expect("a sphere");
+    let volume = ball.volume();
+    let vertex = ball.triangles[7][0] as usize;
+    ball.triangles[7][0] = ball.positions.len() as u32;
+    ball.positions.push(ball.positions[vertex].map(|x| x + 1e-3));
+    let floor = Mesh::new(
+        vec![[-9.0, -9.0, -2.0], [9.0, -9.0, -2.0], [9.0, 9.0, -2.0], [-9.0, 9.0, -2.0]],
+        vec![[0, 1, 2], [0, 2, 3]],
+    );
+    let scene = Mesh::merged([&floor, &ball]).expect("small");
+    assert!(Gate::new().closed_parts(true).solid(scene.clone()).is_err());
+    assert!(Gate::new().weld(Welding::Closing).solid(scene.clone()).is_err());
+    let solid = Gate::new().weld(Welding::Closing).closed_parts(true).solid(scene).expect("the ball");
+    let distance = solid.mending().distance.expect("a distance");
+    assert!((distance / (1e-3 * 3f64.sqrt()) - 1.0).abs() < 1e-9, "{distance}");
+    assert_eq!(solid.mending().open_part_count, 1);
+    assert!((solid.volume() - volume).abs() < 1e-2, "{}", solid.volume());
+}
+
+#[test]
 fn open_parts_are_left_out_where_that_is_asked_for() {
     let plane = Mesh::new(
         vec![[-9.0, -9.0, 0.0], [9.0, -9.0, 0.0], [9.0, 9.0, 0.0], [-9.0, 9.0, 0.0]],

@@ -12,6 +12,7 @@ mod common;
 mod contacts;
 #[allow(dead_code, reason = "shared with the driver of the live comparison")]
 mod judge;
+mod live;
 mod minimiser;
 mod models;
 mod named;

@@ -50,7 +50,10 @@ fn summary(what: &str, took: Duration, run: impl Fn(Duration) -> Option<Duration
     let mut late: Vec<Duration> = (1..40).filter_map(|part| run(took * part / 40)).collect();
     late.sort();
     if let (Some(median), Some(most)) = (late.get(late.len() / 2), late.last()) {
-        println!("  {what} at {} moments: returns after {median:.1?} (median), {most:.1?} (most)", late.len());
+        println!(
+            "  {what} at {} moments: returns after {median:.1?} (median), {most:.1?} (most)",
+            late.len()
+        );
     }
 }
 
@@ -80,5 +83,9 @@ fn memory(operands: &[Solid; 2]) {
         let enough = union(operands, Control::new().memory_limit(middle), 1).is_ok();
         (low, high) = if enough { (low, middle) } else { (middle, high) };
     }
-    println!("  smallest memory limit {:.1} MB, in use at most {:.1} MB", high as f64 / 1e6, peak as f64 / 1e6);
+    println!(
+        "  smallest memory limit {:.1} MB, in use at most {:.1} MB",
+        high as f64 / 1e6,
+        peak as f64 / 1e6
+    );
 }

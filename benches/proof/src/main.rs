@@ -9,11 +9,12 @@
 //! trisect-proof minimise SEED FOLDER NAME    the smallest pair found that fails like the case, as NAME-a.obj and NAME-b.obj
 //! ```
 
+mod arbiter;
 #[path = "../../../tests/proof/judge/mod.rs"]
 #[allow(dead_code, reason = "shared with the tests")]
 mod judge;
-mod arbiter;
 mod limits;
+mod many;
 mod record;
 mod run;
 
@@ -21,6 +22,7 @@ use std::io::{BufWriter, Write};
 use std::process::ExitCode;
 
 use judge::cases::Case;
+use judge::many::{MANY_FROM, Many};
 use trisect::Mesh;
 
 fn main() -> ExitCode {
@@ -52,15 +54,25 @@ fn command(words: &[&str]) -> Result<(), String> {
         }
         ["show", seeds @ ..] => seeds.iter().try_for_each(|word| {
             let seed = number(word)?;
-            run::show(seed, &Case::new(seed, &models));
+            if seed >= MANY_FROM {
+                many::show(seed, &Many::new(seed));
+            } else {
+                run::show(seed, &Case::new(seed, &models));
+            }
             Ok(())
         }),
+        ["save", seed, folder] if number(seed)? >= MANY_FROM => {
+            let case = Many::new(number(seed)?);
+            for (index, operand) in case.merged().iter().enumerate() {
+                save(operand, folder, &format!("operand-{index}"))?;
+            }
+            many::attempt(&case).map_or(Ok(()), |mesh| save(&mesh, folder, "result"))
+        }
         ["save", seed, folder] => {
             let case = Case::new(number(seed)?, &models);
             save(&case.a, folder, "a")?;
             save(&case.b, folder, "b")?;
-            let (outcome, _) = run::attempt(&case);
-            outcome.map_or(Ok(()), |mesh| save(&mesh, folder, "result"))
+            run::attempt(&case).map_or(Ok(()), |mesh| save(&mesh, folder, "result"))
         }
         ["minimise", seed, folder, name] => {
             let seed = number(seed)?;
@@ -95,9 +107,13 @@ fn emit(first: u64, count: u64, points: usize, models: &[Mesh]) -> std::io::Resu
     std::panic::set_hook(Box::new(|_| {}));
     let mut out = BufWriter::new(std::io::stdout().lock());
     for seed in first..first + count {
-        let case = Case::new(seed, models);
-        let found = run::examine(seed, &case, points);
-        record::write(&mut out, seed, &case, &found)?;
+        if seed >= MANY_FROM {
+            let case = Many::new(seed);
+            record::write_many(&mut out, seed, &case, &many::examine(seed, &case, points))?;
+        } else {
+            let case = Case::new(seed, models);
+            record::write(&mut out, seed, &case, &run::examine(seed, &case, points))?;
+        }
         // A crash must not take the cases before it along.
         out.flush()?;
     }

@@ -18,6 +18,7 @@ pub(super) mod face_walk;
 pub(super) mod identify;
 pub(super) mod location;
 mod neighbours;
+mod penetration;
 pub(super) mod plane_faces;
 pub(super) mod points;
 pub(in crate::boolean) mod self_crossings;

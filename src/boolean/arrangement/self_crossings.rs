@@ -11,6 +11,7 @@ use obvhs::aabb::Aabb;
 
 use super::apart::{are_plainly_apart, common_corners};
 use super::neighbours::Neighbours;
+use super::penetration;
 use super::self_pairs::self_pairs;
 use crate::boolean::complex::ids::VertexId;
 use crate::boolean::complex::planes;
@@ -248,12 +249,17 @@ impl<'a> Surface<'a> {
                 return Some(Crossing { crossing, real: true, shallow: false });
             }
         };
-        let depth = overlap(a, b).min(distance(&segment[0], &segment[1]));
+        let depth = penetration::penetration(&positions(a), &positions(b)).max(0.0);
+        let depth = depth.min(distance(&segment[0], &segment[1]));
         let place = std::array::from_fn(|k| 0.5 * segment[0][k] + 0.5 * segment[1][k]);
         let own = largest_coordinate(&segment[0]).max(largest_coordinate(&segment[1]));
         let tolerance = self.part * size_at_hand(self.largest, own);
-        let real = depth > tolerance || self.leaves_wrong_winding(&place, a, b, tolerance);
-        let shallow = real && depth > 0.0 && depth <= SHALLOW * tolerance;
+        let rounding = penetration::rounding(&positions(a), &positions(b));
+        let tolerance = rounding.map_or(tolerance, |moved| tolerance.max(TOLERATED_ULPS * moved));
+        // A body whose corner just pierces the wall of another from inside crosses it by no more than rounding, but is in it.
+        let is_wrong = depth <= SHALLOW * tolerance && self.leaves_wrong_winding(&place, a, b, tolerance);
+        let real = depth > tolerance || is_wrong;
+        let shallow = real && !is_wrong && depth > 0.0 && depth <= SHALLOW * tolerance;
         Some(Crossing { crossing: SelfCrossing { triangles: pair, place, depth }, real, shallow })
     }
 
@@ -357,30 +363,6 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// How far one of two triangles would have to be moved at most for them to come apart: the smallest overlap along their normals and
-/// along what is perpendicular to a side of each. (Normals alone say nothing of needles, which have any.)
-fn overlap(a: &[Corner; 3], b: &[Corner; 3]) -> f64 {
-    let sides = |t: &[Corner; 3]| [0, 1, 2].map(|k| difference(&t[(k + 1) % 3].position, &t[k].position));
-    let (of_a, of_b) = (sides(a), sides(b));
-    let across = of_a.iter().flat_map(|x| of_b.iter().filter_map(|y| unit_cross(x, y)));
-    let axes = [a, b].into_iter().filter_map(unit_normal).chain(across);
-    // (Two without area have no axis, and are nowhere apart from a line.)
-    axes.map(|axis| overlap_along(&axis, a, b)).reduce(f64::min).unwrap_or(0.0)
-}
-
-/// How far one of two triangles would have to be moved along an axis for them to come apart.
-fn overlap_along(axis: &[f64; 3], a: &[Corner; 3], b: &[Corner; 3]) -> f64 {
-    let reach = |t: &[Corner; 3]| {
-        let heights = [0, 1, 2].map(|k| height(axis, &a[0].position, &t[k].position));
-        (
-            heights.iter().copied().fold(f64::INFINITY, f64::min),
-            heights.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        )
-    };
-    let ((low, high), (other_low, other_high)) = (reach(a), reach(b));
-    (high - other_low).min(other_high - low).max(0.0)
-}
-
 fn height(normal: &[f64; 3], origin: &[f64; 3], point: &[f64; 3]) -> f64 {
     (0..3).map(|k| normal[k] * (point[k] - origin[k])).sum()
 }
@@ -394,32 +376,12 @@ fn distance(p: &[f64; 3], q: &[f64; 3]) -> f64 {
     norm(&std::array::from_fn(|k| q[k] - p[k]))
 }
 
-fn difference(p: &[f64; 3], q: &[f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| p[k] - q[k])
-}
-
 fn unit_normal(t: &[Corner; 3]) -> Option<[f64; 3]> {
-    let edge = |i: usize| difference(&t[i].position, &t[0].position);
-    unit_cross(&edge(1), &edge(2))
+    penetration::unit_normal(&positions(t))
 }
 
-/// The direction of a cross product; `None` where it vanishes. Perpendicular to both but for rounding of their own lengths, also
-/// where they are nearly parallel.
-fn unit_cross(u: &[f64; 3], v: &[f64; 3]) -> Option<[f64; 3]> {
-    let (u, v) = (unit(u)?, unit(v)?);
-    let cross: [f64; 3] =
-        std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3]);
-    // Of nearly parallel vectors the product is mostly rounding; what of that lies along the first is taken off, and what is left
-    // is as good as perpendicular to the second.
-    let cross = unit(&cross)?;
-    let along: f64 = (0..3).map(|k| cross[k] * u[k]).sum();
-    unit(&std::array::from_fn(|k| cross[k] - along * u[k]))
-}
-
-/// A vector made one long; `None` for zero.
-fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
-    let length = norm(v);
-    (length > 0.0).then(|| v.map(|x| x / length))
+fn positions(t: &[Corner; 3]) -> [[f64; 3]; 3] {
+    t.each_ref().map(|corner| corner.position)
 }
 
 /// Where a line passes a plane, roughly.

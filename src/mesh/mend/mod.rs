@@ -119,13 +119,14 @@ pub(super) fn mend_by_filling<'a>(
     (surface.is_closed() && is_body).then_some(surface)
 }
 
-/// The least distance within which joining vertices (and splitting edges) closes the surface of `triangles`; `None` if none
-/// up to a thousandth of its size does, or if it is closed. (The least of those tried: the more is joined the more cancels, but
-/// for what is joined too much.)
-pub(super) fn closing_distance(mesh: &Mesh, triangles: &[[u32; 3]]) -> Option<f64> {
+/// The least distance within which joining vertices (and splitting edges) closes the surface of `triangles`; where parts may stay
+/// open, closes as much of it as any distance does, if that is more than rounding does. `None` if none up to a thousandth of its
+/// size does, or if it is closed. (The least of those tried: the more is joined the more cancels, but for what is joined too much.)
+pub(super) fn closing_distance(mesh: &Mesh, triangles: &[[u32; 3]], closed_parts: bool) -> Option<f64> {
     /// Parts of the size that are tried, ascending: from what single precision rounds to what is seen, four to a power of ten.
     const DIGITS: std::ops::RangeInclusive<i32> = 4..=9;
     const QUARTERS: [f64; 4] = [1.8, 3.2, 5.6, 10.0];
+    const WAYS: [Splits; 2] = [Splits::ByRounding, Splits::ByDistance];
     let positions = &mesh.positions;
     let edges = weld::boundary(triangles, positions.len());
     let corners = triangles.iter().flatten().map(|&corner| &positions[corner as usize]);
@@ -134,12 +135,26 @@ pub(super) fn closing_distance(mesh: &Mesh, triangles: &[[u32; 3]]) -> Option<f6
         return None;
     }
     let usable = |distance: f64| distance > 0.0 && distance.is_finite();
-    // By joining vertices where that does, else by splitting edges as well.
-    [Splits::ByRounding, Splits::ByDistance].into_iter().find_map(|splits| {
-        let closes = |distance: f64| usable(distance) && sew::closes(positions, &edges, distance, splits);
-        let mut tried =
-            DIGITS.rev().flat_map(|digits| QUARTERS.map(|part| size * part * 10f64.powi(-digits)));
-        let coarse = tried.find(|&distance| closes(distance))?;
+    let tried: Vec<f64> = DIGITS
+        .rev()
+        .flat_map(|digits| QUARTERS.map(|part| size * part * 10f64.powi(-digits)))
+        .filter(|&distance| usable(distance))
+        .collect();
+    let left_open = |distance: f64, splits| sew::left_open(positions, &edges, Some(distance), splits);
+    // 1. How many edges may stay open.
+    let most = if closed_parts {
+        let by_rounding = sew::left_open(positions, &edges, None, Splits::ByRounding);
+        let all = WAYS.iter().flat_map(|&splits| tried.iter().map(move |&distance| (distance, splits)));
+        all.map(|(distance, splits)| left_open(distance, splits))
+            .min()
+            .filter(|&least| least < by_rounding)?
+    } else {
+        0
+    };
+    // 2. By joining vertices where that does, else by splitting edges as well.
+    WAYS.into_iter().find_map(|splits| {
+        let closes = |distance: f64| usable(distance) && left_open(distance, splits) <= most;
+        let coarse = tried.iter().copied().find(|&distance| closes(distance))?;
         // What is joined within that distance is no further apart than one of these.
         let gaps = sew::gaps(positions, &edges, coarse);
         let least = gaps.partition_point(|&gap| !closes(gap));

@@ -60,10 +60,16 @@ pub(super) fn sew(surface: &mut Surface<'_>, how: Sewing) -> bool {
     rejected
 }
 
-/// Whether all open edges cancel once vertices within `distance` are joined and those on edges split them.
-pub(super) fn closes(positions: &[[f64; 3]], edges: &[OpenEdge], distance: f64, splits: Splits) -> bool {
-    let how = Sewing { distance: Some(distance), splits, where_it_closes: true };
-    Plan::new(positions, edges, how).closes.iter().all(|&closes| closes)
+/// How many edges are in parts of the rim that stay open once vertices within `distance` (or a rounding) are joined and those on
+/// edges split them.
+pub(super) fn left_open(
+    positions: &[[f64; 3]],
+    edges: &[OpenEdge],
+    distance: Option<f64>,
+    splits: Splits,
+) -> usize {
+    let plan = Plan::new(positions, edges, Sewing { distance, splits, where_it_closes: true });
+    edges.iter().filter(|edge| !plan.closes[plan.part_of(edge.from)]).count()
 }
 
 /// How far apart the vertices are that are joined within `distance`, ascending.

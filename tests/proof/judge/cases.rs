@@ -34,13 +34,19 @@ pub(crate) enum Family {
     Chain,
     /// The same, written and read in between.
     Files,
+    /// Two operands, each of bodies that overlap and touch.
+    Bodies,
+    /// Three to eight operands.
+    Several,
+    /// Two to five operands, each of bodies that overlap and touch.
+    Mixed,
 }
 
 /// The seeds from here on are those of [`hard`](super::hard) pairs.
 pub(crate) const HARD_FROM: u64 = 1 << 32;
 
 impl Family {
-    pub(crate) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 15] = [
         Self::Grid,
         Self::Generic,
         Self::Near,
@@ -53,6 +59,9 @@ impl Family {
         Self::Far12,
         Self::Chain,
         Self::Files,
+        Self::Bodies,
+        Self::Several,
+        Self::Mixed,
     ];
 }
 

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use trisect::Mesh;
 
+use super::boxes::{Boxes, overlap};
 use super::surface::Sets;
 use super::vector::{Point, cross, dot, extent, length, minus, plus, unit};
 
@@ -37,7 +38,25 @@ struct Side {
     forward: bool,
     /// Angle of the face round the edge.
     angle: f64,
+    /// By how much rounding may have turned the face, in radians, where that is small.
+    uncertainty: f64,
 }
+
+impl Side {
+    /// Whether the face is so thin that its angle is the work of rounding.
+    fn is_needle(&self) -> bool {
+        self.uncertainty >= 1.0
+    }
+}
+
+/// Faces at no larger angle, in radians, lie on one another.
+const NO_ANGLE: f64 = 1e-7;
+
+/// What is no higher over an edge than so many units in the last place of the coordinates there may have been turned to any side by
+/// rounding: a corner over the edge is off by half a unit along each axis, and so is the edge under it, by the shares of its ends (more
+/// than one in all, if the corner is not over the edge itself). What was that high may be twice as high now: sqrt(3) units for
+/// each share.
+const NEEDLE_ULPS: f64 = 2.0;
 
 /// The topology of `mesh` with its contacts parted. Vertices nearer than `reach` times the size of the mesh are one. Exact
 /// where features are larger and contacts closer than that; `None` if the surface is not closed after joining them, or if
@@ -46,9 +65,12 @@ pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
     if mesh.triangles.is_empty() {
         return Some(Parted { topology: Topology::default(), pinched: false });
     }
-    let [low, high] = extent(&mesh.positions);
+    // About a vertex: far from the origin a place on a side is rounded, and would fall on vertices that are beside it.
+    let origin = mesh.positions[mesh.triangles[0][0] as usize];
+    let positions: Vec<Point> = mesh.positions.iter().map(|p| minus(*p, origin)).collect();
+    let [low, high] = extent(&positions);
     let near = reach * (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
-    let (points, of) = joined(&mesh.positions, near);
+    let (points, of) = joined(&positions, near);
     let faces: Vec<Face> =
         mesh.triangles.iter().filter_map(|t| face(t.map(|v| of[v as usize]), &points, near)).collect();
     let mut edges: HashMap<(usize, usize), Vec<Side>> = HashMap::new();
@@ -62,10 +84,19 @@ pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
             let (from, to) = (u.min(v), u.max(v));
             let forward = u < v;
             let angle = angle_round(points[from], points[to], face.normal, forward);
-            edges.entry((from, to)).or_default().push(Side { face: index, side, forward, angle });
+            let corners = face.triangle.map(|v| points[v]);
+            let uncertainty = uncertainty([points[from], points[to]], &corners, origin);
+            edges.entry((from, to)).or_default().push(Side {
+                face: index,
+                side,
+                forward,
+                angle,
+                uncertainty,
+            });
         }
     }
-    let pinched = edges.iter().any(|(edge, sides)| is_pinched(*edge, sides, &faces, &points, near));
+    let boxes = Boxes::new(faces.iter().map(|face| extent(&face.triangle.map(|v| points[v]))));
+    let pinched = edges.iter().any(|(edge, sides)| is_pinched(*edge, sides, &faces, &boxes, &points, near));
     let (mut fans, mut bodies) = (Sets::new(corners), Sets::new(faces.len()));
     let mut pairs = 0;
     for sides in edges.values_mut() {
@@ -111,7 +142,10 @@ fn face(triangle: [usize; 3], points: &[Point], near: f64) -> Option<Face> {
         return None;
     }
     let [low, high] = extent(&[a, b, c]);
-    let close: Vec<usize> = (0..points.len())
+    // Points are in order along x.
+    let first = points.partition_point(|p| p[0] < low[0] - near);
+    let close: Vec<usize> = (first..points.len())
+        .take_while(|&v| points[v][0] <= high[0] + near)
         .filter(|v| {
             !triangle.contains(v)
                 && (0..3).all(|k| points[*v][k] >= low[k] - near && points[*v][k] <= high[k] + near)
@@ -149,10 +183,31 @@ fn angle_round(from: Point, to: Point, normal: Point, forward: bool) -> f64 {
     dot(inward, up).atan2(dot(inward, across))
 }
 
+/// How much rounding may have moved the highest corner of a triangle over an edge of it, as a part of its height.
+fn uncertainty([from, to]: [Point; 2], corners: &[Point; 3], origin: Point) -> f64 {
+    let along = minus(to, from);
+    let largest =
+        corners.iter().flat_map(|p| plus(*p, origin, 1.0)).fold(0.0f64, |most, x| most.max(x.abs()));
+    let ulp = largest.next_up() - largest;
+    let of_corner = |p: &Point| {
+        let height = length(cross(unit(along), minus(*p, from)));
+        let part = dot(minus(*p, from), along) / dot(along, along);
+        NEEDLE_ULPS * (1.0 + part.abs() + (1.0 - part).abs()) * ulp / height
+    };
+    corners.iter().map(of_corner).fold(f64::INFINITY, f64::min)
+}
+
 /// Whether an edge lies on the inner side of some face, not only touching its rim.
-fn is_pinched(edge: (usize, usize), sides: &[Side], faces: &[Face], points: &[Point], near: f64) -> bool {
+fn is_pinched(
+    edge: (usize, usize),
+    sides: &[Side],
+    faces: &[Face],
+    boxes: &Boxes,
+    points: &[Point],
+    near: f64,
+) -> bool {
     let (from, to) = (points[edge.0], points[edge.1]);
-    faces.iter().any(|face| {
+    let holds_some = |face: &Face| {
         let [a, b, c] = face.triangle.map(|v| points[v]);
         if [from, to].iter().any(|&p| dot(minus(p, a), face.normal).abs() > near) {
             return false;
@@ -178,31 +233,71 @@ fn is_pinched(edge: (usize, usize), sides: &[Side], faces: &[Face], points: &[Po
             dot(inward, face.normal) < 1e-7
         };
         begin < end && sides.iter().any(is_inside)
-    })
+    };
+    let [low, high] = extent(&[from, to]);
+    let reach = [low.map(|x| x - near), high.map(|x| x + near)];
+    let mut found = false;
+    boxes.visit(
+        |bounds| overlap(bounds, &reach),
+        |number| {
+            found = holds_some(&faces[number]);
+            !found
+        },
+    );
+    found
 }
 
-/// The pairs of faces that bound one wedge of material; `None` if they do not alternate.
+/// The pairs of faces that bound one wedge of material; `None` if they do not alternate, wherever needles are put.
 fn wedges(sides: &mut [Side]) -> Option<Vec<(&Side, &Side)>> {
     if sides.len() == 2 {
         return (sides[0].forward != sides[1].forward).then(|| vec![(&sides[0], &sides[1])]);
     }
     sides.sort_by(|a, b| a.angle.total_cmp(&b.angle));
-    let count = sides.len();
-    let apart = |i: usize| {
-        let turn = sides[(i + 1) % count].angle - sides[i].angle;
-        turn.rem_euclid(std::f64::consts::TAU) > 1e-7
-    };
-    let alternate = (0..count).all(|i| sides[i].forward != sides[(i + 1) % count].forward && apart(i));
-    if count % 2 == 1 || !alternate {
+    let (needles, mut round): (Vec<&Side>, Vec<&Side>) = sides.iter().partition(|side| side.is_needle());
+    if sides.len() % 2 == 1 {
         return None;
     }
+    for i in 0..round.len() {
+        let next = (i + 1) % round.len();
+        let turn = (round[next].angle - round[i].angle).rem_euclid(std::f64::consts::TAU);
+        if round.len() == 1 || turn > NO_ANGLE {
+            continue;
+        }
+        // Beside a very short edge even that may be rounding's; then either order will do.
+        if round[i].uncertainty + round[next].uncertainty <= NO_ANGLE {
+            return None;
+        }
+        if needles.is_empty() && !alternate(&round) {
+            round.swap(i, next);
+        }
+    }
+    // (So many at one edge are not told apart in reasonable time.)
+    if needles.len() > 4 {
+        return None;
+    }
+    let given: Vec<&Side> = sides.iter().collect();
+    let order = if !needles.is_empty() && alternate(&given) { given } else { with_needles(round, &needles)? };
     // A face that runs with the edge has its material behind it, in the sense of growing angles before it.
-    let start = usize::from(sides[0].forward);
+    let (count, start) = (order.len(), usize::from(order[0].forward));
     Some(
         (0..count / 2)
-            .map(|k| (&sides[(start + 2 * k) % count], &sides[(start + 2 * k + 1) % count]))
+            .map(|k| (order[(start + 2 * k) % count], order[(start + 2 * k + 1) % count]))
             .collect(),
     )
+}
+
+fn alternate(order: &[&Side]) -> bool {
+    (0..order.len()).all(|i| order[i].forward != order[(i + 1) % order.len()].forward)
+}
+
+/// The first order, of those that leave all but needles as they are, in which faces alternate.
+fn with_needles<'a>(order: Vec<&'a Side>, needles: &[&'a Side]) -> Option<Vec<&'a Side>> {
+    let Some((first, rest)) = needles.split_first() else { return alternate(&order).then_some(order) };
+    (0..=order.len()).find_map(|at| {
+        let mut order = order.clone();
+        order.insert(at, first);
+        with_needles(order, rest)
+    })
 }
 
 #[cfg(test)]
@@ -239,6 +334,28 @@ mod tests {
             let Ok(mesh) = mesh else { continue };
             assert_eq!(parted(&mesh, 1e-9).map(|parted| parted.pinched), Some(pinched));
         }
+    }
+
+    #[test]
+    fn needles_that_rounding_turned_are_put_where_faces_alternate() {
+        let side = |angle: f64, forward, needle| {
+            let uncertainty = if needle { 2.0 } else { 1e-15 };
+            Side { face: 0, side: 0, forward, angle, uncertainty }
+        };
+        // As found at coordinates of 1e12 (seed 4294968311): the first is 0.0004 high, of four units.
+        for (needle, found) in [(true, true), (false, false)] {
+            let mut sides = [
+                side(-2.8, false, needle),
+                side(-1.7, false, false),
+                side(0.0, true, false),
+                side(3.1, true, false),
+            ];
+            assert_eq!(wedges(&mut sides).is_some(), found);
+        }
+        // What does not alternate without needles is not made to.
+        let mut sides =
+            [side(0.0, true, false), side(0.0, false, false), side(1.0, true, true), side(2.0, false, true)];
+        assert!(wedges(&mut sides).is_none());
     }
 
     #[test]

@@ -71,6 +71,16 @@ pub(crate) fn judge(
 
 /// Judges `result` at the given points.
 pub(crate) fn judge_at(operation: Operation, operands: &[&Mesh], result: &Mesh, points: &[Point]) -> Verdict {
+    judge_by(&|windings| expected(operation, windings), operands, result, points)
+}
+
+/// Judges `result` at the given points, of which is known how often it should wind round them.
+pub(crate) fn judge_by(
+    expected: &dyn Fn(&[i32]) -> i32,
+    operands: &[&Mesh],
+    result: &Mesh,
+    points: &[Point],
+) -> Verdict {
     let surfaces: Vec<Surface> = operands.iter().map(|mesh| Surface::new(mesh)).collect();
     let outcome = Surface::new(result);
     let largest = operands
@@ -83,7 +93,7 @@ pub(crate) fn judge_at(operation: Operation, operands: &[&Mesh], result: &Mesh, 
         let windings: Option<Vec<i32>> = surfaces.iter().map(|surface| surface.winding(point)).collect();
         let (Some(windings), Some(found)) = (windings, outcome.winding(point)) else { continue };
         verdict.judged += 1;
-        let expected = expected(operation, &windings);
+        let expected = expected(&windings);
         if found == expected {
             continue;
         }

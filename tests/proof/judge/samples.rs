@@ -7,7 +7,7 @@ use rand::rngs::ChaCha8Rng;
 use trisect::Mesh;
 
 use super::vector::{Point, cross, extent, minus, plus, unit};
-use super::winding::Surface;
+use super::winding::corners;
 
 /// `count` points for judging `result`, which came of `operands`.
 pub(crate) fn points(operands: &[&Mesh], result: &Mesh, count: usize, random: &mut ChaCha8Rng) -> Vec<Point> {
@@ -17,8 +17,7 @@ pub(crate) fn points(operands: &[&Mesh], result: &Mesh, count: usize, random: &m
         return Vec::new();
     }
     let size = (0..3).map(|k| high[k] - low[k]).fold(f64::MIN_POSITIVE, f64::max);
-    let surfaces: Vec<Surface> = all().map(Surface::new).collect();
-    let filled: Vec<&Surface> = surfaces.iter().filter(|surface| !surface.triangles().is_empty()).collect();
+    let filled: Vec<Vec<[Point; 3]>> = all().map(corners).filter(|triangles| !triangles.is_empty()).collect();
     let curve = new_vertices(operands, result);
     let mut points = Vec::with_capacity(count);
     for index in 0..count {
@@ -32,8 +31,7 @@ pub(crate) fn points(operands: &[&Mesh], result: &Mesh, count: usize, random: &m
             }
             _ => {
                 // Every mesh as often as any other, every triangle of it too: small ones matter most.
-                let surface = filled[random.random_range(0..filled.len())];
-                let triangles = surface.triangles();
+                let triangles = &filled[random.random_range(0..filled.len())];
                 let [a, b, c] = triangles[random.random_range(0..triangles.len())];
                 let (s, t): (f64, f64) = (random.random(), random.random());
                 let (s, t) = if s + t > 1.0 { (1.0 - s, 1.0 - t) } else { (s, t) };

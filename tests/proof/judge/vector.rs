@@ -40,7 +40,11 @@ pub(crate) fn extent<'a>(points: impl IntoIterator<Item = &'a Point>) -> [Point;
 }
 
 /// How far `p` is from the triangle, to a few roundings.
-pub(crate) fn distance_to_triangle(p: Point, [a, b, c]: [Point; 3]) -> f64 {
+pub(crate) fn distance_to_triangle(p: Point, corners: [Point; 3]) -> f64 {
+    // From the corner between the two shorter sides: across the long sides of a needle the direction would be lost.
+    let opposite = |k: usize| length(minus(corners[(k + 2) % 3], corners[(k + 1) % 3]));
+    let first = (1..3).fold(0, |best, k| if opposite(k) > opposite(best) { k } else { best });
+    let [a, b, c] = [0, 1, 2].map(|k| corners[(first + k) % 3]);
     let normal = cross(minus(b, a), minus(c, a));
     let squared = dot(normal, normal);
     if squared > 0.0 {

@@ -5,15 +5,16 @@ use rand::{RngExt, SeedableRng};
 use robust::{Coord3D, orient3d};
 use trisect::Mesh;
 
+use super::boxes::Boxes;
 use super::vector::{Point, distance_to_triangle, extent};
 
 /// Rays that meet an edge or a vertex are thrown away; so many are tried before a point counts as being on the surface.
 const RAYS: u32 = 40;
 
-/// The triangles of a mesh with their boxes.
+/// The triangles of a mesh with their boxes in a tree.
 pub(crate) struct Surface {
     triangles: Vec<[Point; 3]>,
-    boxes: Vec<[Point; 2]>,
+    boxes: Boxes,
     /// The box round all.
     pub(crate) low: Point,
     pub(crate) high: Point,
@@ -28,15 +29,31 @@ fn side(a: Point, b: Point, c: Point, d: Point) -> f64 {
     orient3d(coordinates(a), coordinates(b), coordinates(c), coordinates(d))
 }
 
+/// The corners of all triangles.
+pub(crate) fn corners(mesh: &Mesh) -> Vec<[Point; 3]> {
+    mesh.triangles.iter().map(|corners| corners.map(|corner| mesh.positions[corner as usize])).collect()
+}
+
+/// Whether the segment may meet a box: false only where it does not. It runs towards greater x.
+fn may_meet(from: Point, to: Point, slack: f64, bounds: &[Point; 2]) -> bool {
+    let [low, high] = bounds;
+    let length = to[0] - from[0];
+    let part = |x: f64| ((x - from[0]) / length).clamp(0.0, 1.0);
+    let (enters, leaves) = (part(low[0] - slack), part(high[0] + slack));
+    high[0] >= from[0]
+        && low[0] <= to[0]
+        && (1..3).all(|k| {
+            let slope = to[k] - from[k];
+            let (a, b) = (from[k] + slope * enters, from[k] + slope * leaves);
+            a.min(b) - slack <= high[k] && a.max(b) + slack >= low[k]
+        })
+}
+
 impl Surface {
     pub(crate) fn new(mesh: &Mesh) -> Self {
-        let triangles: Vec<[Point; 3]> = mesh
-            .triangles
-            .iter()
-            .map(|corners| corners.map(|corner| mesh.positions[corner as usize]))
-            .collect();
-        let boxes: Vec<[Point; 2]> = triangles.iter().map(extent).collect();
-        let [low, high] = extent(boxes.iter().flatten());
+        let triangles = corners(mesh);
+        let boxes = Boxes::new(triangles.iter().map(extent));
+        let [low, high] = extent(triangles.iter().flatten());
         Self { triangles, boxes, low, high }
     }
 
@@ -58,45 +75,51 @@ impl Surface {
 
     /// Signed crossings of the segment from `from` to `to`; `None` if it meets an edge, or begins on the surface.
     fn crossings(&self, from: Point, to: Point) -> Option<i32> {
-        let [low, high] = extent(&[from, to]);
-        let mut winding = 0;
-        for (triangle, bounds) in self.triangles.iter().zip(&self.boxes) {
-            if (0..3).any(|k| bounds[1][k] < low[k] || bounds[0][k] > high[k]) {
-                continue;
-            }
-            let &[a, b, c] = triangle;
-            let signs = [side(from, to, a, b), side(from, to, b, c), side(from, to, c, a)];
-            let (some_left, some_right) = (signs.iter().any(|&s| s > 0.0), signs.iter().any(|&s| s < 0.0));
-            if some_left && some_right {
-                continue;
-            }
-            // The whole line meets the closed triangle, or lies in its plane.
-            let ends = [side(a, b, c, from), side(a, b, c, to)];
-            if ends[0] * ends[1] > 0.0 {
-                continue;
-            }
-            if ends.contains(&0.0) || signs.contains(&0.0) {
-                return None;
-            }
-            winding += if ends[0] > 0.0 { 1 } else { -1 };
-        }
-        Some(winding)
+        // Far more than what is lost where it is computed how far aside the segment is.
+        let largest = self.low.iter().chain(&self.high).chain(&to).fold(0.0f64, |most, x| most.max(x.abs()));
+        let slack = 1e-12 * largest + 1e-9 * (to[0] - from[0]);
+        let mut winding = Some(0);
+        self.boxes.visit(
+            |bounds| may_meet(from, to, slack, bounds),
+            |number| {
+                winding = crossing(from, to, self.triangles[number]).and_then(|one| Some(winding? + one));
+                winding.is_some()
+            },
+        );
+        winding
     }
 
     /// How far `point` is from the surface.
     pub(crate) fn distance(&self, point: Point) -> f64 {
-        let mut least = f64::INFINITY;
-        for (triangle, bounds) in self.triangles.iter().zip(&self.boxes) {
-            let outside = |k: usize| (bounds[0][k] - point[k]).max(point[k] - bounds[1][k]);
-            if outside(0).max(outside(1)).max(outside(2)) < least {
-                least = least.min(distance_to_triangle(point, *triangle));
-            }
-        }
-        least
+        let least = std::cell::Cell::new(f64::INFINITY);
+        self.boxes.visit(
+            |bounds| {
+                let outside = |k: usize| (bounds[0][k] - point[k]).max(point[k] - bounds[1][k]);
+                outside(0).max(outside(1)).max(outside(2)) < least.get()
+            },
+            |number| {
+                least.set(least.get().min(distance_to_triangle(point, self.triangles[number])));
+                true
+            },
+        );
+        least.get()
     }
+}
 
-    /// The triangles.
-    pub(crate) fn triangles(&self) -> &[[Point; 3]] {
-        &self.triangles
+/// How the segment crosses a triangle: 0 if it does not, `None` if it meets an edge, lies in the plane, or begins on it.
+fn crossing(from: Point, to: Point, [a, b, c]: [Point; 3]) -> Option<i32> {
+    let signs = [side(from, to, a, b), side(from, to, b, c), side(from, to, c, a)];
+    let (some_left, some_right) = (signs.iter().any(|&s| s > 0.0), signs.iter().any(|&s| s < 0.0));
+    if some_left && some_right {
+        return Some(0);
     }
+    // The whole line meets the closed triangle, or lies in its plane.
+    let ends = [side(a, b, c, from), side(a, b, c, to)];
+    if ends[0] * ends[1] > 0.0 {
+        return Some(0);
+    }
+    if ends.contains(&0.0) || signs.contains(&0.0) {
+        return None;
+    }
+    Some(if ends[0] > 0.0 { 1 } else { -1 })
 }
