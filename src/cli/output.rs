@@ -109,6 +109,7 @@ pub(crate) struct Product<'a> {
     /// What else is written with it.
     pub(crate) documents: &'a [Document],
     /// How a page shows it.
+    #[cfg_attr(not(feature = "viewer"), allow(dead_code, reason = "pages are left out"))]
     pub(crate) shown: Shown<'a>,
 }
 

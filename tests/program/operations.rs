@@ -269,11 +269,11 @@ fn info_describes_files() {
 fn info_lists_the_formats() {
     let folder = Folder::new();
     let ran = folder.run("info --formats").exits(0);
-    for extension in [".obj", ".gltf", ".glb", ".stl", ".ply", ".off"] {
+    for extension in [".obj", ".gltf", ".glb", ".stl", ".ply", ".off", ".3mf"] {
         assert!(ran.out.contains(extension), "{ran:?}");
     }
     let object = folder.run("info --formats --json").exits(0).json();
-    assert_eq!(object["formats"].as_array().map(Vec::len), Some(6));
+    assert_eq!(object["formats"].as_array().map(Vec::len), Some(7));
 }
 
 #[test]

@@ -31,9 +31,10 @@ impl BooleanOptions {
     ///
     /// let corners = vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]];
     /// let flat = Mesh::new(corners, vec![[0, 1, 2], [0, 2, 3]]);
-    /// let upright = flat.clone().rotated([1.0, 0.0, 0.0], 90.0)?;
+    /// let corners = vec![[-2.0, 0.0, -1.0], [2.0, 0.0, -1.0], [2.0, 0.0, 1.0], [-2.0, 0.0, 1.0]];
+    /// let upright = Mesh::new(corners, vec![[0, 1, 2], [0, 2, 3]]);
     /// let [a, b] = BooleanOptions::new().imprint(&flat, &upright)?;
-    /// assert_eq!([a.mesh.area(), b.mesh.area()], [4.0, 4.0]);
+    /// assert_eq!([a.mesh.area(), b.mesh.area()], [4.0, 8.0]);
     /// let on_both = a.mesh.positions.iter().filter(|point| b.mesh.positions.contains(point)).count();
     /// assert_eq!(on_both, 3);
     /// # Ok::<(), trisect::Error>(())

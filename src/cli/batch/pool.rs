@@ -142,7 +142,7 @@ impl Shared {
         match said {
             // What the program says of itself is the same for all jobs.
             Ok(said) => {
-                report.extend(said.into_iter().filter(|(key, _)| key != "program" && key != "schema"))
+                report.extend(said.into_iter().filter(|(key, _)| key != "program" && key != "schema"));
             }
             Err((kind, message)) => {
                 report.insert("error".into(), json!({ "kind": kind, "message": message }));
