@@ -12,7 +12,7 @@ mod shapes;
 /// A name, how its operands are made and combined, and whether more threads can help.
 type Case = (&'static str, fn() -> Vec<Solid>, Operation, bool);
 
-const CASES: [Case; 17] = [
+const CASES: [Case; 20] = [
     ("spheres/20k", || shapes::spheres(5), Union, true),
     ("spheres/80k", || shapes::spheres(6), Union, true),
     ("spheres/330k", || shapes::spheres(7), Union, true),
@@ -30,6 +30,9 @@ const CASES: [Case; 17] = [
     ("needles/1000", || shapes::needles(1000), Union, true),
     ("fans/1000", || shapes::fans(1000), Union, true),
     ("urchins/5k", || shapes::urchins(4), Union, true),
+    ("crossing/few", || shapes::pimpled(7), Difference, true),
+    ("crossing/none", || shapes::smooth(7), Difference, true),
+    ("crossing/two", || shapes::doubled(7), Union, true),
 ];
 
 fn operations(criterion: &mut Criterion) {
@@ -94,7 +97,8 @@ fn around(criterion: &mut Criterion) {
     group.bench_function("curves/330k", |bencher| bencher.iter(|| made.curves().len()));
     group.bench_function("self_crossings/330k", |bencher| {
         bencher.iter_batched(
-            || spheres[0].clone(),
+            // (A copy of a solid that has been looked through would know the answer.)
+            || Solid::try_from(spheres[0].mesh().clone()).expect("closed"),
             |solid| solid.self_crossings(&trisect::Control::new()).expect("no limits").count,
             criterion::BatchSize::LargeInput,
         );

@@ -51,7 +51,7 @@
 //! | `draco` | yes | Draco-compressed glTF in the module `io`; brings `formats` | 17 |
 //! | `field` | yes | the module `field`: signed distances, formulas, R-functions, and their surfaces as meshes | 1 |
 //! | `formats` | yes | the module `io`, `Mesh::load` and `Mesh::save`: OBJ, glTF, STL, PLY, OFF | 16 |
-//! | `model` | yes | the module `model`: trees of operations in JSON; brings `field` and `formats` | 17 |
+//! | `model` | yes | the module `model`: trees of operations in JSON; brings `field`, `formats` and `serde` | 17 |
 //! | `parallel` | yes | loops on rayon's current pool | 6 |
 //! | `parametric` | yes | the module `parametric`: curves, regions, patches, solids of them | 31 |
 //! | `render` | with `cli` | the module `render`: pictures of meshes as PNG | 11 |

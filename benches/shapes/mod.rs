@@ -38,6 +38,28 @@ pub(crate) fn local(level: u32) -> Vec<Solid> {
     vec![solid(turned(icosphere(level), FIRST_TURN)), solid(tool)]
 }
 
+/// A big sphere out of which a small one of the same mesh peeps, and a tool on the other side: a few crossings far from the cut.
+pub(crate) fn pimpled(level: u32) -> Vec<Solid> {
+    let mut body = turned(icosphere(level), FIRST_TURN);
+    body.append(&scaled(icosphere(2), 0.02).translated([1.0, 0.001, 0.002])).expect("few vertices");
+    let tool = turned(scaled(icosphere(level - 1), 0.5), SECOND_TURN).translated([-1.0, 0.02, 0.03]);
+    vec![solid(body), solid(tool)]
+}
+
+/// The same without the small sphere.
+pub(crate) fn smooth(level: u32) -> Vec<Solid> {
+    let tool = turned(scaled(icosphere(level - 1), 0.5), SECOND_TURN).translated([-1.0, 0.02, 0.03]);
+    vec![solid(turned(icosphere(level), FIRST_TURN)), solid(tool)]
+}
+
+/// Two spheres that overlap, in one mesh.
+pub(crate) fn doubled(level: u32) -> Vec<Solid> {
+    let mut both = turned(icosphere(level), FIRST_TURN);
+    both.append(&turned(icosphere(level), SECOND_TURN).translated([0.5, 0.013, -0.007]))
+        .expect("few vertices");
+    vec![solid(both)]
+}
+
 /// Case c: two spheres with waves that cross in very many short curves.
 pub(crate) fn bumpy(level: u32) -> Vec<Solid> {
     let wave = |phases: [f64; 3]| {
