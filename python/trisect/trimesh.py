@@ -44,12 +44,14 @@ def _result(solid: Solid) -> trimesh.Trimesh:
 def set_default(name: Optional[str] = "trisect") -> None:
     """Makes an engine the one that trimesh uses where none is named. ``None``: the one that was before."""
     if name is None:
-        _ENGINES[None] = _BEFORE
+        _ENGINES[None] = _BEFORE[0]
     else:
         _ENGINES[None] = _ENGINES[name]
 
 
-_BEFORE = _ENGINES.get(None, engine)
+# (In a list, since trimesh without another engine has an object there that raises when anything is asked of it, as tools do of all
+# names of a module.)
+_BEFORE = [_ENGINES.get(None, engine)]
 _ENGINES["trisect"] = engine
 if hasattr(trimesh.boolean, "engines_available"):
     trimesh.boolean.engines_available.add("trisect")
