@@ -4,7 +4,7 @@
 //! high as it is long still gets its weights to some ten digits. What is found depends on the triangle and the point
 //! alone, and on an edge on nothing but the edge and the point, so that the triangles on both sides of it agree to the bit.
 
-use super::double_double::{DoubleDouble, Number, cross, dot};
+use super::double_double::{DoubleDouble, Number, cross, dot, power_of_two, scaled_difference};
 
 /// The nearest point of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,13 +90,6 @@ fn within_range(corners: &[[f64; 3]; 3], p: &[f64; 3]) -> ([[f64; 3]; 3], [f64; 
     (corners.map(|corner| corner.map(|x| x * SCALE)), p.map(|x| x * SCALE), SCALE)
 }
 
-/// A power of two near `x`, which is positive, or 1.
-fn power_of_two(x: f64) -> f64 {
-    let power = f64::from_bits(x.to_bits() & (0x7ff << 52));
-    // Its inverse must be a number as well.
-    if power.is_normal() && (1.0 / power).is_normal() { power } else { 1.0 }
-}
-
 /// The weights of the corners at the foot of `p` in the triangle's plane, and the heights of the corners above the opposite
 /// sides; `None` for a triangle without area.
 fn weights_in_plane(corners: &[[f64; 3]; 3], p: &[f64; 3]) -> Option<([f64; 3], [f64; 3])> {
@@ -120,13 +113,7 @@ fn weights_in_plane(corners: &[[f64; 3]; 3], p: &[f64; 3]) -> Option<([f64; 3], 
     }
     let longest = [0, 1, 2].map(side).into_iter().fold(0.0, f64::max);
     let power = power_of_two(longest);
-    // Differences are exact, and so is dividing them by a power of two.
-    let exact = |x: &[f64; 3], y: &[f64; 3]| {
-        [0, 1, 2].map(|k| {
-            let difference = DoubleDouble::difference(x[k], y[k]);
-            DoubleDouble { high: difference.high / power, low: difference.low / power }
-        })
-    };
+    let exact = |x: &[f64; 3], y: &[f64; 3]| scaled_difference(x, y, power);
     let (u, v) = (exact(b, a), exact(c, a));
     let normal = cross(&u, &v);
     let squared = dot(&normal, &normal);

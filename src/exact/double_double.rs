@@ -124,6 +124,21 @@ pub(super) fn cross<T: Number>(x: &[T; 3], y: &[T; 3]) -> [T; 3] {
     })
 }
 
+/// A power of two near `x`, which is positive, or 1.
+pub(super) fn power_of_two(x: f64) -> f64 {
+    let power = f64::from_bits(x.to_bits() & (0x7ff << 52));
+    // Its inverse must be a number as well.
+    if power.is_normal() && (1.0 / power).is_normal() { power } else { 1.0 }
+}
+
+/// `(x - y) / power`, exactly, for a power of two.
+pub(super) fn scaled_difference(x: &[f64; 3], y: &[f64; 3], power: f64) -> [DoubleDouble; 3] {
+    std::array::from_fn(|k| {
+        let difference = DoubleDouble::difference(x[k], y[k]);
+        DoubleDouble { high: difference.high / power, low: difference.low / power }
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -11,6 +11,7 @@
 //! demand that a determinant exceed, besides the usual relative bound, an absolute floor far above anything that underflow
 //! can have lost; on overflow they compare infinities or NaN and fail; either way the exact stage decides.
 
+mod across;
 pub(crate) mod at_hand;
 pub(crate) mod barycentric;
 mod double_double;
@@ -28,6 +29,7 @@ mod projection;
 mod seen;
 pub(crate) mod unrounded;
 
+pub(crate) use across::unit_across;
 pub(crate) use filter::{FILTER_RANGE, PlaneFilter, orient3d_filter};
 pub use orient::{Sign, collinear, orient2d, orient3d};
 pub use perturbed::orient3d_perturbed;

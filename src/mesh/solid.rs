@@ -62,7 +62,7 @@ pub struct Solid {
     pub(super) links: OnceLock<Links>,
     pub(super) shape: OnceLock<Shape>,
     pub(super) self_crossings: OnceLock<SelfCrossings>,
-    /// Pairs of triangles that may cross or lie on each other.
+    /// Pairs of triangles that may cross or lie on each other, where these are no more than triangles.
     pub(super) near_pairs: OnceLock<Vec<[u32; 2]>>,
     /// Whether an operation made it so that it crosses itself no deeper than rounding.
     pub(super) made_clean: bool,

@@ -1,5 +1,7 @@
 //! How deep two triangles reach into each other.
 
+use crate::exact::unit_across;
+
 /// A triangle.
 type Triangle = [[f64; 3]; 3];
 
@@ -31,7 +33,10 @@ pub(super) fn rounding(a: &Triangle, b: &Triangle) -> Option<f64> {
         let largest = a.iter().chain(b).fold(0.0f64, |most, p| most.max(p[k].abs()));
         largest.next_up() - largest
     });
-    let length = |t: &Triangle| sides(t).iter().flatten().fold(0.0f64, |most, x| most.max(x[0].abs()));
+    let length = |t: &Triangle| {
+        let along = |[p, q]: [&[f64; 3]; 2]| (0..3).fold(0.0f64, |most, k| most.max((q[k] - p[k]).abs()));
+        sides(t).map(along).into_iter().fold(0.0, f64::max)
+    };
     let shorter = length(a).min(length(b));
     overlaps(a, b)
         .map(|(axis, overlap)| ((0..3).map(|k| axis[k].abs() * unit[k]).sum::<f64>(), overlap))
@@ -41,20 +46,25 @@ pub(super) fn rounding(a: &Triangle, b: &Triangle) -> Option<f64> {
 }
 
 /// The directions along which two triangles may be parted best, and how far they overlap along each.
-fn overlaps(a: &Triangle, b: &Triangle) -> impl Iterator<Item = ([f64; 3], f64)> {
+fn overlaps<'a>(a: &'a Triangle, b: &'a Triangle) -> impl Iterator<Item = ([f64; 3], f64)> + 'a {
     let (of_a, of_b) = (sides(a), sides(b));
     // About a corner, so that nothing is lost far from the origin.
     let [from_a, from_b] = [a, b].map(|t| t.map(|p| [0, 1, 2].map(|k| p[k] - a[0][k])));
     let normals = [[of_a[0], of_a[1]], [of_b[0], of_b[1]]];
     let products = of_a.into_iter().flat_map(move |u| of_b.map(|v| [u, v]));
-    let axes = normals.into_iter().chain(products).filter_map(|[u, v]| unit_product(u, v));
+    let axes = normals.into_iter().chain(products).filter_map(|[u, v]| unit_across(u, v));
     axes.map(move |axis| (axis, overlap(&axis, &from_a, &from_b)))
 }
 
 /// The direction across a triangle, right to a few roundings however thin it is; none if it is flat.
 pub(super) fn unit_normal(t: &Triangle) -> Option<[f64; 3]> {
     let [u, v, _] = sides(t);
-    unit_product(u, v)
+    unit_across(u, v)
+}
+
+/// The sides of a triangle, each from a corner to the next.
+fn sides(t: &Triangle) -> [[&[f64; 3]; 2]; 3] {
+    [0, 1, 2].map(|k| [&t[k], &t[(k + 1) % 3]])
 }
 
 /// How far one has to be moved along an axis to be beyond the other.
@@ -68,54 +78,6 @@ fn overlap(axis: &[f64; 3], a: &Triangle, b: &Triangle) -> f64 {
     };
     let ((a_low, a_high), (b_low, b_high)) = (range(a), range(b));
     (a_high - b_low).min(b_high - a_low)
-}
-
-/// A vector, and what was lost when it was rounded.
-type Wide = [[f64; 2]; 3];
-
-fn sides(t: &Triangle) -> [Wide; 3] {
-    [0, 1, 2].map(|k| [0, 1, 2].map(|axis| difference(t[(k + 1) % 3][axis], t[k][axis])))
-}
-
-/// a - b, and what was lost (Knuth's two-sum; The Art of Computer Programming 2, 4.2.2).
-fn difference(a: f64, b: f64) -> [f64; 2] {
-    let rounded = a - b;
-    let of_b = a - rounded;
-    [rounded, (a - (rounded + of_b)) + (of_b - b)]
-}
-
-/// The direction across two others; none if they are parallel.
-///
-/// With twice the digits of `f64`: sides of a needle are nearly parallel, and the direction across them is lost in one rounding of
-/// their products where it is a thousand units in the last place wide.
-fn unit_product(u: Wide, v: Wide) -> Option<[f64; 3]> {
-    let [u, v] = [u, v].map(scaled);
-    let across = [0, 1, 2].map(|k| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        let ([first, of_first], [second, of_second]) = (product(u[i][0], v[j][0]), product(u[j][0], v[i][0]));
-        let [rounded, lost] = difference(first, second);
-        let small = u[i][0] * v[j][1] + u[i][1] * v[j][0] - u[j][0] * v[i][1] - u[j][1] * v[i][0];
-        rounded + (lost + (of_first - of_second) + small)
-    });
-    let size = across.iter().fold(0.0f64, |most, x| most.max(x.abs()));
-    let across = across.map(|x| x / size);
-    let length = across.iter().map(|x| x * x).sum::<f64>().sqrt();
-    // (Sides without length and parallel ones leave no numbers.)
-    length.is_finite().then(|| across.map(|x| x / length))
-}
-
-/// A vector of a size near one, so that no product overflows or vanishes; by a power of two, so that nothing is lost.
-fn scaled(u: Wide) -> Wide {
-    const EXPONENT: u64 = 0x7ff << 52;
-    let size = u.iter().fold(0.0f64, |most, x| most.max(x[0].abs()));
-    let factor = 1.0 / f64::from_bits(size.to_bits() & EXPONENT);
-    u.map(|x| x.map(|x| x * factor))
-}
-
-/// a b, and what was lost.
-fn product(a: f64, b: f64) -> [f64; 2] {
-    let rounded = a * b;
-    [rounded, a.mul_add(b, -rounded)]
 }
 
 #[cfg(test)]

@@ -6,6 +6,8 @@
 //! whose winding number is neither 0 nor 1; else it is what rounding does to every computed mesh, and the multiplicities
 //! of the boolean carry it.
 
+use std::borrow::Cow;
+
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
@@ -54,34 +56,38 @@ impl Solid {
     }
 }
 
-/// The pairs of triangles of a solid that may cross or lie on each other, the lower one first. Computed once and remembered.
+/// The pairs of triangles of a solid that may cross or lie on each other, the lower one first. Computed once and remembered, unless
+/// there are more than triangles.
 ///
 /// # Errors
 /// Only limits.
 pub(in crate::boolean) fn near_pairs<'a>(
     solid: &'a Solid,
     runner: Runner<'_>,
-) -> Result<&'a [[u32; 2]], Error> {
-    if let Some(known) = solid.known_near_pairs() {
-        return Ok(known);
-    }
-    let Some(bounds) = solid.bounds() else { return Ok(&[]) };
+) -> Result<Cow<'a, [[u32; 2]]>, Error> {
+    let Some(bounds) = solid.bounds() else { return Ok(Cow::default()) };
     let frame = Frame::of(bounds.low, bounds.high);
-    let (pairs, _) = find_near(solid.mesh(), &bounds, &frame, runner)?;
-    Ok(solid.remember_near_pairs(pairs))
+    Ok(known_or_found(solid, &bounds, &frame, runner)?.0)
 }
 
-/// The same, looked for, and the boxes of all triangles.
-fn find_near(
-    mesh: &Mesh,
+/// The same, and the boxes of all triangles if the pairs had to be looked for.
+#[allow(clippy::type_complexity, reason = "pairs that are lent or given")]
+fn known_or_found<'a>(
+    solid: &'a Solid,
     bounds: &Bounds,
     frame: &Frame,
     runner: Runner<'_>,
-) -> Result<(Vec<[u32; 2]>, BoxTree), Error> {
-    let (tree, neighbours) = runner.both(|| tree_of(mesh, frame), || Neighbours::new(mesh, bounds.largest()));
+) -> Result<(Cow<'a, [[u32; 2]]>, Option<BoxTree>), Error> {
+    if let Some(known) = solid.known_near_pairs() {
+        return Ok((Cow::Borrowed(known), None));
+    }
+    let (mesh, largest) = (solid.mesh(), bounds.largest());
+    let (tree, neighbours) = runner.both(|| tree_of(mesh, frame), || Neighbours::new(mesh, largest));
     let may_meet = |pair: [u32; 2]| neighbours.may_meet(pair);
     let pairs = self_pairs(mesh, &tree, frame, runner, &neighbours, may_meet)?;
-    Ok((pairs, tree))
+    let is_short = pairs.len() <= mesh.triangles.len();
+    let pairs = if is_short { Cow::Borrowed(solid.remember_near_pairs(pairs)) } else { Cow::Owned(pairs) };
+    Ok((pairs, Some(tree)))
 }
 
 /// Whether a solid crosses itself nowhere deeper than a few roundings, nor lies on itself. Stops at the first place that tells
@@ -117,13 +123,7 @@ fn find(
     let largest = bounds.largest();
     // 1. Pairs that are near one another and not plainly apart: none, nearly always.
     let frame = Frame::of(bounds.low, bounds.high);
-    let (pairs, tree) = match solid.known_near_pairs() {
-        Some(pairs) => (pairs, None),
-        None => {
-            let (pairs, tree) = find_near(mesh, &bounds, &frame, runner)?;
-            (solid.remember_near_pairs(pairs), Some(tree))
-        }
-    };
+    let (pairs, tree) = known_or_found(solid, &bounds, &frame, runner)?;
     let part = tolerance_of_one(&mesh.positions);
     let mut result = SelfCrossings { tolerance: part * largest, ..SelfCrossings::default() };
     if pairs.is_empty() {
@@ -134,7 +134,7 @@ fn find(
     let complex = Complex::alone(operand, largest);
     let tree = tree.unwrap_or_else(|| tree_of(mesh, &frame));
     let surface = Surface::new(&complex, tree, frame, &bounds, part);
-    let (mut rest, mut next) = (pairs, PAIRS_AT_FIRST);
+    let (mut rest, mut next) = (&*pairs, PAIRS_AT_FIRST);
     while !rest.is_empty() && go_on(&result) {
         let (pairs, after) = rest.split_at(next.min(rest.len()));
         (rest, next) = (after, 4 * next);

@@ -39,19 +39,9 @@ pub(crate) struct General {
 
 /// Surfaces with their crossings: the first steps, which tell whether there is anything to resolve.
 pub(crate) struct Crossed {
-    surfaces: Surfaces,
-    edges: Edges,
+    ready: Ready,
     crossings: Crossings,
     contacts: u64,
-    bounds: Bounds,
-    /// Where they were needed already.
-    boxes: Option<FaceBoxes>,
-    locality: Locality,
-    /// By piece of surface, its last vertex in x.
-    last: Vec<Option<VertexId>>,
-    /// The faces near crossings, ascending: all whose edges matter.
-    walked_over: Vec<FaceId>,
-    _memory: Reservation,
 }
 
 /// What crossings are found on.
@@ -59,9 +49,12 @@ struct Ready {
     surfaces: Surfaces,
     edges: Edges,
     bounds: Bounds,
+    /// Where they were needed already.
     boxes: Option<FaceBoxes>,
     locality: Locality,
+    /// By piece of surface, its last vertex in x.
     last: Vec<Option<VertexId>>,
+    /// The faces near crossings, ascending: all whose edges matter.
     walked_over: Vec<FaceId>,
     memory: Reservation,
 }
@@ -137,35 +130,23 @@ impl Crossed {
     }
 
     /// 2. Which faces cross.
-    fn cross(ready: Ready, pairs: &[[FaceId; 2]], runner: Runner<'_>) -> Result<Self, Error> {
-        let Ready { surfaces, mut edges, bounds, boxes, locality, last, walked_over, memory } = ready;
-        let contacts = seeds::sort_radially(&surfaces, &mut edges);
-        let crossings = Crossings::find(&surfaces, &edges, pairs, runner)?;
+    fn cross(mut ready: Ready, pairs: &[[FaceId; 2]], runner: Runner<'_>) -> Result<Self, Error> {
+        let contacts = seeds::sort_radially(&ready.surfaces, &mut ready.edges);
+        let crossings = Crossings::find(&ready.surfaces, &ready.edges, pairs, runner)?;
         let contacts = contacts + crossings.contacts;
-        Ok(Self {
-            surfaces,
-            edges,
-            crossings,
-            contacts,
-            bounds,
-            boxes,
-            locality,
-            last,
-            walked_over,
-            _memory: memory,
-        })
+        Ok(Self { ready, crossings, contacts })
     }
 
     /// The triangles of an operand that are near crossings, ascending: others stay as they are.
     pub(crate) fn near(&self, operand: u32) -> Vec<u32> {
-        let own = self.walked_over.iter().filter(|&&face| self.surfaces.owner(face) == operand);
-        own.map(|&face| self.surfaces.triangle(face)).collect()
+        let own = self.ready.walked_over.iter().filter(|&&face| self.ready.surfaces.owner(face) == operand);
+        own.map(|&face| self.ready.surfaces.triangle(face)).collect()
     }
 
     /// Says which group of the result each triangle of each operand belongs to; empty lists where there are no groups. Only
     /// those [near](Self::near) crossings are asked for theirs.
     pub(crate) fn with_groups(mut self, groups: Vec<Vec<u32>>) -> Self {
-        self.surfaces.set_groups(groups);
+        self.ready.surfaces.set_groups(groups);
         self
     }
 
@@ -173,7 +154,7 @@ impl Crossed {
     pub(crate) fn troubled(&self) -> Vec<u32> {
         let pairs = self.crossings.segments.iter().map(|segment| &segment.faces);
         let faces = pairs.chain(&self.crossings.touching).flatten();
-        let mut triangles: Vec<u32> = faces.map(|&face| self.surfaces.triangle(face)).collect();
+        let mut triangles: Vec<u32> = faces.map(|&face| self.ready.surfaces.triangle(face)).collect();
         triangles.sort_unstable();
         triangles.dedup();
         triangles
@@ -187,8 +168,9 @@ impl General {
     /// Limits, and [`Error::TooLarge`] where points cannot be numbered.
     pub(crate) fn new(mut crossed: Crossed, fuse: bool, runner: Runner<'_>) -> Result<Self, Error> {
         let placed = Placed::new(&crossed, runner)?;
-        let boxes = crossed.boxes.take();
-        let Crossed { surfaces, edges, crossings, bounds, locality, last, .. } = &crossed;
+        let boxes = crossed.ready.boxes.take();
+        let Crossed { ready: Ready { surfaces, edges, bounds, locality, last, .. }, crossings, .. } =
+            &crossed;
         // 5. Labels.
         let (seeds, contacts_of_seeds) = seeds::find(surfaces, edges, bounds, last, boxes, runner)?;
         let (lines, control) = (&placed.lines, runner.control);
@@ -208,16 +190,12 @@ impl General {
         fuse: bool,
         runner: Runner<'_>,
     ) -> Result<(Self, CellCount), Error> {
-        let boxes = crossed.boxes.take();
-        let boxes = boxes.unwrap_or_else(|| FaceBoxes::new(&crossed.surfaces, &crossed.bounds));
+        let boxes = crossed.ready.boxes.take();
         let placed = Placed::new(&crossed, runner)?;
-        let ground = Ground {
-            surfaces: &crossed.surfaces,
-            edges: &crossed.edges,
-            crossings: &crossed.crossings,
-            lines: &placed.lines,
-        };
-        let Cells { faces, segments, count } = Cells::new(&ground, &crossed.bounds, &boxes, runner)?;
+        let Crossed { ready: Ready { surfaces, edges, bounds, .. }, crossings, .. } = &crossed;
+        let boxes = boxes.unwrap_or_else(|| FaceBoxes::new(surfaces, bounds));
+        let ground = Ground { surfaces, edges, crossings, lines: &placed.lines };
+        let Cells { faces, segments, count } = Cells::new(&ground, bounds, &boxes, runner)?;
         let general = Self::finish(crossed, placed, faces, segments, fuse, runner)?;
         Ok((general, count))
     }
@@ -246,7 +224,7 @@ impl General {
         fuse: bool,
         runner: Runner<'_>,
     ) -> Result<Self, Error> {
-        let Crossed { surfaces, edges, crossings, _memory, .. } = crossed;
+        let Crossed { ready: Ready { surfaces, edges, memory: _memory, .. }, crossings, .. } = crossed;
         let Placed { cut, lines, contacts } = placed;
         let fused =
             |&[f, g]: &[FaceId; 2]| fuse || look_same_way(&surfaces.positions(f), &surfaces.positions(g));
@@ -278,7 +256,7 @@ struct Placed {
 
 impl Placed {
     fn new(crossed: &Crossed, runner: Runner<'_>) -> Result<Self, Error> {
-        let Crossed { surfaces, edges, crossings, .. } = crossed;
+        let Crossed { ready: Ready { surfaces, edges, .. }, crossings, .. } = crossed;
         let cut: Vec<FaceId> = surfaces.faces().filter(|&face| !crossings.of_face(face).is_empty()).collect();
         // 3. Three-face points.
         let (triples, contacts) = triples::find(surfaces, edges, crossings, &cut, runner)?;

@@ -89,7 +89,8 @@ pub(crate) fn of_manifolds(
     let mut first = 0;
     for solid in operands {
         let face = |triangle: u32| FaceId::new(first + triangle);
-        let near = near_pairs(solid, runner)?.iter().map(|pair| pair.map(face));
+        let near = near_pairs(solid, runner)?;
+        let near = near.iter().map(|pair| pair.map(face));
         pairs.extend(near.filter(|&pair| may_meet(surfaces, &predicates, pair)));
         first += solid.mesh().triangles.len() as u32;
     }

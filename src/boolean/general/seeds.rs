@@ -72,8 +72,8 @@ pub(crate) fn last_vertices(surfaces: &Surfaces) -> Vec<Option<VertexId>> {
     last
 }
 
-/// Rays up to which it is cheaper to look at every face for each than to make a hierarchy of all: that costs as much as some eight
-/// looks.
+/// Rays up to which it is cheaper to look at every face for each than to make a hierarchy of all: that costs as much as 8.6 looks
+/// (328,000 triangles of a ball).
 const FEW_RAYS: usize = 8;
 
 /// Whether the box of a triangle meets the ray in +x from a point.
