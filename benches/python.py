@@ -3,8 +3,8 @@
     pip install python/target/wheels/trisect-*.whl manifold3d
     python benches/python.py
 
-Times are of the thread (``time.thread_time``) where one thread does everything, so that they mean something on a busy machine; the
-gain of two threads is one of the clock.
+Times are of the process (``time.process_time``), so that they mean something on a busy machine; the gain of two threads is one of the
+clock.
 """
 
 from __future__ import annotations

@@ -64,6 +64,18 @@ fn hostile_files() -> Vec<(&'static str, Format, Vec<u8>)> {
     lies.extend(vec![1; 1000]);
     let mut long_list = ply_head(0, bytes, 1, "uint uchar").into_bytes();
     long_list.extend(u32::MAX.to_le_bytes());
+    // One strip, then one face with many properties.
+    let properties: String = (0..64).map(|i| format!("property uchar p{i}\n")).collect();
+    let mut strips = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\n{bytes}element tristrips 1\n\
+         property list uint uchar vertex_indices\nelement face 1\nproperty list uchar uchar vertex_indices\n{properties}end_header\n"
+    )
+    .into_bytes();
+    strips.extend([0, 0, 0, 1, 0, 0, 0, 1, 0]);
+    strips.extend((N as u32).to_le_bytes());
+    strips.extend((0..N).map(|i| (i % 3) as u8));
+    strips.extend([3, 0, 1, 2]);
+    strips.extend([1; 64]);
     vec![
         ("OBJ vertices", Format::Obj, repeated("", same("v 0 0 0\n"), N, "")),
         ("OBJ triangles", Format::Obj, repeated(corners, same("f 1 2 3\n"), N, "")),
@@ -111,6 +123,7 @@ fn hostile_files() -> Vec<(&'static str, Format, Vec<u8>)> {
         ("PLY points", Format::Ply, points),
         ("PLY counts", Format::Ply, lies),
         ("PLY long list", Format::Ply, long_list),
+        ("PLY strips", Format::Ply, strips),
         (
             "PLY elements",
             Format::Ply,

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use rayon::prelude::*;
 use trisect::field::{Expression, Extraction, Formula, Grid, SignedDistance, System};
 use trisect::model::{Evaluation, Model};
-use trisect::{Error, Solid};
+use trisect::{Control, Error, Solid};
 
 use crate::running::WATCHED_FROM;
 use crate::settings::limits;
@@ -22,6 +22,17 @@ const POINTS: usize = 1 << 12;
 /// From so many points on a call is watched.
 fn size(points: usize) -> usize {
     points.saturating_mul(4)
+}
+
+/// What `work` finds at points.
+fn asked<T: Send>(
+    py: Python<'_>,
+    points: &Bound<'_, PyAny>,
+    settings: Option<&Bound<'_, PyDict>>,
+    work: impl FnOnce(&[[f64; 3]], &Control) -> Result<Vec<T>, Error> + Send,
+) -> PyResult<Vec<T>> {
+    let points = arrays::positions(points)?;
+    limits(settings)?.run(py, size(points.len()), |control| work(&points, control))
 }
 
 /// Distances, gradients, nearest points, and the triangles that these are in.
@@ -62,9 +73,7 @@ impl Distance {
         points: &Bound<'py, PyAny>,
         settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let points = arrays::positions(points)?;
-        let distances = limits(settings)?
-            .run(py, size(points.len()), |control| self.distance.at_all(&points, control))?;
+        let distances = asked(py, points, settings, |points, control| self.distance.at_all(points, control))?;
         Ok(PyArray1::from_vec(py, distances))
     }
 
@@ -76,9 +85,8 @@ impl Distance {
         points: &Bound<'py, PyAny>,
         settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Measured<'py>> {
-        let points = arrays::positions(points)?;
-        let found = limits(settings)?
-            .run(py, size(points.len()), |control| self.distance.measure_all(&points, control))?;
+        let found =
+            asked(py, points, settings, |points, control| self.distance.measure_all(points, control))?;
         let nothing = [f64::NAN; 3];
         let distances = found.iter().map(|at| at.map_or(f64::NAN, |at| at.distance)).collect();
         let gradients: Vec<[f64; 3]> = found.iter().map(|at| at.map_or(nothing, |at| at.gradient)).collect();
@@ -101,8 +109,7 @@ impl Distance {
         points: &Bound<'py, PyAny>,
         settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyArray1<i32>>> {
-        let points = arrays::positions(points)?;
-        let numbers = limits(settings)?.run(py, size(points.len()), |control| {
+        let numbers = asked(py, points, settings, |points, control| {
             let some = |some: &[[f64; 3]]| -> Result<Vec<i32>, Error> {
                 control.check()?;
                 Ok(some.iter().map(|&point| self.distance.tree().crossings(point).winding).collect())
@@ -182,9 +189,7 @@ impl Field {
         points: &Bound<'py, PyAny>,
         settings: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let points = arrays::positions(points)?;
-        let values = limits(settings)?
-            .run(py, size(points.len()), |control| self.expression.at_all(&points, control))?;
+        let values = asked(py, points, settings, |points, control| self.expression.at_all(points, control))?;
         Ok(PyArray1::from_vec(py, values))
     }
 

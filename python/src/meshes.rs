@@ -121,13 +121,6 @@ impl Surface {
         Ok(mesh.into())
     }
 
-    /// The same without an attribute.
-    fn without_attribute(&self, name: &str) -> Self {
-        let mut mesh = (*self.mesh).clone();
-        mesh.attributes.retain(|attribute| attribute.name != name);
-        mesh.into()
-    }
-
     /// The same with groups of triangles: their names, and for every triangle the number of one.
     fn with_groups(&self, names: Vec<String>, of_triangle: Vec<u32>) -> Self {
         let mut mesh = (*self.mesh).clone();

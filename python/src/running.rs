@@ -15,7 +15,7 @@ use trisect::{CancelToken, Control, Error};
 use crate::failures;
 
 /// Below so many triangles a call takes some milliseconds at most and is not watched: starting a thread to be able to stop it
-/// takes 30 microseconds, twice what the union of two cubes does.
+/// would take a good part of the time of small ones.
 pub(crate) const WATCHED_FROM: usize = 20_000;
 
 /// How often a watched call is looked at: soon at first, since most end soon, then so that nobody feels a delay.

@@ -36,6 +36,23 @@ def test_views_lists_and_read_only_arrays() -> None:
         assert trisect.Solid(*given).volume == pytest.approx(1 / 6, rel=1e-15)
 
 
+def test_fields_of_packed_records_are_read_right() -> None:
+    for number in (np.float32, np.float64):
+        packed = np.zeros(4, dtype=[("point", number, 3), ("mark", np.int8)])
+        packed["point"] = TETRAHEDRON
+        corners = np.zeros(4, dtype=[("mark", np.int8), ("face", np.int64, 3)])
+        corners["face"] = TRIANGLES
+        assert not packed["point"].flags.aligned and not corners["face"].flags.aligned
+        solid = trisect.Solid(packed["point"], corners["face"])
+        assert (solid.vertices == TETRAHEDRON).all() and (solid.faces == TRIANGLES).all()
+        # In one piece, but beginning in the middle of a word.
+        buffer = b"x" + TETRAHEDRON.astype(number).tobytes()
+        askew = np.frombuffer(buffer, dtype=number, offset=1).reshape(4, 3)
+        assert (trisect.Solid(askew, TRIANGLES).vertices == TETRAHEDRON).all()
+        heat = solid.with_attribute("_HEAT", askew).attributes["_HEAT"]
+        assert (heat.values == TETRAHEDRON).all() and (heat.corners == TRIANGLES).all()
+
+
 def test_quads_and_ragged_polygons(cube: Any) -> None:
     corners, squares = cube
     assert trisect.Solid(corners, squares).volume == 1.0

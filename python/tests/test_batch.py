@@ -41,42 +41,84 @@ def jobs() -> List[Dict[str, Any]]:
         {"id": "wrong", "verb": "merge", "inputs": ["cube.ply"]},
         {"id": "limit", "verb": "union", "inputs": ["cube.ply", moved], "options": {"memory": "1K"}},
         {"id": "key", "verb": "union", "inputs": ["cube.ply"], "outputs": "x"},
+        {"id": "options", "verb": "union", "inputs": ["cube.ply"], "options": "none"},
     ]
     return made
 
 
 def test_every_job_is_reported_once(folder: Any) -> None:
     lines = "".join(json.dumps(job) + "\n" for job in jobs()) + "no json\n"
-    (folder / "jobs.jsonl").write_text(lines)
+    (folder / "jobs.jsonl").write_bytes(lines.encode() + b"\xff\xfe\n" + b"[" * 100_000 + b"\n")
     told: List[Any] = []
     out = folder / "reports.jsonl"
     summary = trisect.batch(folder / "jobs.jsonl", out, workers=2, progress=lambda *told_: told.append(told_))
-    assert (summary.done, summary.failed, summary.skipped) == (7, 7, 0)
+    assert (summary.done, summary.failed, summary.skipped) == (7, 10, 0)
     reports = {report["id"]: report for report in map(json.loads, out.read_text().splitlines())}
-    assert len(reports) == 14 and len(out.read_text().splitlines()) == 14
+    assert len(reports) == 17 and len(out.read_text().splitlines()) == 17
+    assert all(report["seconds"]["total"] >= 0 for report in reports.values())
     kinds = {name: report["error"]["kind"] for name, report in reports.items() if report["status"] == "failed"}
     assert kinds == {
-        "open": "unusable", "broken": "unreadable", "missing": "unreadable", "wrong": "usage", "limit": "limit", "key": "usage", "14": "usage",
+        "open": "unusable", "broken": "unreadable", "missing": "unreadable", "wrong": "usage", "limit": "limit", "key": "usage", "options": "usage",
+        "15": "usage", "16": "usage", "17": "usage",
     }
     assert reports["union"]["result"]["volume"] == 1.875 and reports["cut"]["result"]["volume"] == 0.25
     assert reports["open"]["error"]["operand"] == 2
-    assert told[-1][:3] == (14, 14, 7) and told[-1][3] is not None
+    assert told[-1][:3] == (17, 17, 10) and told[-1][3] is not None
     # The same bytes as one by one.
     alone = trisect.load(folder / "cube.ply") | trisect.load(folder / "cube.ply").translated([0.5] * 3)
     alone.save(folder / "alone.ply")
     assert (folder / "alone.ply").read_bytes() == (folder / "out" / "union.ply").read_bytes()
 
 
+def test_inputs_are_placed_as_the_program_places_them(folder: Any) -> None:
+    # Whatever the order of the keys: matrix, rotate, scale, translate.
+    placed = {"file": "cube.ply", "translate": [0, 0, 5], "scale": [2, 1, 1], "rotate": 90}
+    report = trisect.run_job({"verb": "convert", "inputs": [placed], "output": "placed.ply"}, folder)
+    assert report["status"] == "done", report
+    assert trisect.load(folder / "placed.ply").bounds.tolist() == [[-2, 0, 5], [0, 1, 6]]
+    for wrong in ({"rotate": [90, 0]}, {"translate": "far"}, {"rotate": [1, 2, 3, 4]}):
+        report = trisect.run_job({"verb": "convert", "inputs": [{"file": "cube.ply", **wrong}]}, folder)
+        assert report["error"]["kind"] == "usage", report
+
+
+def test_the_timeout_of_a_job_is_for_all_of_it(folder: Any, monkeypatch: Any) -> None:
+    from trisect import _jobs
+
+    given: List[float] = []
+    load = trisect.Solid.load
+
+    def slow(path: Any, **options: Any) -> trisect.Solid:
+        given.append(options["deadline"])
+        time.sleep(0.1)
+        return load(path, **options)
+
+    monkeypatch.setattr(_jobs.Solid, "load", slow)
+    job = {"verb": "union", "inputs": ["cube.ply"] * 2, "options": {"timeout": 60}}
+    assert trisect.run_job(job, folder)["status"] == "done"
+    assert given[0] <= 60 and given[1] <= given[0] - 0.1
+    for timeout, kind in ((0.05, "limit"), (-1, "usage"), ("soon", "usage")):
+        assert trisect.run_job({**job, "options": {"timeout": timeout}}, folder)["error"]["kind"] == kind
+
+
 def test_a_run_goes_on(folder: Any) -> None:
     out = folder / "reports.jsonl"
     out.write_text('{"id": "union", "status": "done"}\n{"id": "open", "status": "failed"}\n{"id": "xor", "sta')
     summary = trisect.batch(iter(jobs()), out, folder=folder, workers=1)
-    assert (summary.done, summary.failed, summary.skipped) == (6, 5, 2)
+    assert (summary.done, summary.failed, summary.skipped) == (6, 6, 2)
     reports = [json.loads(line) for line in out.read_text().splitlines()]
     assert sorted(report["id"] for report in reports) == sorted(job["id"] for job in jobs())
     again = trisect.batch(jobs(), out, folder=folder, workers=1, retry_failed=True)
-    assert (again.done, again.failed, again.skipped) == (0, 6, 7)
-    assert len(again.failures) == 6 and again.failures[0]["error"]["message"]
+    assert (again.done, again.failed, again.skipped) == (0, 7, 7)
+    assert len(again.failures) == 7 and again.failures[0]["error"]["message"]
+    before = out.read_bytes()
+    for line in (b"no reports\n", b"[1]\n", b"{}\n"):
+        out.write_bytes(before + line)
+        with pytest.raises(trisect.ArgumentError, match="no file of reports"):
+            trisect.batch(jobs(), out, folder=folder, workers=1)
+        assert out.read_bytes() == before + line
+    for wrong in ({"workers": -1}, {"workers": 0}, {"attempts": 0}):
+        with pytest.raises(trisect.ArgumentError):
+            trisect.batch(jobs(), folder=folder, **wrong)  # type: ignore[arg-type]
     anew = trisect.batch(jobs()[:1], out, folder=folder, workers=1, resume=False)
     assert anew.done == 1 and len(out.read_text().splitlines()) == 1
 
@@ -146,3 +188,6 @@ def test_jobs_anywhere_that_fsspec_knows(folder: Any) -> None:
     report = trisect.run_job(job)
     assert report["status"] == "done", report
     assert fsspec.filesystem("memory").exists("/made/x.ply")
+    # The folder may be there too.
+    report = trisect.run_job({"verb": "convert", "inputs": ["cube.ply"], "output": "y.stl"}, "memory://meshes")
+    assert report["status"] == "done" and fsspec.filesystem("memory").exists("/meshes/y.stl"), report

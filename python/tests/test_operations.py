@@ -117,7 +117,7 @@ def test_check(cube: Any, pair: Any) -> None:
     assert sheet.diagnosis.faults["open_edges"].count == 4 and "open edges" in str(sheet.diagnosis)
 
 
-def test_models(tmp_path: Any, pair: Any) -> None:
+def test_models(tmp_path: Any, pair: Any, fixtures: Any) -> None:
     model = {"kind": "difference", "operands": [{"kind": "box", "size": [2, 2, 2]}, {"kind": "box", "size": [1, 1, 4]}]}
     assert trisect.evaluate_model(model).volume == 6.0
     pair[0].save(tmp_path / "cube.ply")
@@ -128,6 +128,8 @@ def test_models(tmp_path: Any, pair: Any) -> None:
     assert "nothing" in str(raised.value)
     with pytest.raises(FileNotFoundError):
         trisect.evaluate_model(tmp_path / "no.json")
+    text = {"kind": "text", "text": "o", "font": "DejaVuSans-Latin.ttf", "size": 10, "depth": 2}
+    assert trisect.evaluate_model(text, folder=fixtures / "fonts", tolerance=0.1).genus == 1
 
 
 def test_meshes_of_trimesh(pair: Any) -> None:
@@ -140,7 +142,13 @@ def test_meshes_of_trimesh(pair: Any) -> None:
     assert back.is_watertight and back.volume == pytest.approx(1.0)
     textured = trimesh.Trimesh(box.vertices, box.faces, process=False)
     textured.visual = trimesh.visual.TextureVisuals(uv=box.vertices[:, :2])
-    assert "TEXCOORD_0" in trisect.Solid(textured).attributes
+    # There they count from the lower edge of a picture, here from the upper one.
+    found = trisect.Solid(textured).attributes["TEXCOORD_0"].at_corners()
+    assert found == pytest.approx([0, 1] + [1, -1] * box.vertices[box.faces][:, :, :2])
+    uv = np.full((8, 2), np.nan)
+    textured.visual = trimesh.visual.TextureVisuals(uv=uv)
+    with pytest.warns(trisect.TrisectWarning, match="texture"):
+        assert not trisect.Solid(textured).attributes
 
 
 def test_meshes_of_pyvista(pair: Any) -> None:
@@ -182,6 +190,15 @@ def test_meshes_of_manifold3d(pair: Any) -> None:
     assert (pair[0] - manifold3d.Manifold.cube([2, 2, 2], True)).is_empty
 
 
+def test_meshes_of_meshio(pair: Any) -> None:
+    like = type("Mesh", (), {})()
+    like.points, like.cells_dict = pair[0].vertices, {"line": [[0, 1]], "triangle": pair[0].faces}
+    assert trisect.Solid(like) == pair[0]
+    like.cells_dict = {"tetra": [[0, 1, 2, 4]]}
+    with pytest.raises(trisect.ArgumentError, match="tetra"):
+        trisect.Solid(like)
+
+
 def test_fields(pair: Any) -> None:
     a, b = pair
     points = np.array([[0.5, 0.5, 0.5], [0.5, 0.5, 2.0], [0.5, 0.5, 1.0]])
@@ -215,7 +232,7 @@ def test_files(fixtures: Any, tmp_path: Any, pair: Any) -> None:
     assert a.volume == pytest.approx(1401.105056)
     assert (str(fixtures / "solids" / "ballA.off") - a).is_empty
     cut = pair[0] - pair[1]
-    for name in ("x.obj", "x.glb", "x.gltf", "x.stl", "x.ply", "x.off"):
+    for name in ("x.obj", "x.glb", "x.gltf", "x.stl", "x.ply", "x.off", "x.3mf"):
         cut.save(tmp_path / name)
         assert trisect.load(tmp_path / name).volume == cut.volume
     cut.save(tmp_path / "text.ply", ascii=True, single=True)
@@ -237,3 +254,5 @@ def test_files(fixtures: Any, tmp_path: Any, pair: Any) -> None:
     grouped = cut.with_groups(["one", "two"], [0] * 12 + [1] * 12)
     grouped.save(tmp_path / "parts.glb")
     assert len(trisect.Mesh.load(str(tmp_path / "parts.glb") + "#one").faces) == 12
+    plain, draco = (trisect.Mesh.load(fixtures / "formats" / name) for name in ("nested.glb", "nested-draco.glb"))
+    assert len(draco.faces) == len(plain.faces) and draco.area == pytest.approx(plain.area, rel=1e-3)

@@ -41,6 +41,10 @@ def test_jobs_are_reported_once_though_workers_die(cluster: None, tmp_path: Any)
     alone.save(tmp_path / "alone.ply")
     assert (tmp_path / "alone.ply").read_bytes() == (tmp_path / "7.ply").read_bytes()
     assert trisect.ray.batch(tmp_path / "jobs.jsonl", tmp_path / "reports.jsonl").skipped == 21
+    # The folder as an address.
+    pytest.importorskip("fsspec")
+    assert trisect.ray.batch([{**jobs[0], "output": "there.ply"}], folder=tmp_path.as_uri()).done == 1
+    assert (tmp_path / "there.ply").exists()
 
 
 def test_a_tiled_union_is_the_union(cluster: None) -> None:

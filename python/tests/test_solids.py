@@ -84,6 +84,12 @@ def test_attributes_are_carried(pair: Any) -> None:
             a.with_attribute(name, values)
     with pytest.raises(ValueError):
         a.with_attribute("_X", np.zeros((1, 1)), corners=np.full((12, 3), 5))
+    for row in (-1, 2**32):
+        with pytest.raises(trisect.ArgumentError, match="rows of the table"):
+            a.with_attribute("_X", np.zeros((1, 1)), corners=np.full((12, 3), row))
+    for numbers in ([1] * 12, [2**40] * 12, [-1] * 12, [0] * 11):
+        with pytest.raises(trisect.ArgumentError):
+            a.with_groups(["one"], numbers)
 
 
 def test_origins_curves_and_certificate(pair: Any) -> None:
@@ -139,6 +145,9 @@ def test_pictures(pair: Any) -> None:
     png = cut.picture(64, 48, by_operand=True)
     assert png.startswith(b"\x89PNG") and png != cut.picture(64, 48)
     assert "data:image/png" in cut._repr_html_() and "0.875" in cut._repr_html_()
+    for size in ((0, 48), (64, 5000), (2**31, 2**31)):
+        with pytest.raises(trisect.ArgumentError):
+            cut.picture(*size)
     assert "volume 0.875" in repr(cut) and "empty" in trisect.Solid.empty()._repr_html_()
 
 

@@ -24,7 +24,12 @@ def points(given: Any, what: str = "vertices") -> NDArray[Any]:
         if array.size == 0:
             return np.zeros((0, 3))
         raise ArgumentError(f"{what} must be an array of shape (n, 3), not {array.shape}")
-    return array
+    return _aligned(array)
+
+
+def _aligned(array: NDArray[Any]) -> NDArray[Any]:
+    """The array, or a copy where its numbers lie askew, as the fields of packed records do: the compiled half cannot read those."""
+    return array if array.flags.aligned else array.copy()
 
 
 def _array(given: Any, what: str) -> NDArray[Any]:
@@ -61,7 +66,7 @@ def faces(given: Any) -> Tuple[NDArray[Any], Optional[Sequence[int]]]:
 
 def _integers(array: NDArray[Any]) -> NDArray[Any]:
     if array.dtype in _INTEGERS:
-        return array
+        return _aligned(array)
     if array.dtype.kind not in "iu":
         raise ArgumentError(f"faces must be integers, not {array.dtype}; use faces.astype(int) if they are whole numbers")
     return array.astype(np.int64)

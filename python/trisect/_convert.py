@@ -9,7 +9,7 @@ from typing import Any, Optional, Tuple
 import numpy as np
 
 from . import _arrays, _trisect
-from ._errors import TrisectWarning
+from ._errors import ArgumentError, TrisectWarning
 
 
 def surface_of(source: Any) -> Optional[_trisect.Surface]:
@@ -55,10 +55,13 @@ def _trimesh(source: Any) -> Optional[_trisect.Surface]:
     surface = of_arrays(np.asarray(source.vertices), np.asarray(source.faces))
     uv = getattr(getattr(source, "visual", None), "uv", None)
     if uv is not None and len(uv) == len(source.vertices):
-        values = np.ascontiguousarray(np.asarray(uv)[:, :2], dtype=np.float64)
-        corners = np.ascontiguousarray(source.faces, dtype=np.uint32)
+        values = np.array(np.asarray(uv)[:, :2], dtype=np.float64, order="C")
+        # There they count from the lower edge of a picture, here, as in glTF, from the upper one.
+        values[:, 1] = 1.0 - values[:, 1]
         if np.isfinite(values).all():
-            surface = surface.with_attribute("TEXCOORD_0", values, corners)
+            surface = surface.with_attribute("TEXCOORD_0", values, np.asarray(surface.view("faces")))
+        else:
+            warnings.warn("texture coordinates that are not finite are left out", TrisectWarning, stacklevel=4)
     return surface
 
 
@@ -105,4 +108,6 @@ def _meshio(source: Any) -> Optional[_trisect.Surface]:
         return None
     cells = source.cells_dict
     rows = [row for kind in ("triangle", "quad", "polygon") for row in cells.get(kind, ())]
+    if cells and not rows:
+        raise ArgumentError(f"there are neither triangles, quads nor polygons, only {', '.join(cells)}: extract the surface first")
     return of_arrays(source.points, rows)

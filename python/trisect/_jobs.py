@@ -11,19 +11,20 @@ import tempfile
 import time
 import traceback
 import warnings
-from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence
+from typing import Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
 from . import _operations
 from ._errors import ArgumentError, Error, FileError, FormatError, LimitError
-from ._surfaces import Solid
+from ._surfaces import Solid, _three
 
 Job = Mapping[str, Any]
 Report = Dict[str, Any]
 
 _KEYS = ("id", "verb", "inputs", "output", "options")
-_PLACING = ("translate", "rotate", "scale", "matrix")
+# In the order in which they are done, whatever the order in the job, as the program does.
+_PLACING = ("matrix", "rotate", "scale", "translate")
 _MENDING = ("weld", "orient", "closed-parts", "fill-holes", "single-shells")
 _SETTINGS = {
     "timeout": "deadline",
@@ -37,7 +38,7 @@ _SETTINGS = {
 }
 
 
-def run_job(job: Job, folder: Optional[str] = None) -> Report:
+def run_job(job: Job, folder: Union[str, "os.PathLike[str]", None] = None) -> Report:
     """Runs one job and reports it; failures are reported, not raised.
 
     >>> import trisect
@@ -49,22 +50,30 @@ def run_job(job: Job, folder: Optional[str] = None) -> Report:
     job : dict
         What a line of a jobs file holds: ``verb``, ``inputs``, ``output``, ``options``, ``id``.
     folder : path
-        Where relative paths start; the current folder by default.
+        Where relative paths start, or an address that ``fsspec`` knows; the current folder by default.
     """
     start = time.perf_counter()
     report: Report = {"id": job.get("id")}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            report.update(_done(job, folder or "."))
+            report.update(_done(job, os.fspath(folder or ".")))
             report["status"] = "done"
         except Exception as error:
             report["status"] = "failed"
             report["error"] = describe(error)
     if caught:
         report["warnings"] = [str(warning.message) for warning in caught]
-    report["seconds"] = round(time.perf_counter() - start, 6)
+    report["seconds"] = {"total": round(time.perf_counter() - start, 6)}
     return report
+
+
+def run_on_one_thread(job: Job, folder: Optional[str] = None) -> Report:
+    """The same on one thread, unless the job says otherwise."""
+    options = job.get("options")
+    if options is None or isinstance(options, Mapping):
+        job = {**job, "options": {"threads": 1, **(options or {})}}
+    return run_job(job, folder)
 
 
 def describe(error: BaseException) -> Dict[str, Any]:
@@ -86,7 +95,8 @@ def _kind(error: BaseException) -> str:
         return "usage"
     if isinstance(error, Error):
         return "unusable"
-    return "internal"
+    # What a number is made of that is none.
+    return "usage" if isinstance(error, ValueError) else "internal"
 
 
 def _done(job: Job, folder: str) -> Report:
@@ -100,7 +110,10 @@ def _done(job: Job, folder: str) -> Report:
     inputs = job.get("inputs")
     if not isinstance(inputs, Sequence) or isinstance(inputs, str) or not inputs:
         raise ArgumentError("a job has a list of inputs")
-    options = dict(job.get("options") or {})
+    said = job.get("options")
+    if said is not None and not isinstance(said, Mapping):
+        raise ArgumentError("the options of a job are an object")
+    options = dict(said or {})
     own = {key: options.pop(key) for key in ("expr", "plane", "keep") if key in options}
     mending = {key: options.pop(key) for key in _MENDING if key in options}
     given = {}
@@ -113,9 +126,20 @@ def _done(job: Job, folder: str) -> Report:
     if given.get("embed") is True and str(job.get("output")).lower().endswith((".stl", ".glb", ".gltf")):
         # What the file can hold, as the program does.
         given["embed"] = "single"
-    operands = [_operand(entry, mending, folder, place, given) for place, entry in enumerate(inputs)]
-    result = act(operands, own, given)
+    limited = _limited(given)
+    operands = [_operand(entry, mending, folder, place, limited()) for place, entry in enumerate(inputs)]
+    result = act(operands, own, limited())
     return _written(result, job.get("output"), folder)
+
+
+def _limited(given: Dict[str, Any]) -> Callable[[], Dict[str, Any]]:
+    """The settings of each call of a job: its deadline is what is left of the job's."""
+    deadline = given.get("deadline")
+    # (What is no number of seconds is refused where it is read.)
+    if deadline is None or not float(deadline) >= 0:
+        return lambda: given
+    end = time.monotonic() + float(deadline)
+    return lambda: {**given, "deadline": max(0.0, end - time.monotonic())}
 
 
 def _operand(entry: Any, mending: Mapping[str, Any], folder: str, place: int, given: Mapping[str, Any]) -> Solid:
@@ -138,8 +162,8 @@ def _operand(entry: Any, mending: Mapping[str, Any], folder: str, place: int, gi
             error.operand = error._data["operand"] = place
             error._message = f"operand {place + 1} ({entry['file']}): {error._message}"
         raise
-    for key in options:
-        if key in _PLACING:
+    for key in _PLACING:
+        if key in options:
             solid = _placed(solid, key, options[key])
     return solid
 
@@ -151,8 +175,9 @@ def _placed(solid: Solid, how: str, value: Any) -> Solid:
         return solid.scaled(value)
     if how == "matrix":
         return solid.transformed(np.asarray(value, dtype=float).reshape(-1, 4))
-    # Angles about the axes, x first, as `--rotate` has them.
-    for axis, degrees in zip("xyz", value):
+    # Angles about the axes, x first, as `--rotate` has them; one alone is about z.
+    angles = [0.0, 0.0, value] if np.isscalar(value) else value
+    for axis, degrees in zip("xyz", _three(angles, "rotate")):
         solid = solid.rotated(axis, degrees)
     return solid
 
@@ -220,11 +245,17 @@ def _written(solid: Solid, output: Any, folder: str) -> Report:
     return report
 
 
+def _from(folder: str, path: str) -> str:
+    """A path or an address; a relative one starts at the folder, which may be an address too."""
+    return path if "://" in path or os.path.isabs(path) else os.path.join(folder, path)
+
+
 @contextlib.contextmanager
 def local_input(path: str, folder: str) -> Iterator[str]:
     """A local copy of a file anywhere that ``fsspec`` knows; a local file is itself."""
+    path = _from(folder, path)
     if "://" not in path:
-        yield path if os.path.isabs(path) else os.path.join(folder, path)
+        yield path
         return
     import fsspec
 
@@ -239,10 +270,10 @@ def local_input(path: str, folder: str) -> Iterator[str]:
 @contextlib.contextmanager
 def local_output(path: str, folder: str) -> Iterator[str]:
     """A local file that goes anywhere that ``fsspec`` knows when it is written; a local path is itself, with its folder."""
+    path = _from(folder, path)
     if "://" not in path:
-        where = path if os.path.isabs(path) else os.path.join(folder, path)
-        os.makedirs(os.path.dirname(where) or ".", exist_ok=True)
-        yield where
+        os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
+        yield path
         return
     import fsspec
 

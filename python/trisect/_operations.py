@@ -52,7 +52,7 @@ def cores(operands: Sequence[SolidLike]) -> List[_trisect.Core]:
 def _is_list(operand: Any) -> bool:
     if isinstance(operand, tuple):
         # Two arrays are a solid.
-        return not (len(operand) == 2 and not any(hasattr(item, "faces") or isinstance(item, (str, Solid)) for item in operand))
+        return not (len(operand) == 2 and not any(hasattr(item, "faces") or isinstance(item, (str, os.PathLike, Solid)) for item in operand))
     return isinstance(operand, (list, set, frozenset)) or hasattr(operand, "__next__")
 
 

@@ -76,6 +76,7 @@ class Mending(Record):
     zero_area: Fault = _fault()
     filled: Fault = _fault()
     filled_triangles: int = 0
+    filled_vertices: int = 0
     filled_area: float = 0.0
     copies: Fault = _fault()
     copied_shells: Fault = _fault()

@@ -141,6 +141,8 @@ class _Surface:
             rows = np.asarray(corners)
             if rows.shape != (count, 3) or rows.dtype.kind not in "iu":
                 raise ArgumentError(f"corners must be integers of shape ({count}, 3), not {rows.dtype} of {rows.shape}")
+            if rows.size and not 0 <= rows.min() <= rows.max() <= NO_VALUE:
+                raise ArgumentError(f"corners must be rows of the table, or {NO_VALUE} for none, not {rows.min()} to {rows.max()}")
         elif table.ndim == 3 and table.shape[:2] == (count, 3):
             table = table.reshape(3 * count, table.shape[2])
             rows = np.arange(3 * count).reshape(-1, 3)
@@ -153,8 +155,8 @@ class _Surface:
             )
         if table.ndim != 2:
             raise ArgumentError(f"values must be of shape (k, c), not {table.shape}")
-        table = np.ascontiguousarray(table)
-        return surface.with_attribute(name, table, np.ascontiguousarray(rows, dtype=np.uint32))
+        table, rows = np.require(table, np.float64, ["C", "A"]), np.require(rows, np.uint32, ["C", "A"])
+        return surface.with_attribute(name, table, rows)
 
 
 class Mesh(_Surface):
@@ -181,7 +183,7 @@ class Mesh(_Surface):
 
     @classmethod
     def load(cls, path: Union[str, "os.PathLike[str]"], part: Optional[str] = None, **limits: "Unpack[Limits]") -> Mesh:
-        """Reads a mesh file: OBJ, glTF, STL, PLY or OFF, by content and name.
+        """Reads a mesh file: OBJ, glTF (also compressed by Draco), STL, PLY, OFF or 3MF, by content and name.
 
         ``part`` is the name of a part of the file, or a pattern (``"wheel/*"``); so is what follows ``#`` in a path. What the
         reader has to say is a :class:`~trisect.TrisectWarning`.
@@ -318,8 +320,7 @@ class Solid(_Surface):
         as_is: bool = False,
         **limits: "Unpack[Limits]",
     ) -> Solid:
-        """Reads a mesh file (OBJ, glTF, STL, PLY or OFF, by content and name) and makes a solid of it; see :class:`Solid` for the
-        arguments, and :meth:`Mesh.load`."""
+        """Reads a mesh file and makes a solid of it; see :class:`Solid` for the arguments, and :meth:`Mesh.load` for the formats."""
         options = _gate_options(weld, orient, closed_parts, fill_holes, single_shells, as_is)
         given = settings(limits, limits_only=True)
         surface, warned = _convert.load(path, part, given)
@@ -341,7 +342,8 @@ class Solid(_Surface):
         manifold: bool = False,
         separate: bool = False,
     ) -> None:
-        """Writes a mesh file in the format of the name: ``.obj``, ``.glb``, ``.gltf``, ``.stl``, ``.ply``, ``.off``.
+        """Writes a mesh file in the format of the name: ``.obj``, ``.glb``, ``.gltf``, ``.stl``, ``.ply``, ``.off``,
+        ``.3mf``.
 
         The file appears whole or not at all. What the format cannot keep is a :class:`~trisect.TrisectWarning`: binary STL and glTF
         have single precision. ``ascii`` is for STL and PLY, ``single`` for the precision of the others, ``manifold`` and
@@ -484,9 +486,11 @@ class Solid(_Surface):
     def with_groups(self, names: Sequence[str], of_face: ArrayLike) -> Solid:
         """The same with named sets of faces: ``of_face`` has the number of a name for every face."""
         numbers = np.asarray(of_face)
-        if numbers.dtype.kind not in "iu" or numbers.shape != (self._core.counts()[1],) or (numbers < 0).any():
-            raise ArgumentError(f"of_face must have the number of a group for each of {self._core.counts()[1]} faces")
-        surface = self._surface().with_groups(list(names), numbers.tolist())
+        listed, count = list(names), self._core.counts()[1]
+        fits = numbers.dtype.kind in "iu" and numbers.shape == (count,)
+        if not fits or (numbers < 0).any() or (numbers >= len(listed)).any():
+            raise ArgumentError(f"of_face must have the number of a group for each of {count} faces")
+        surface = self._surface().with_groups(listed, numbers.tolist())
         return self._of(_passed(surface, {"as_is": True}, None))
 
     def bodies(self) -> List[Solid]:

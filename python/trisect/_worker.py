@@ -12,14 +12,11 @@ def serve(folder: str) -> None:
     # What anybody prints goes elsewhere than reports do.
     reports = os.fdopen(os.dup(1), "wb", buffering=0)
     os.dup2(2, 1)
-    from ._jobs import run_job
+    from ._jobs import run_on_one_thread
 
     for line in sys.stdin.buffer:
-        job = json.loads(line)
         # As many workers as cores: each on one thread.
-        options = dict(job.get("options") or {})
-        options.setdefault("threads", 1)
-        report = run_job({**job, "options": options}, folder)
+        report = run_on_one_thread(json.loads(line), folder)
         reports.write(json.dumps(report).encode() + b"\n")
 
 

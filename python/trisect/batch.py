@@ -26,7 +26,7 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 # Failures kept in a summary; all of them are in the reports.
 _KEPT = 100
-# A worker is replaced after so many jobs, so that no leak of anybody's grows for days; starting one takes 0.2 s.
+# A worker is replaced after so many jobs, so that no leak of anybody's grows for days; starting one takes some tenths of a second.
 _JOBS_A_WORKER = 2_000
 
 
@@ -87,7 +87,8 @@ def batch(
     workers : int
         Worker processes; by default one for each core, each on one thread unless the job says otherwise.
     folder : path
-        Where relative paths in jobs start; by default the folder of the jobs' file, or the current one.
+        Where relative paths in jobs start, or an address that ``fsspec`` knows; by default the folder of the jobs' file, or the
+        current one.
     attempts : int
         How often a job is tried whose worker dies.
     progress : callable, tqdm bar or True
@@ -96,6 +97,8 @@ def batch(
     """
     if attempts < 1:
         raise ArgumentError("a job is tried once at least")
+    if workers is not None and workers < 1:
+        raise ArgumentError(f"workers are counted from 1, not {workers!r}")
     start = time.perf_counter()
     total, numbered = numbered_jobs(jobs)
     base = os.fspath(folder) if folder is not None else _folder_of(jobs)
@@ -103,7 +106,7 @@ def batch(
     summary = Summary(reports=[] if out is None else None)
     tell = _progress(progress, total, start)
     waiting = _waiting(numbered, reported, summary)
-    pool = _Pool(waiting, base, workers or os.cpu_count() or 1, attempts)
+    pool = _Pool(waiting, base, workers if workers is not None else os.cpu_count() or 1, attempts)
     try:
         for report in pool.reports():
             reported.write(report)
@@ -134,7 +137,7 @@ def numbered_jobs(jobs: Union[PathLike, Iterable[Job]]) -> Tuple[Optional[int], 
 def _read(path: str) -> Iterator[Job]:
     """The jobs of a file; a line that is none is a job that fails, with what is wrong."""
     number = 0
-    with open(path, encoding="utf-8") as file:
+    with open(path, "rb") as file:
         for line in file:
             if not line.strip():
                 continue
@@ -143,7 +146,7 @@ def _read(path: str) -> Iterator[Job]:
                 job = json.loads(line)
                 if not isinstance(job, dict):
                     raise ValueError("no object")
-            except ValueError as error:
+            except (ValueError, RecursionError) as error:
                 job = {"id": None, "verb": None, "broken": f"line {number} of {path} is no job: {error}"}
             yield _with_id(job, number)
 
@@ -195,11 +198,15 @@ class Reports:
                 if not line.endswith(b"\n"):
                     break
                 whole += len(line)
-                report = json.loads(line)
-                if retry_failed and report.get("status") != "done":
-                    self._there.discard(report["id"])
+                try:
+                    report = json.loads(line)
+                    name, is_done = report["id"], report["status"] == "done"
+                except (ValueError, TypeError, KeyError) as error:
+                    raise ArgumentError(f"{path} is no file of reports: {error!r}") from None
+                if retry_failed and not is_done:
+                    self._there.discard(name)
                 else:
-                    self._there.add(report["id"])
+                    self._there.add(name)
         return whole
 
     def has(self, name: str) -> bool:
@@ -367,7 +374,7 @@ class _Pool:
 
 def failure(job: Job, kind: str, message: str, start: float) -> Report:
     """The report of a job that did not come to run."""
-    seconds = round(time.perf_counter() - start, 6)
+    seconds = {"total": round(time.perf_counter() - start, 6)}
     return {"id": job["id"], "status": "failed", "error": {"kind": kind, "message": message}, "seconds": seconds}
 
 

@@ -17,7 +17,7 @@ import ray.exceptions
 
 from . import _operations
 from ._errors import ArgumentError
-from ._jobs import Job, Report, run_job
+from ._jobs import Job, Report, run_on_one_thread
 from ._surfaces import Solid, SolidLike
 from .batch import Reports, Summary, _folder_of, _progress, _waiting, failure, numbered_jobs
 
@@ -31,13 +31,6 @@ _AHEAD = 4
 def _started() -> None:
     if not ray.is_initialized():
         ray.init(log_to_driver=False)
-
-
-def _run(job: Job, folder: str) -> Report:
-    # A task has one processor, as Ray counts.
-    options = dict(job.get("options") or {})
-    options.setdefault("threads", 1)
-    return run_job({**job, "options": options}, folder)
 
 
 def batch(
@@ -66,17 +59,22 @@ def batch(
     """
     if attempts < 1:
         raise ArgumentError("a job is tried once at least")
+    if in_flight is not None and in_flight < 1:
+        raise ArgumentError(f"jobs in flight are counted from 1, not {in_flight!r}")
     _started()
     start = time.perf_counter()
     total, numbered = numbered_jobs(jobs)
-    base = os.path.abspath(os.fspath(folder) if folder is not None else _folder_of(jobs))
+    base = os.fspath(folder) if folder is not None else _folder_of(jobs)
+    if "://" not in base:
+        base = os.path.abspath(base)
     reported = Reports(out, resume, retry_failed)
     summary = Summary(reports=[] if out is None else None)
     tell = _progress(progress, total, start)
     options: Dict[str, Any] = {"num_cpus": 1, "max_retries": attempts - 1, **(task or {})}
-    remote: Any = ray.remote(**options)(_run)
+    # (A task has one processor, as Ray counts.)
+    remote: Any = ray.remote(**options)(run_on_one_thread)
     cluster: Any = ray
-    most = in_flight or _AHEAD * max(1, int(cluster.cluster_resources().get("CPU", 1)))
+    most = in_flight if in_flight is not None else _AHEAD * max(1, int(cluster.cluster_resources().get("CPU", 1)))
     try:
         for report in _reports(remote, _waiting(numbered, reported, summary), base, most):
             reported.write(report)
@@ -132,20 +130,21 @@ class Tiled:
 
 @dataclass
 class _Piece:
-    """A part of a result, in the object store: what it weighs, and where it is."""
+    """A part of a result."""
 
     reference: Any
+    """Where the object store has it: a solid, and the bytes moved for it."""
     place: Tuple[int, ...]
+    """Its place among the tiles."""
 
 
 def _bytes(solids: Sequence[Solid]) -> int:
     return sum(solid.vertices.nbytes + solid.faces.nbytes for solid in solids)
 
 
-def _unite(settings: Dict[str, Any], *solids: Solid) -> Tuple[Solid, int]:
+def _unite(settings: Dict[str, Any], solids: List[Solid]) -> Tuple[Solid, int]:
     """United, and the bytes it was made of."""
-    listed = [part for solid in solids for part in (solid if isinstance(solid, list) else [solid])]
-    return _operations.union(listed, **settings), _bytes(listed)
+    return _operations.union(solids, **settings), _bytes(solids)
 
 
 def _merge(settings: Dict[str, Any], *pieces: Tuple[Solid, int]) -> Tuple[Solid, int]:
@@ -167,12 +166,12 @@ def union(
 
     Space is cut into a grid of ``tiles``; the parts whose middle is in a tile are united by a task, and neighbouring results are
     merged in a tree, along one axis after the other. The result is closed, and has the volume of the union on one machine but for the
-    rounding of vertices at which three results meet.
+    rounding of vertices in between.
 
     Parameters
     ----------
     parts : sequence of solids, or of anything one can be made of
-        Paths are read where they are needed; solids go through Ray's object store once.
+        All are made solids of here; those go through Ray's object store once.
     tiles : three int
         How many along x, y and z; by default so many that each has some hundred parts.
     threads : int
@@ -223,7 +222,7 @@ def _halved(row: List[_Piece], merge: Any, given: Any) -> Tuple[List[_Piece], in
     return merged, made
 
 
-# Parts a task takes: some hundred spheres take about a second.
+# Parts a task takes: enough that a task is worth its start. (Not measured.)
 _PARTS_A_TILE = 200
 
 
@@ -265,7 +264,7 @@ def combine_large(
 ) -> Tiled:
     """One operation ("union", "intersection" or "difference") on two large operands.
 
-    Both are cut by the same planes across the longest side of their common box, at coordinates exact in ``f64``; each slab is a task,
+    Both are cut by the same planes across the longest side of their common box, at coordinates that ``f32`` holds; each slab is a task,
     and neighbours are merged in a tree. Halves of a cut have the same vertices along it, bit for bit, so slabs fit together
     again and the walls between them vanish.
     """
@@ -277,7 +276,8 @@ def combine_large(
     given = {**settings, "threads": threads}
     options: Dict[str, Any] = {"num_cpus": threads, **(task or {})}
     work: Any = ray.remote(**options)(_slab)
-    cut = [_slabs(operand, *_planes(operands, slabs)) for operand in operands]
+    axis, marks = _planes(operands, slabs)
+    cut = [_slabs(operand, axis, marks) for operand in operands]
     leaves = [
         _Piece(work.remote(operation, given, first, second), (place, 0, 0))
         for place, (first, second) in enumerate(zip(*cut))

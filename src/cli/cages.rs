@@ -69,7 +69,7 @@ fn one(request: &Request, choice: Cages, session: &Session<'_>) -> Result<(Contr
         }
         let mut mesh = cage.mesh();
         for transform in &request.transforms {
-            mesh = transform.apply(mesh)?;
+            mesh = transform.apply(mesh, &session.control())?;
         }
         // A reflection turns the faces over: the mesh has done that already.
         let details = cage.details().to_vec();

@@ -89,16 +89,8 @@ fn run_task(
     }
 
     let control = session.control();
-    let start = Instant::now();
-    let operands = operands::operands(
-        requests,
-        arguments.inputs.using.assume_clean,
-        &session.limits,
-        &control,
-        &session.console,
-    )?;
-    session.took("read", start);
-    describe(&operands, Some(&arguments.results.writing), session);
+    let assume_clean = arguments.inputs.using.assume_clean;
+    let operands = read(requests, assume_clean, Some(&arguments.results.writing), &control, session)?;
     let operands = if arguments.color_by.is_some() { grouped(operands) } else { operands };
     if arguments.dry_run {
         announce(task, &operands, &targets.concat(), session);
@@ -299,6 +291,21 @@ fn refuse_pointless(arguments: &Combine, targets: &[Target], session: &Session<'
         ));
     }
     Ok(())
+}
+
+/// The operands that requests ask for, read and told of.
+pub(super) fn read(
+    requests: Vec<Request>,
+    assume_clean: bool,
+    writing: Option<&Writing>,
+    control: &Control,
+    session: &mut Session<'_>,
+) -> Result<Vec<Operand>, Fault> {
+    let start = Instant::now();
+    let operands = operands::operands(requests, assume_clean, &session.limits, control, &session.console)?;
+    session.took("read", start);
+    describe(&operands, writing, session);
+    Ok(operands)
 }
 
 /// One line and one JSON object for every operand, and its warnings.

@@ -26,16 +26,18 @@ pub(crate) fn run(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
-    let requests = requests::requests(matches, arguments.reading.format)?;
+    let mut requests = requests::requests(matches, arguments.reading.format)?;
     let writing = &arguments.results.writing;
+    scenes::name_node(&mut requests, writing)?;
     let targets = output::targets(writing, &arguments.results.drawing, session.common)?;
     if targets.is_empty() && !session.is_reported() {
         return Err(Fault::usage("nowhere to put the results: add -o FILE, --png FILE or --json"));
     }
     let control = session.control();
     let requests = selection::joined(requests, &session.limits, &control)?;
-    let write_options =
-        scenes::kept(output::write_options(writing, &session.limits), writing, requests.first())?;
+    // (The scene is that of the first.)
+    let plain = output::write_options(writing, &session.limits);
+    let options = [scenes::kept(plain.clone(), writing, requests.first())?, plain];
     let both = <[_; 2]>::try_from(requests)
         .map_err(|_| Fault::usage("imprint takes two inputs, whose curve is drawn on both"))?;
     let places: Vec<Vec<Target>> = ["-1", "-2"]
@@ -56,14 +58,15 @@ pub(crate) fn run(
     let seconds = session.took("run", start);
 
     let (mut results, mut outputs) = (Vec::new(), Vec::new());
-    for (((made, targets), sheet), request) in made.iter().zip(&places).zip(&sheets).zip(&both) {
+    let surfaces = made.iter().zip(options).zip(&places).zip(&sheets).zip(&both);
+    for ((((made, options), targets), sheet), request) in surfaces {
         let Imprinted { mesh, incomplete, .. } = made;
         if *incomplete > 0 {
             let triangles = words::counted(*incomplete, "triangle");
             session.warn(format!("{}: the curve is not drawn in full on {triangles}", request.name()));
         }
         let measures = Measures::of_mesh(mesh);
-        let style = Style { format: Some(sheet.format), options: write_options.clone() };
+        let style = Style { format: Some(sheet.format), options };
         let written = write(&arguments.results, targets, mesh, style, session)?;
         outputs.extend(written);
         results.push(measures.to_json());

@@ -6,14 +6,13 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::{Value, json};
 use trisect::making as library;
-use trisect::{Control, Error, Solid};
+use trisect::{Control, Error, Mesh, Solid};
 
 use super::argument_groups::{Inputs, Results};
 use super::combine;
 use super::fault::{Exit, Fault};
 use super::made;
 use super::making_arguments::{Hollow, Hull, Minkowski, Offset, Text};
-use super::operands;
 use super::reading;
 use super::requests;
 use super::selection;
@@ -36,6 +35,7 @@ pub(crate) fn run(arguments: &Hull, matches: &ArgMatches, session: &mut Session<
         for warning in input.warnings {
             session.warn(format!("{name}: {warning}"));
         }
+        warn_of_lost(&input.mesh, &name, "hull", session);
         // Vertices that no triangle uses are no part of the surface.
         let mut used: Vec<u32> = input.mesh.triangles.iter().flatten().copied().collect();
         used.sort_unstable();
@@ -95,11 +95,9 @@ pub(crate) fn run_minkowski(
         )));
     }
     let targets = made::targets(&arguments.results, session)?;
-    let start = Instant::now();
     let assume_clean = arguments.inputs.using.assume_clean;
-    let operands = operands::operands(requests, assume_clean, &session.limits, &control, &session.console)?;
-    session.took("read", start);
-    combine::describe(&operands, Some(&arguments.results.writing), session);
+    let writing = Some(&arguments.results.writing);
+    let operands = combine::read(requests, assume_clean, writing, &control, session)?;
     let [body, tool] = &*operands else { return Err(Fault::internal("two operands")) };
     if !tool.solid.is_convex() {
         return Err(Fault::unusable(format!(
@@ -108,6 +106,9 @@ pub(crate) fn run_minkowski(
             tool.request.name(),
             tool.request.name()
         )));
+    }
+    for operand in &operands {
+        warn_of_lost(operand.solid.mesh(), &operand.request.name(), "sum", session);
     }
     let start = Instant::now();
     session.console.stage("summing up", 0.0);
@@ -126,7 +127,8 @@ pub(crate) fn run_offset(
     let of = |solid: &Solid, control: &Control| {
         library::offset(solid, arguments.distance, arguments.tolerance, control)
     };
-    from_distance("offset", &arguments.inputs, &arguments.results, matches, session, of)
+    let verb = Verb { name: "offset", is_new: true };
+    from_distance(verb, &arguments.inputs, &arguments.results, matches, session, of)
 }
 
 /// Hollows one input.
@@ -138,12 +140,20 @@ pub(crate) fn run_hollow(
     let of = |solid: &Solid, control: &Control| {
         library::hollow(solid, arguments.wall, &arguments.drain, arguments.tolerance, control)
     };
-    from_distance("hollow", &arguments.inputs, &arguments.results, matches, session, of)
+    let verb = Verb { name: "hollow", is_new: false };
+    from_distance(verb, &arguments.inputs, &arguments.results, matches, session, of)
+}
+
+/// A verb that makes something of a distance field.
+struct Verb {
+    name: &'static str,
+    /// Whether nothing of the input's own surface is left.
+    is_new: bool,
 }
 
 /// Makes something of the distance field of one input.
 fn from_distance(
-    verb: &str,
+    Verb { name: verb, is_new }: Verb,
     inputs: &Inputs,
     results: &Results,
     matches: &ArgMatches,
@@ -157,12 +167,12 @@ fn from_distance(
         return Err(Fault::usage(format!("{verb} takes one input, not {}", requests.len())));
     }
     let targets = made::targets(results, session)?;
-    let start = Instant::now();
-    let operands =
-        operands::operands(requests, inputs.using.assume_clean, &session.limits, &control, &session.console)?;
-    session.took("read", start);
-    combine::describe(&operands, Some(&results.writing), session);
+    let assume_clean = inputs.using.assume_clean;
+    let operands = combine::read(requests, assume_clean, Some(&results.writing), &control, session)?;
     let [operand] = &*operands else { return Err(Fault::internal("one operand")) };
+    if is_new {
+        warn_of_lost(operand.solid.mesh(), &operand.request.name(), verb, session);
+    }
     let start = Instant::now();
     session.console.stage(verb, 0.0);
     let made = make(&operand.solid, &control).map_err(unusable)?;
@@ -173,6 +183,16 @@ fn from_distance(
     let (deviation, tolerance) = (words::short(made.deviation), words::short(made.tolerance));
     session.console.say(&format!("within {deviation} of the true {verb} (tolerance {tolerance})"));
     Ok(Exit::Fine)
+}
+
+/// Says what a surface that is made anew has no place for.
+fn warn_of_lost(mesh: &Mesh, name: &str, made: &str, session: &mut Session<'_>) {
+    let groups = (!mesh.groups.list.is_empty()).then(|| "groups and materials".to_owned());
+    let attributes = mesh.attributes.iter().map(|attribute| attribute.name.clone());
+    let lost: Vec<String> = groups.into_iter().chain(attributes).collect();
+    if !lost.is_empty() {
+        session.warn(format!("{name}: {} not kept: the {made} is a new surface", lost.join(", ")));
+    }
 }
 
 /// Points without a hull are no fault of the command line.

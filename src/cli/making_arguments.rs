@@ -1,4 +1,5 @@
-//! What may stand on the command line of `hull`, `minkowski`, `measure`, `distance`, `completions` and `man`.
+//! What may stand on the command line of `hull`, `text`, `minkowski`, `offset`, `hollow`, `measure`, `distance`, `completions` and
+//! `man`.
 
 use std::path::PathBuf;
 

@@ -174,11 +174,8 @@ pub(crate) fn run_distance(
     if requests.len() != 2 {
         return Err(Fault::usage(format!("distance takes two inputs, not {}", requests.len())));
     }
-    let start = Instant::now();
     let assume_clean = arguments.inputs.using.assume_clean;
-    let operands = operands::operands(requests, assume_clean, &session.limits, &control, &session.console)?;
-    session.took("read", start);
-    combine::describe(&operands, None, session);
+    let operands = combine::read(requests, assume_clean, None, &control, session)?;
     let [a, b] = &*operands else { return Err(Fault::internal("two operands")) };
     let start = Instant::now();
     let Some(found) = a.solid.distance(&b.solid) else {

@@ -1,5 +1,6 @@
 //! A page that shows a result in a browser: one file, with the model, the library that draws it, and what is told of both.
 
+use std::collections::HashMap;
 use std::io::Write;
 
 use base64::engine::general_purpose::STANDARD;
@@ -93,18 +94,13 @@ fn with_origins(mesh: &Mesh, outcome: &Outcome) -> Option<Mesh> {
         return None;
     }
     let mut attribute = Attribute::new(ORIGIN, 1);
-    let mut known: Vec<(u32, u32)> = Vec::new();
+    let mut known: HashMap<u32, u32> = HashMap::new();
     for origin in origins {
         let code = origin.operand.saturating_mul(2).saturating_add(u32::from(origin.reversed));
-        let index = match known.iter().find(|(other, _)| *other == code) {
-            Some(&(_, index)) => index,
-            None => {
-                let index = known.len() as u32;
-                attribute.values.push(f64::from(code));
-                known.push((code, index));
-                index
-            }
-        };
+        let index = *known.entry(code).or_insert_with(|| {
+            attribute.values.push(f64::from(code));
+            attribute.values.len() as u32 - 1
+        });
         attribute.of_corner.extend([index; 3]);
     }
     let mut mesh = mesh.clone();

@@ -43,7 +43,7 @@ pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Res
     };
     control.check()?;
     for transform in &request.transforms {
-        mesh = transform.apply(mesh)?;
+        mesh = transform.apply(mesh, control)?;
     }
     if !request.transforms.is_empty() && mesh.positions.as_flattened().iter().any(|value| !value.is_finite())
     {

@@ -9,6 +9,7 @@ use super::argument_groups::Colours;
 use super::cut_arguments::Solidify as Arguments;
 use super::fault::{Exit, Fault};
 use super::json::json_of;
+use super::made;
 use super::output::{self, Product, Shown, Target};
 use super::reading::{self, Input};
 use super::recenter;
@@ -28,17 +29,13 @@ pub(crate) fn run(
     let mut requests = requests::requests(matches, arguments.reading.format)?;
     let writing = &arguments.results.writing;
     scenes::name_node(&mut requests, writing)?;
-    let targets = output::targets(writing, &arguments.results.drawing, session.common)?;
-    if targets.is_empty() && !session.is_reported() {
-        return Err(Fault::usage("nowhere to put the result: add -o FILE, --png FILE or --json"));
-    }
+    let targets = made::targets(&arguments.results, session)?;
     let control = session.control();
     let requests = selection::joined(requests, &session.limits, &control)?;
     let write_options =
         scenes::kept(output::write_options(writing, &session.limits), writing, requests.first())?;
     let [request] = <[_; 1]>::try_from(requests)
         .map_err(|_| Fault::usage("solidify takes one input; union puts several together afterwards"))?;
-    output::probe(&targets, &session.limits)?;
 
     let start = Instant::now();
     let Input { mesh, format, mut warnings, contents, reserved: _reserved } =

@@ -52,7 +52,6 @@ pub(crate) fn run(arguments: &Split, matches: &ArgMatches, session: &mut Session
     let mut requests = requests(arguments, matches)?;
     let writing = &arguments.results.writing;
     scenes::name_node(&mut requests, writing)?;
-    let sheet_requests = sheet_requests(arguments, requests.first())?;
     let targets = output::targets(writing, &arguments.results.drawing, session.common)?;
     if targets.is_empty() && !session.is_reported() {
         return Err(Fault::usage(
@@ -60,7 +59,8 @@ pub(crate) fn run(arguments: &Split, matches: &ArgMatches, session: &mut Session
         ));
     }
     let control = session.control();
-    let requests = selection::joined(requests, &session.limits, &control)?;
+    let mut requests = selection::joined(requests, &session.limits, &control)?;
+    let sheet_requests = requests.split_off(requests.len() - arguments.sheet.len());
     let write_options =
         scenes::kept(output::write_options(writing, &session.limits), writing, requests.first())?;
     // (Their names get ends, which the folder does not mind.)
@@ -91,29 +91,17 @@ pub(crate) fn run(arguments: &Split, matches: &ArgMatches, session: &mut Session
     write(&arguments.results, &targets, &parts, &style, seconds, session)
 }
 
-/// The input, and the solid that it is cut by if there is one. That is mended as the input is.
+/// The input, the solid that it is cut by if there is one, and the surfaces that it is parted by; those are mended as the input is.
 fn requests(arguments: &Split, matches: &ArgMatches) -> Result<Vec<Request>, Fault> {
     let mut requests = requests::placed_requests(matches)?;
     if requests.len() > 1 {
         return Err(Fault::usage("split takes one input; --by FILE names the solid that it is cut by"));
     }
-    if let Some(by) = &arguments.by {
-        let (path, part) = chosen::split(by.clone());
-        let of_input = requests.first().cloned().ok_or_else(|| Fault::usage("an input is needed"))?;
-        requests.push(Request { path, part, transforms: Vec::new(), ..of_input });
-    }
-    requests::name_formats(&mut requests, arguments.inputs.reading.format)?;
-    Ok(requests)
-}
-
-/// The surfaces that the input is parted by, mended as it is.
-fn sheet_requests(arguments: &Split, input: Option<&Request>) -> Result<Vec<Request>, Fault> {
-    let of_sheet = |path: &std::path::PathBuf| {
+    let input = requests.first().cloned().ok_or_else(|| Fault::usage("an input is needed"))?;
+    requests.extend(arguments.by.iter().chain(&arguments.sheet).map(|path| {
         let (path, part) = chosen::split(path.clone());
-        let of_input = input.cloned().ok_or_else(|| Fault::usage("an input is needed"))?;
-        Ok(Request { path, part, transforms: Vec::new(), ..of_input })
-    };
-    let mut requests: Vec<Request> = arguments.sheet.iter().map(of_sheet).collect::<Result<_, Fault>>()?;
+        Request { path, part, chosen: None, transforms: Vec::new(), ..input.clone() }
+    }));
     requests::name_formats(&mut requests, arguments.inputs.reading.format)?;
     Ok(requests)
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::ArgMatches;
 use trisect::making::Pattern;
 use trisect::mesh::BoundsSide;
-use trisect::{Error, Mesh};
+use trisect::{Control, Error, Mesh};
 
 use super::points;
 use super::requests::placed;
@@ -72,8 +72,8 @@ pub(crate) fn all(matches: &ArgMatches) -> Vec<(usize, &'static str, Transform)>
 }
 
 impl Transform {
-    /// The mesh, moved.
-    pub(crate) fn apply(&self, mesh: Mesh) -> Result<Mesh, Error> {
+    /// The mesh, moved. Copies are not begun that would take more than the memory ceiling.
+    pub(crate) fn apply(&self, mesh: Mesh, control: &Control) -> Result<Mesh, Error> {
         Ok(match self {
             Self::Translate(by) => mesh.translated(*by),
             Self::Rotate([x, y, z]) => mesh
@@ -87,7 +87,11 @@ impl Transform {
             Self::Drop => mesh.aligned(2, BoundsSide::Low, 0.0),
             Self::Mirror(axis) => mesh.mirrored(*axis),
             Self::Fit(size) => mesh.fitted(*size)?,
-            Self::Repeat(repetition) => repetition.pattern()?.repeat(&mesh)?,
+            Self::Repeat(repetition) => {
+                let pattern = repetition.pattern()?;
+                let _copies = control.reserve(pattern.memory(&mesh))?;
+                pattern.repeat(&mesh)?
+            }
         })
     }
 

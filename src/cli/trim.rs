@@ -11,6 +11,7 @@ use super::argument_groups::{Colours, Writing};
 use super::combine;
 use super::cut_arguments::Trim;
 use super::fault::{Exit, Fault};
+use super::made;
 use super::mended;
 use super::operands;
 use super::output::{self, Product, Shown};
@@ -29,10 +30,7 @@ pub(crate) fn run(arguments: &Trim, matches: &ArgMatches, session: &mut Session<
     let mut requests = requests::requests(matches, arguments.inputs.reading.format)?;
     let writing = &arguments.results.writing;
     scenes::name_node(&mut requests, writing)?;
-    let targets = output::targets(writing, &arguments.results.drawing, session.common)?;
-    if targets.is_empty() && !session.is_reported() {
-        return Err(Fault::usage("nowhere to put the result: add -o FILE, --png FILE or --json"));
-    }
+    let targets = made::targets(&arguments.results, session)?;
     let control = session.control();
     let requests = selection::joined(requests, &session.limits, &control)?;
     let write_options =
@@ -40,7 +38,6 @@ pub(crate) fn run(arguments: &Trim, matches: &ArgMatches, session: &mut Session<
     let [request, by] = <[_; 2]>::try_from(requests).map_err(|_| {
         Fault::usage("trim takes two inputs: the surface, then the solid that it is trimmed by")
     })?;
-    output::probe(&targets, &session.limits)?;
 
     let start = Instant::now();
     let sheet = sheet(&request, 0, writing, &control, session)?;

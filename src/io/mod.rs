@@ -35,6 +35,7 @@ mod finish;
 mod format;
 mod gltf;
 mod labels;
+mod mirror;
 mod mtl;
 mod notes;
 mod obj;

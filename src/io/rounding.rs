@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::{Format, WriteOptions, unsupported};
+use super::{Format, Precision, WriteOptions, unsupported};
 use crate::exact::collinear;
 use crate::mesh::{enclosed_volume, is_closed};
 use crate::parallel;
@@ -154,6 +154,14 @@ pub(super) fn of_single(mesh: &Mesh, format: Format, options: &WriteOptions) -> 
         return Ok(Written::default());
     }
     examined(mesh, format, Measure::PLAIN, options)
+}
+
+/// The same where single precision was asked for; nothing to say of double precision.
+pub(super) fn of_precision(mesh: &Mesh, format: Format, options: &WriteOptions) -> Result<Written, Error> {
+    match options.precision {
+        Precision::Single => of_single(mesh, format, options),
+        Precision::Double => Ok(Written::default()),
+    }
 }
 
 /// Says what rounding does to a mesh whose coordinates single precision does not hold.

@@ -72,25 +72,30 @@ impl Solid {
     /// are triangulated after rounding are nowhere flat to the last bit.) O(n log n).
     #[must_use]
     pub fn is_convex(&self) -> bool {
-        // What rounding of coordinates by half a unit comes to where planes of small faces are far from their corners.
-        const ROUNDING: f64 = 32.0 * f64::EPSILON;
-        // Volumes are right to this; a dent between vertices that lie on the hull is far larger.
-        const SAME: f64 = 1e-9;
-        if self.components() != 1 || self.genus() != Some(0) || !self.is_manifold() {
-            return false;
-        }
-        let positions = &self.mesh().positions;
-        let Ok(hull) = convex_hull(positions) else { return false };
-        let volume = hull.volume();
-        let is_same = (self.volume() - volume).abs() <= SAME * volume;
-        if !is_same {
-            return false;
-        }
-        let largest = positions.iter().flatten().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        let tree = TriangleTree::new(&hull);
-        let is_near = |closest: Closest| closest.squared_distance.sqrt() <= ROUNDING * largest;
-        positions.iter().all(|&vertex| tree.closest(vertex).is_some_and(is_near))
+        hull_of_convex(self).is_some()
     }
+}
+
+/// The convex hull of a solid that is convex, as [`Solid::is_convex`] says; `None` if it is not.
+pub(super) fn hull_of_convex(solid: &Solid) -> Option<Mesh> {
+    // What rounding of coordinates by half a unit comes to where planes of small faces are far from their corners.
+    const ROUNDING: f64 = 32.0 * f64::EPSILON;
+    // Volumes are right to this; a dent between vertices that lie on the hull is far larger.
+    const SAME: f64 = 1e-9;
+    if solid.components() != 1 || solid.genus() != Some(0) || !solid.is_manifold() {
+        return None;
+    }
+    let positions = &solid.mesh().positions;
+    let hull = convex_hull(positions).ok()?;
+    let volume = hull.volume();
+    let is_same = (solid.volume() - volume).abs() <= SAME * volume;
+    if !is_same {
+        return None;
+    }
+    let largest = positions.iter().flatten().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let tree = TriangleTree::new(&hull);
+    let is_near = |closest: Closest| closest.squared_distance.sqrt() <= ROUNDING * largest;
+    positions.iter().all(|&vertex| tree.closest(vertex).is_some_and(is_near)).then_some(hull)
 }
 
 /// Four points that are not in one plane, the last one inside the plane of the first three; `None` if there are none.

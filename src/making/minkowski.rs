@@ -1,6 +1,7 @@
 //! Minkowski sums: what a convex tool sweeps while its origin goes through all of a solid.
 
 use super::convex_hull;
+use super::hull::hull_of_convex;
 use crate::boolean::{BooleanOptions, Embed, Grid};
 use crate::{Control, Error, Mesh, Operation, Solid};
 
@@ -30,16 +31,21 @@ const AT_ONCE: usize = 64;
 /// # Errors
 /// [`Error::InvalidArgument`] if the tool is empty or not convex; limits; as [`boolean`](crate::boolean).
 pub fn minkowski_sum(solid: &Solid, tool: &Solid, control: &Control) -> Result<Solid, Error> {
-    if !tool.is_convex() {
+    let Some(tool) = hull_of_convex(tool) else {
         let what = "the second operand of a Minkowski sum must be convex: take its hull, or sum its convex parts one by one";
         return Err(Error::InvalidArgument(what.into()));
-    }
+    };
     if solid.is_empty() {
         return Ok(Solid::empty());
     }
-    let tool = convex_hull(&tool.mesh().positions)?.positions;
-    if solid.is_convex() {
-        let corners = convex_hull(&solid.mesh().positions)?.positions;
+    let tool = tool.positions;
+    if let Some(hull) = hull_of_convex(solid) {
+        let corners = hull.positions;
+        let count = corners.len() as u64 * tool.len() as u64;
+        if count > u64::from(u32::MAX) {
+            return Err(Error::TooLarge { what: format!("{count} sums of vertices of a Minkowski sum") });
+        }
+        let _sums = control.reserve(count * size_of::<[f64; 3]>() as u64)?;
         return Ok(Solid::try_from(convex_hull(&sums(&corners, &tool))?)?);
     }
     general(solid, &tool, control)
@@ -162,6 +168,14 @@ mod tests {
         assert_eq!(sum.components(), 2);
         assert_eq!(tree.crossings([100.0, 0.0, 0.0]).winding, 0);
         assert_eq!(tree.crossings([104.5, 0.0, 0.0]).winding, 1);
+    }
+
+    #[test]
+    fn sums_beyond_the_memory_ceiling_are_not_begun() {
+        let ball = solid(primitives::icosphere(1.0, 3).unwrap());
+        let control = Control::new().memory_limit(1_000_000);
+        let refused = minkowski_sum(&ball, &ball, &control).unwrap_err();
+        assert!(matches!(refused, Error::Limit(crate::Limit::Memory { .. })), "{refused}");
     }
 
     #[test]

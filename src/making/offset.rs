@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use crate::field::{Expression, Extracted, Extraction, Graph, SignedDistance};
 use crate::spatial::TriangleTree;
-use crate::{Control, Error, Operation, Solid, boolean, primitives};
+use crate::{BooleanOptions, Control, Error, Operation, Solid, primitives};
 
 /// An offset, and how near it is to the true one.
 #[derive(Clone, Debug)]
@@ -36,6 +36,9 @@ pub struct Drain {
 const TOLERANCE: f64 = 0.05;
 /// Of the diagonal: the least tolerance that is taken unasked, below which a million triangles and more would come out.
 const LEAST_TOLERANCE: f64 = 5e-4;
+/// Of the diagonal: the largest distance outwards. Farther away the solid is a point to all that is computed, and beyond 1e19 the
+/// single precision of its tree overflows.
+const FARTHEST: f64 = 1e9;
 /// Around a drain.
 const SEGMENTS: u32 = 64;
 
@@ -58,7 +61,7 @@ fn invalid<T>(what: impl Into<String>) -> Result<T, Error> {
 /// ```
 ///
 /// # Errors
-/// [`Error::InvalidArgument`] if the distance is zero or not finite, or the tolerance not positive; as
+/// [`Error::InvalidArgument`] if the distance is zero, not finite or more than 1e9 times the diagonal, or the tolerance not positive; as
 /// [`Extraction::run`](crate::field::Extraction::run).
 pub fn offset(
     solid: &Solid,
@@ -76,6 +79,12 @@ pub fn offset(
             deviation: 0.0,
         });
     };
+    if distance > FARTHEST * bounds.diagonal() {
+        return invalid(format!(
+            "offset: a distance of {distance:e} is too large for a solid with a diagonal of {:e}: at most {FARTHEST:e} times as large",
+            bounds.diagonal()
+        ));
+    }
     let usual = (distance.abs() * TOLERANCE).max(bounds.diagonal() * LEAST_TOLERANCE);
     let tolerance = tolerance.unwrap_or(usual);
     if !(tolerance > 0.0 && tolerance.is_finite()) {
@@ -113,7 +122,7 @@ pub fn offset(
 ///
 /// # Errors
 /// [`Error::InvalidArgument`] if the wall or a radius is not positive and finite, if the solid is nowhere thick enough to be
-/// hollow, or if a drain does not reach the cavity; as [`offset`] and [`boolean`].
+/// hollow, or if a drain does not reach the cavity; as [`offset`] and [`boolean`](crate::boolean).
 pub fn hollow(
     solid: &Solid,
     wall: f64,
@@ -131,7 +140,8 @@ pub fn hollow(
         ));
     }
     let tree = TriangleTree::new(solid.mesh());
-    let mut hollow = boolean(Operation::Difference, solid, &inner.solid)?.into_solid();
+    let options = BooleanOptions::new().control(control.clone());
+    let mut hollow = options.run(Operation::Difference, [solid, &inner.solid])?.into_solid();
     for (number, drain) in (1..).zip(drains) {
         let hole = hole(&tree, drain, wall)?;
         if !inner.solid.distance(&hole).is_some_and(|found| found.distance == 0.0) {
@@ -140,7 +150,7 @@ pub fn hollow(
                 drain.at
             ));
         }
-        hollow = boolean(Operation::Difference, &hollow, &hole)?.into_solid();
+        hollow = options.run(Operation::Difference, [&hollow, &hole])?.into_solid();
     }
     Ok(Offset { solid: hollow, ..inner })
 }
@@ -153,10 +163,10 @@ fn hole(tree: &TriangleTree, drain: &Drain, wall: f64) -> Result<Solid, Error> {
             "hollow: a drain needs a point and a positive radius, not {at:?} and {radius}"
         ));
     }
-    let nearest = tree.closest(at).zip(tree.closest(at).and_then(|found| tree.corners(found.triangle)));
-    let Some((closest, [a, b, c])) = nearest else { return invalid("hollow: a solid without a surface") };
+    let nearest = tree.closest(at).and_then(|found| Some((found.point, tree.corners(found.triangle)?)));
+    let Some((point, [a, b, c])) = nearest else { return invalid("hollow: a solid without a surface") };
     let outwards = (b - a).cross(c - a).normalize_or_zero();
-    let from = DVec3::from_array(closest.point);
+    let from = DVec3::from_array(point);
     // 1. From well outside, also of a hollow place, to half a wall behind the wall.
     let (out, into) = (wall + radius, 1.5 * wall);
     let upright = primitives::cylinder(radius, out + into, SEGMENTS)?;
@@ -209,6 +219,7 @@ mod tests {
         assert!((smaller.volume() - 27.0).abs() < 0.1 * 54.0, "{}", smaller.volume());
         assert!(offset(&cube, -2.5, Some(0.2), &Control::new()).unwrap().solid.is_empty());
         assert!(offset(&cube, 0.0, None, &Control::new()).is_err());
+        assert!(offset(&cube, 1e160, None, &Control::new()).unwrap_err().to_string().contains("too large"));
         assert!(offset(&cube, 1.0, Some(-1.0), &Control::new()).is_err());
     }
 

@@ -1,5 +1,7 @@
 //! Patterns: many copies of a mesh as one mesh, and so as one operand.
 
+use std::collections::TryReserveError;
+
 use crate::mesh::Attribute;
 use crate::{Error, Mesh, MeshError};
 
@@ -98,26 +100,36 @@ impl Pattern {
         }
     }
 
+    /// How many bytes the positions and triangles of the copies take, so that a ceiling on memory
+    /// ([`Control::reserve`](crate::Control::reserve)) stops them before they are made.
+    #[must_use]
+    pub fn memory(&self, mesh: &Mesh) -> u64 {
+        let one = size_of_val(&*mesh.positions) + size_of_val(&*mesh.triangles);
+        // (Absurd numbers are refused by `repeat`; they are not to overflow an account.)
+        self.count().saturating_mul(one as u64).min(u64::MAX / 4)
+    }
+
     /// The copies as one mesh, one after the other. They keep the groups and attributes of the mesh, as one and the same group;
     /// what they overlap is an operand that crosses itself, and resolved as such. Offsets are multiplied, not added up, so
     /// that copy n is off by one rounding and not by n. O(copies times size).
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] if there is no copy, or more than ten million; if a number is not finite, an axis has no direction, or a
-    /// line no length. [`MeshError::TooLarge`] if there are more vertices than 32 bits can name.
+    /// line no length. [`MeshError::TooLarge`] if there are more vertices than 32 bits can name, or there is no memory for them.
     pub fn repeat(&self, mesh: &Mesh) -> Result<Mesh, Error> {
         let count = self.count();
         if count == 0 || count > MOST {
             return invalid(format!("{count} copies; there must be at least one, and at most {MOST}"));
         }
         let (vertices, triangles) = (mesh.positions.len(), mesh.triangles.len());
-        let large = |size: usize| size as u64 * count > u64::from(u32::MAX);
-        if large(vertices) || large(3 * triangles) {
-            let times = |size: usize| (size as u64).saturating_mul(count) as usize;
-            return Err(MeshError::TooLarge { vertices: times(vertices), triangles: times(triangles) }.into());
+        let times = |size: usize| (size as u64).saturating_mul(count);
+        let too_large =
+            MeshError::TooLarge { vertices: times(vertices) as usize, triangles: times(triangles) as usize };
+        if times(vertices).max(times(3 * triangles)) > u64::from(u32::MAX) {
+            return Err(too_large.into());
         }
         let places = self.places()?;
-        let mut all = Copies::new(mesh, places.len());
+        let mut all = Copies::new(mesh, places.len()).map_err(|_| too_large)?;
         for place in places {
             all.add(place.apply(mesh)?);
         }
@@ -167,6 +179,9 @@ impl Pattern {
 /// Places in equal steps along a broken line.
 fn along(line: &[[f64; 3]], count: u32, turn: bool) -> Result<Vec<Place>, Error> {
     let between = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| b[k] - a[k]);
+    // Segments without length have no direction.
+    let mut line = line.to_vec();
+    line.dedup();
     let lengths: Vec<f64> =
         line.windows(2).map(|ends| between(ends[0], ends[1])).map(|[x, y, z]| x.hypot(y).hypot(z)).collect();
     let whole: f64 = lengths.iter().sum();
@@ -180,7 +195,7 @@ fn along(line: &[[f64; 3]], count: u32, turn: bool) -> Result<Vec<Place>, Error>
     let mut places = Vec::new();
     for k in 0..count {
         let at = whole * f64::from(k) / f64::from(steps);
-        while segment + 1 < lengths.len() && (at > before + lengths[segment] || lengths[segment] == 0.0) {
+        while segment + 1 < lengths.len() && at > before + lengths[segment] {
             before += lengths[segment];
             segment += 1;
         }
@@ -223,14 +238,14 @@ struct Copies<'a> {
 }
 
 impl<'a> Copies<'a> {
-    fn new(original: &'a Mesh, count: usize) -> Self {
+    fn new(original: &'a Mesh, count: usize) -> Result<Self, TryReserveError> {
         let mut mesh = Mesh::default();
-        mesh.positions.reserve_exact(count * original.positions.len());
-        mesh.triangles.reserve_exact(count * original.triangles.len());
+        mesh.positions.try_reserve_exact(count * original.positions.len())?;
+        mesh.triangles.try_reserve_exact(count * original.triangles.len())?;
         mesh.groups.list.clone_from(&original.groups.list);
         mesh.attributes.clone_from(&original.attributes);
         mesh.attributes.iter_mut().for_each(|attribute| attribute.of_corner.clear());
-        Self { original, mesh }
+        Ok(Self { original, mesh })
     }
 
     fn add(&mut self, copy: Mesh) {
@@ -329,6 +344,17 @@ mod tests {
             [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]].map(|[x, y]| [x, y, 0.0]).to_vec();
         let closed = Pattern::Along { line: ring, count: 4, turn: false }.repeat(&rod).unwrap();
         assert_eq!(middles(&closed), [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]);
+    }
+
+    #[test]
+    fn the_last_copy_turns_with_the_line_though_its_end_is_there_twice() {
+        let rod = primitives::cuboid([-0.5, -0.1, -0.1], [0.5, 0.1, 0.1]).unwrap();
+        for count in 2..100 {
+            let line = vec![[0.0; 3], [0.0, 0.9, 0.0], [0.0, 0.9, 0.0]];
+            let all = Pattern::Along { line, count, turn: true }.repeat(&rod).unwrap();
+            let last = Mesh::new(all.positions[all.positions.len() - 8..].to_vec(), rod.triangles.clone());
+            assert!((last.bounds().unwrap().size()[1] - 1.0).abs() < 1e-12, "{count} copies");
+        }
     }
 
     #[test]

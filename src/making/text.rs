@@ -82,8 +82,8 @@ impl Lettering {
     /// ```
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if a length is not positive and finite, the font lacks a character, there is nothing to be seen of
-    /// the text, or an outline of a letter crosses itself.
+    /// [`Error::InvalidArgument`] if a length is not positive and finite, the font lacks a character or its outline, there is nothing
+    /// to be seen of the text, or an outline of a letter crosses itself.
     pub fn mesh(&self, text: &str, font: &Font) -> Result<Mesh, Error> {
         let tolerance = self.tolerance.unwrap_or(self.size * 1e-3);
         for (name, length) in [("size", self.size), ("depth", self.depth), ("tolerance", tolerance)] {
@@ -103,8 +103,7 @@ impl Lettering {
                 TextAlign::Right => -width,
             };
             for (glyph, character, x) in glyphs {
-                let mut outline = Outline { tolerance: tolerance / scale, loops: Vec::new(), at: [0.0; 2] };
-                let _ = face.outline_glyph(glyph, &mut outline);
+                let outline = Outline::of(&face, glyph, character, tolerance / scale)?;
                 let place = [left + x, -step * number as f64];
                 let loops = outline.finished(|[x, y]| [(x + place[0]) * scale, (y + place[1]) * scale]);
                 if !loops.is_empty() {
@@ -176,23 +175,40 @@ fn set(line: &str, face: &Face<'_>) -> Result<(Vec<Placed>, f64), Error> {
     Ok((glyphs, x))
 }
 
-/// One letter as a prism. Outlines that cross each other are added up by their windings.
+/// Whether a character is there without being seen: blanks, marks for breaks and joins, and what chooses between pictures.
+fn is_blank(character: char) -> bool {
+    character.is_whitespace()
+        || character.is_control()
+        || matches!(
+            character,
+            '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{180b}'..='\u{180f}'
+                | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{2800}' | '\u{3164}'
+                | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{ffa0}' | '\u{e0000}'..='\u{e0fff}'
+        )
+}
+
+/// One letter as a prism. Outlines that cross each other, or lie in each other and run the same way, are added up by their windings.
 fn letter(loops: &[Vec<[f64; 2]>], depth: f64, character: char) -> Result<Mesh, Error> {
+    // Both areas are right to this; an outline within another one makes more.
+    const SAME: f64 = 1e-9;
+    let areas: Vec<f64> = loops.iter().map(|outline| signed_area(outline)).collect();
     if let Ok(mesh) = prism(loops, 0.0, depth) {
-        return Ok(mesh);
+        // By parity a loop in a loop is a hole. It is one by winding too if it runs the other way, and then their areas say so.
+        let by_winding = areas.iter().sum::<f64>().abs() * depth;
+        let by_parity = mesh.volume();
+        if (by_winding - by_parity).abs() <= SAME * by_parity {
+            return Ok(mesh);
+        }
     }
     let mut all = Mesh::default();
-    for outline in loops {
+    for (outline, area) in loops.iter().zip(areas) {
         let one = prism(std::slice::from_ref(outline), 0.0, depth).map_err(|error| {
             Error::InvalidArgument(format!(
                 "text: an outline of the letter '{character}' crosses itself: {error}"
             ))
         })?;
-        let next = |k: usize| outline[(k + 1) % outline.len()];
-        let doubled: f64 =
-            (0..outline.len()).map(|k| outline[k][0] * next(k)[1] - outline[k][1] * next(k)[0]).sum();
         // (TrueType's outlines run clockwise.)
-        all.append(&if doubled < 0.0 { one } else { one.reversed() })?;
+        all.append(&if area < 0.0 { one } else { one.reversed() })?;
     }
     if all.volume() < 0.0 {
         all = all.reversed();
@@ -201,18 +217,51 @@ fn letter(loops: &[Vec<[f64; 2]>], depth: f64, character: char) -> Result<Mesh, 
     Ok(options.resolve(&Solid::try_from(all)?)?.into_solid().into_mesh())
 }
 
+/// The area within a polygon, negative where it runs clockwise. (Seen from its first point, so that places far away lose nothing.)
+fn signed_area(outline: &[[f64; 2]]) -> f64 {
+    let Some(&[x, y]) = outline.first() else { return 0.0 };
+    let from_first = |[a, b]: [f64; 2]| [a - x, b - y];
+    let doubled = outline.windows(2).map(|ends| {
+        let [[a, b], [c, d]] = [from_first(ends[0]), from_first(ends[1])];
+        a * d - b * c
+    });
+    doubled.sum::<f64>() / 2.0
+}
+
 /// Polygons of outlines as they are drawn.
 struct Outline {
     /// In units of the font.
     tolerance: f64,
     loops: Vec<Vec<[f64; 2]>>,
     at: [f64; 2],
+    points: usize,
 }
 
 impl Outline {
+    /// The most points of a letter: a font may put one glyph together from itself thousands of times over.
+    const MOST: usize = 1_000_000;
+
+    /// What a font draws for a character. Only blanks may have no outline, as pictures in colour have none either.
+    fn of(face: &Face<'_>, glyph: GlyphId, character: char, tolerance: f64) -> Result<Self, Error> {
+        let mut outline = Self { tolerance, loops: Vec::new(), at: [0.0; 2], points: 0 };
+        let is_whole = face.outline_glyph(glyph, &mut outline).is_some();
+        let letter = || format!("'{character}' (U+{:04X})", u32::from(character));
+        if outline.points > Self::MOST {
+            return invalid(format!("the letter {} has more than {} points", letter(), Self::MOST));
+        }
+        if !is_whole && !(outline.loops.is_empty() && is_blank(character)) {
+            return invalid(format!(
+                "the font has no outline of the character {}, or one that is damaged; take another font",
+                letter()
+            ));
+        }
+        Ok(outline)
+    }
+
     fn to(&mut self, point: [f64; 2]) {
         self.at = point;
-        if let Some(points) = self.loops.last_mut() {
+        self.points += 1;
+        if let Some(points) = self.loops.last_mut().filter(|_| self.points <= Self::MOST) {
             points.push(point);
         }
     }
@@ -222,6 +271,8 @@ impl Outline {
         // A letter with more points than that on one curve is none.
         const MOST: f64 = 1000.0;
         let parts = (bend / (8.0 * self.tolerance)).sqrt().ceil().clamp(1.0, MOST) as u32;
+        // (Where the tolerance underflows, zero by zero is no number, and becomes 0.)
+        let parts = parts.max(1);
         for k in 1..=parts {
             self.to(point(f64::from(k) / f64::from(parts)));
         }
@@ -243,7 +294,9 @@ impl Outline {
 
 impl OutlineBuilder for Outline {
     fn move_to(&mut self, x: f32, y: f32) {
-        self.loops.push(Vec::new());
+        if self.points < Self::MOST {
+            self.loops.push(Vec::new());
+        }
         self.to([x.into(), y.into()]);
     }
 
@@ -344,6 +397,40 @@ mod tests {
             let mesh = letter(&[square(0.0, clockwise), square(1.0, clockwise)], 1.0, 'x').unwrap();
             assert_eq!(Solid::try_from(mesh).unwrap().volume(), 6.0);
         }
+    }
+
+    #[test]
+    fn outlines_within_others_are_holes_if_they_run_the_other_way() {
+        let square = |low: f64, high: f64| vec![[low, low], [high, low], [high, high], [low, high]];
+        let reversed = |mut points: Vec<[f64; 2]>| {
+            points.reverse();
+            points
+        };
+        let volume = |loops: &[Vec<[f64; 2]>]| letter(loops, 1.0, 'x').unwrap().volume();
+        assert_eq!(volume(&[square(0.0, 4.0), reversed(square(1.0, 3.0))]), 12.0);
+        assert_eq!(volume(&[square(0.0, 4.0), square(1.0, 3.0)]), 16.0);
+        assert_eq!(volume(&[reversed(square(0.0, 4.0)), reversed(square(1.0, 3.0))]), 16.0);
+        // Side by side it does not matter.
+        assert_eq!(volume(&[square(0.0, 4.0), reversed(square(5.0, 6.0))]), 17.0);
+    }
+
+    #[test]
+    fn letters_without_an_outline_are_told_and_blanks_are_not() {
+        // The outline of A, as long as nothing: its end in `loca` is its beginning.
+        let Font { mut data } = font();
+        let table = |data: &[u8], tag: &[u8; 4]| {
+            let entry = data.chunks(4).position(|word| word == tag).unwrap();
+            u32::from_be_bytes(data[4 * entry + 8..4 * entry + 12].try_into().unwrap()) as usize
+        };
+        let (head, loca) = (table(&data, b"head"), table(&data, b"loca"));
+        let size = if data[head + 51] == 0 { 2 } else { 4 };
+        let glyph = usize::from(font().face().unwrap().glyph_index('A').unwrap().0);
+        let start = loca + size * glyph;
+        data.copy_within(start..start + size, start + size);
+        let broken = Font::new(data).unwrap();
+        let told = Lettering::new(10.0, 1.0).mesh("HAH", &broken).unwrap_err().to_string();
+        assert!(told.contains("no outline of the character 'A' (U+0041)"), "{told}");
+        assert!(Lettering::new(10.0, 1.0).mesh("H H", &broken).is_ok());
     }
 
     #[test]

@@ -1,9 +1,8 @@
 //! Moments of inertia of what a mesh encloses.
 //!
 //! The second moments of a tetrahedron (o, a, b, c) are its volume over 20 times the sum of x_i x_j over its corners and over
-//! their sum; with o, the middle of the bounds, at the origin that is V / 20 (a a' + b b' + c c' + s s'), s = a + b + c
-//! (Eberly, Polyhedral Mass Properties, 2002; Blow and Binstock 2004). They are added up with the volume's signs, and moved to
-//! the centroid by Steiner's rule.
+//! their sum; with o, the centroid, at the origin that is V / 20 (a a' + b b' + c c' + s s'), s = a + b + c
+//! (Eberly, Polyhedral Mass Properties, 2002; Blow and Binstock 2004). They are added up with the volume's signs.
 
 use super::{Mesh, cross};
 use crate::parallel::map_chunks;

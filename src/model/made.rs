@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value};
 
-use super::fault;
+use super::{fault, take};
 use crate::making::{self, Drain, Pattern};
 use crate::{Control, Error, Mesh, Solid};
 
@@ -72,9 +72,7 @@ pub(super) fn parse(
         "minkowski" => Made::Minkowski,
         "offset" => Made::Offset(length(object, "distance")?),
         "hollow" => {
-            let drains = object.remove("drains").unwrap_or_else(|| Value::Array(Vec::new()));
-            let drains =
-                serde_json::from_value(drains).map_err(|error| fault(format!("`drains`: {error}")))?;
+            let drains = take(object, "drains")?.unwrap_or_default();
             Made::Hollow(length(object, "wall")?, drains)
         }
         _ => {
@@ -98,8 +96,7 @@ pub(super) fn parse(
 
 /// A number of a node.
 fn length(object: &mut Map<String, Value>, key: &str) -> Result<f64, Error> {
-    let value = object.remove(key).and_then(|value| value.as_f64());
-    value.ok_or_else(|| fault(format!("`{key}`, a number, is missing")))
+    take(object, key)?.ok_or_else(|| fault(format!("`{key}`, a number, is missing")))
 }
 
 impl Made {
@@ -122,7 +119,11 @@ impl Made {
                 let [body, tool] = operands else { return Err(missing()) };
                 Ok(making::minkowski_sum(body, tool, control)?.into_mesh())
             }
-            Self::Pattern(pattern) => pattern.repeat(operands.first().ok_or_else(missing)?.mesh()),
+            Self::Pattern(pattern) => {
+                let mesh = operands.first().ok_or_else(missing)?.mesh();
+                let _copies = control.reserve(pattern.memory(mesh))?;
+                pattern.repeat(mesh)
+            }
             Self::Offset(distance) => {
                 let operand = operands.first().ok_or_else(missing)?;
                 Ok(making::offset(operand, *distance, tolerance, control)?.solid.into_mesh())

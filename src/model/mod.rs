@@ -53,6 +53,8 @@ use made::Made;
 #[cfg(feature = "parametric")]
 use parametric::Parametric;
 use primitive::Primitive;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
 
 /// Nothing is a cage in a build without the feature.
 #[cfg(not(feature = "subdivision"))]
@@ -148,7 +150,7 @@ enum Kind {
     /// A leaf of a kind of the caller's own.
     Custom {
         kind: String,
-        value: serde_json::Value,
+        value: Value,
     },
 }
 
@@ -215,6 +217,16 @@ impl Model {
 /// A fault of the model file itself.
 fn fault(what: impl Into<String>) -> Error {
     Error::Model(what.into())
+}
+
+/// What stands at a key of a node, which is taken out of it.
+fn take<T: DeserializeOwned>(object: &mut Map<String, Value>, key: &str) -> Result<Option<T>, Error> {
+    match object.remove(key) {
+        None | Some(Value::Null) => Ok(None),
+        Some(value) => {
+            serde_json::from_value(value).map(Some).map_err(|error| fault(format!("`{key}`: {error}")))
+        }
+    }
 }
 
 /// What is said of a kind that this build cannot read.

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Deserialize;
-use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 #[cfg(feature = "parametric")]
@@ -12,7 +11,9 @@ use super::contour::PlaneRegion;
 use super::half_space::HalfSpace;
 #[cfg(feature = "parametric")]
 use super::parametric::{self, Curves, Described, Parametric};
-use super::{Defaults, Kind, Mode, Model, Node, contour, fault, made, primitive, references, transform};
+use super::{
+    Defaults, Kind, Mode, Model, Node, contour, fault, made, primitive, references, take, transform,
+};
 use crate::Error;
 use crate::boolean::Operation;
 use crate::field::{Formula, System, named_system};
@@ -36,13 +37,43 @@ fn within(label: &str) -> impl Fn(Error) -> Error + '_ {
     move |error| error.in_node(label)
 }
 
-fn take<T: DeserializeOwned>(object: &mut Map<String, Value>, key: &str) -> Result<Option<T>, Error> {
-    match object.remove(key) {
-        None | Some(Value::Null) => Ok(None),
-        Some(value) => {
-            serde_json::from_value(value).map(Some).map_err(|error| fault(format!("`{key}`: {error}")))
+/// A node's keys that all kinds have; its kind is still to come.
+fn common(object: &mut Map<String, Value>, label: &str) -> Result<Node, Error> {
+    let _: (Option<String>, Option<Value>) = (take(object, "name")?, take(object, "about")?);
+    let mode: Option<String> = take(object, "evaluate")?;
+    let mode = match mode.as_deref() {
+        None => None,
+        Some("exact") => Some(Mode::Exact),
+        Some("field") => Some(Mode::Field),
+        Some("freeform") => Some(Mode::FreeForm),
+        Some(other) => {
+            return Err(fault(format!("`evaluate` is `exact`, `field` or `freeform`, not `{other}`")));
         }
+    };
+    let extrude = match take(object, "extrude")? {
+        None => None,
+        Some(Height::Upward(height)) => Some([0.0, height]),
+        Some(Height::Between(between)) => Some(between),
+    };
+    if extrude.is_some_and(|[low, high]| !(low < high && (high - low).is_finite())) {
+        return Err(fault("`extrude` needs a positive height, or two heights, the lower first"));
     }
+    let steps: Vec<transform::Step> = take(object, "transform")?.unwrap_or_default();
+    let system: Option<String> = take(object, "system")?;
+    let node = Node {
+        label: label.to_owned(),
+        kind: Kind::Reference(String::new(), usize::MAX),
+        extrude,
+        transform: transform::of(&steps).map_err(fault)?,
+        mode,
+        system: system.map(|name| system_of(&name)).transpose()?,
+        tolerance: take(object, "tolerance")?,
+        bounds: take(object, "bounds")?,
+        clip: take(object, "clip")?.unwrap_or(false),
+    };
+    checked_tolerance(node.tolerance)?;
+    checked_bounds(node.bounds)?;
+    Ok(node)
 }
 
 /// The file that a node names.
@@ -172,6 +203,12 @@ impl ModelReader<'_> {
         Ok(self.nodes.len() - 1)
     }
 
+    /// Adds the operands of the node at `path`, each with its place in it.
+    fn add_all(&mut self, operands: Vec<(String, Value)>, path: &str) -> Result<Vec<usize>, Error> {
+        let path = path.trim_end_matches('/');
+        operands.into_iter().map(|(place, value)| self.add(value, &format!("{path}/{place}"))).collect()
+    }
+
     fn node(&mut self, value: Value, label: &str, path: &str) -> Result<Node, Error> {
         match value {
             Value::String(text) => {
@@ -190,46 +227,7 @@ impl ModelReader<'_> {
     }
 
     fn object(&mut self, mut object: Map<String, Value>, label: &str, path: &str) -> Result<Node, Error> {
-        let common = |object: &mut Map<String, Value>| -> Result<Node, Error> {
-            let _: (Option<String>, Option<Value>) = (take(object, "name")?, take(object, "about")?);
-            let mode: Option<String> = take(object, "evaluate")?;
-            let mode = match mode.as_deref() {
-                None => None,
-                Some("exact") => Some(Mode::Exact),
-                Some("field") => Some(Mode::Field),
-                Some("freeform") => Some(Mode::FreeForm),
-                Some(other) => {
-                    return Err(fault(format!(
-                        "`evaluate` is `exact`, `field` or `freeform`, not `{other}`"
-                    )));
-                }
-            };
-            let extrude = match take(object, "extrude")? {
-                None => None,
-                Some(Height::Upward(height)) => Some([0.0, height]),
-                Some(Height::Between(between)) => Some(between),
-            };
-            if extrude.is_some_and(|[low, high]| !(low < high && (high - low).is_finite())) {
-                return Err(fault("`extrude` needs a positive height, or two heights, the lower first"));
-            }
-            let steps: Vec<transform::Step> = take(object, "transform")?.unwrap_or_default();
-            let system: Option<String> = take(object, "system")?;
-            let node = Node {
-                label: label.to_owned(),
-                kind: Kind::Reference(String::new(), usize::MAX),
-                extrude,
-                transform: transform::of(&steps).map_err(fault)?,
-                mode,
-                system: system.map(|name| system_of(&name)).transpose()?,
-                tolerance: take(object, "tolerance")?,
-                bounds: take(object, "bounds")?,
-                clip: take(object, "clip")?.unwrap_or(false),
-            };
-            checked_tolerance(node.tolerance)?;
-            checked_bounds(node.bounds)?;
-            Ok(node)
-        };
-        let mut node = common(&mut object).map_err(within(label))?;
+        let mut node = common(&mut object, label).map_err(within(label))?;
         let kind: Option<String> = take(&mut object, "kind").map_err(within(label))?;
         let operation: Option<String> = take(&mut object, "operation").map_err(within(label))?;
         let name = match (kind, operation) {
@@ -324,9 +322,7 @@ impl ModelReader<'_> {
         path: &str,
     ) -> Result<Kind, Error> {
         let (made, operands) = made::parse(kind, object).map_err(within(label))?;
-        let path = path.trim_end_matches('/');
-        let operands = operands.into_iter().map(|(place, value)| self.add(value, &format!("{path}/{place}")));
-        Ok(Kind::Made(made, operands.collect::<Result<Vec<usize>, Error>>()?))
+        Ok(Kind::Made(made, self.add_all(operands, path)?))
     }
 
     /// The solid or region described by a JSON file.
@@ -386,11 +382,7 @@ impl ModelReader<'_> {
             let wanted = if name == "complement" { "exactly one operand" } else { "at least one operand" };
             return Err(fault(format!("`{name}` needs {wanted}, but has {}", operands.len())).in_node(label));
         }
-        let path = path.trim_end_matches('/');
-        let operands = operands
-            .into_iter()
-            .map(|(place, value)| self.add(value, &format!("{path}/{place}")))
-            .collect::<Result<Vec<usize>, Error>>()?;
+        let operands = self.add_all(operands, path)?;
         Ok(match operation_of(name) {
             Some(operation) => Kind::Operation(operation, operands),
             None => Kind::Complement(operands[0]),

@@ -2,7 +2,8 @@
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use trisect::{BooleanOptions, Cell, Error, Mesh, MeshError, Solid, primitives};
+use trisect::mesh::Polygons;
+use trisect::{BooleanOptions, Cell, Error, Mesh, MeshError, Solid, Solidify, primitives};
 
 use crate::common::{cuboid, solid};
 
@@ -62,6 +63,17 @@ fn sheets_part_a_solid() {
             assert_eq!(sides.len(), 2);
             assert!(sides[0] == sides[1], "sheet {number}");
         }
+    }
+}
+
+#[test]
+fn sizes_far_from_one_are_parted_too() {
+    for size in [1e-90, 1e90] {
+        let scaled = |mesh: Mesh| mesh.scaled([size; 3]).expect("a size");
+        let block = solid(scaled(primitives::cuboid([-1.0; 3], [1.0; 3]).expect("a box")));
+        assert_eq!(split(&block, &[&scaled(wave(4, 2.0, 0.25))]).len(), 2, "{size:e}");
+        let made = block.mesh().solidify(&Solidify::new()).expect("a solid");
+        assert_eq!(made.solid.volume(), block.volume(), "{size:e}");
     }
 }
 
@@ -152,6 +164,82 @@ fn curves_are_drawn_on_both() {
         let common = edges(&on_a.mesh).iter().filter(|edge| of_b.binary_search(edge).is_ok()).count();
         assert!(common > 3, "seed {seed}: {common}");
     }
+}
+
+#[test]
+fn curves_that_end_on_two_borders_are_drawn() {
+    let square = |corners: [[f64; 3]; 4]| Mesh::new(corners.to_vec(), vec![[0, 1, 2], [0, 2, 3]]);
+    let flat = square([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]);
+    // Upright, with borders that cross those of the other; and with one that lies on it.
+    for low in [-1.0, 0.0] {
+        let upright = square([[-1.0, 0.0, low], [1.0, 0.0, low], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]]);
+        for (a, b) in [(&flat, &upright), (&upright, &flat)] {
+            let made = BooleanOptions::new().imprint(a, b).expect("curves");
+            for (made, given) in made.iter().zip([a, b]) {
+                assert_eq!((made.incomplete, made.mesh.area()), (0, given.area()));
+                let on_curve = |v: u32| {
+                    let [_, y, z] = made.mesh.positions[v as usize];
+                    y == 0.0 && z == 0.0
+                };
+                let sides = made.mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+                let mut drawn: Vec<[f64; 2]> = sides
+                    .filter(|side| side.iter().all(|&v| on_curve(v)))
+                    .map(|side| side.map(|v| made.mesh.positions[v as usize][0]))
+                    .map(|[u, v]| [u.min(v), u.max(v)])
+                    .collect();
+                drawn.sort_by(|x, y| x.partial_cmp(y).expect("numbers"));
+                drawn.dedup();
+                assert_eq!(drawn, [[-1.0, 0.0], [0.0, 1.0]], "from {low}");
+            }
+        }
+    }
+}
+
+#[test]
+fn origins_are_triangles_as_given() {
+    // A solid that crosses itself, and a sheet the first triangle of which is none.
+    let boxes = [([0.0; 3], [2.0; 3]), ([1.0; 3], [3.0; 3])];
+    let boxes = boxes.map(|(low, high)| primitives::cuboid(low, high).expect("a box"));
+    let both = solid(Mesh::merged(&boxes).expect("few"));
+    let corners = vec![[-1.0, -1.0, 1.5], [4.0, -1.0, 1.5], [4.0, 4.0, 1.5], [-1.0, 4.0, 1.5]];
+    let sheet = Mesh::new(corners, vec![[1, 1, 2], [0, 1, 2], [0, 2, 3]]);
+    let cells = BooleanOptions::new().split(&both, &[&sheet]).expect("cells");
+    assert_eq!(cells.len(), 2);
+    for cell in &cells {
+        let mesh = cell.solid.mesh();
+        for (origin, corners) in cell.origins.iter().zip(&mesh.triangles) {
+            let given = [both.mesh(), &sheet][origin.operand as usize];
+            let of = given.triangles[origin.triangle as usize];
+            assert!(of[0] != of[1]);
+            let is_level = |of: &Mesh, corners: [u32; 3], axis: usize, at: f64| {
+                corners.iter().all(|&v| of.positions[v as usize][axis] == at)
+            };
+            let at = given.positions[of[0] as usize];
+            let axis = (0..3).find(|&axis| is_level(given, of, axis, at[axis])).expect("axis-aligned");
+            assert!(is_level(mesh, *corners, axis, at[axis]), "{origin:?}");
+        }
+    }
+    let made = BooleanOptions::new().imprint(&sheet, both.mesh()).expect("curves");
+    assert!(made[0].origins.iter().all(|&triangle| triangle == 1 || triangle == 2));
+}
+
+#[test]
+fn faces_that_nothing_parts_stay_polygons() {
+    let mut block = primitives::cuboid([-1.0; 3], [1.0; 3]).expect("a box");
+    block.polygons.of_triangle = (0..12).map(|triangle| triangle / 2).collect();
+    block.polygons.triangles = vec![2; 6];
+    let whole = |mesh: &Mesh| mesh.polygons.of_triangle.iter().filter(|&&of| of != Polygons::NONE).count();
+    let sheet = wave(6, 2.0, 0.0);
+    for cell in split(&solid(block.clone()), &[&sheet]) {
+        assert_eq!(
+            (whole(cell.solid.mesh()), cell.origins.len()),
+            (2, cell.solid.mesh().polygons.of_triangle.len())
+        );
+    }
+    let [made, _] = BooleanOptions::new().imprint(&block, &sheet).expect("curves");
+    assert_eq!((whole(&made.mesh), made.mesh.triangles.len()), (4, made.mesh.polygons.of_triangle.len()));
+    let made = block.solidify(&Solidify::new()).expect("a solid");
+    assert_eq!(whole(made.solid.mesh()), 12);
 }
 
 fn open_edges(mesh: &Mesh) -> usize {

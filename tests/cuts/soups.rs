@@ -55,6 +55,17 @@ fn what_slats_enclose_is_a_box() {
 }
 
 #[test]
+fn origins_tell_what_was_turned() {
+    let mut soup = primitives::cuboid([0.0; 3], [1.0; 3]).expect("a box");
+    soup.triangles[3].swap(0, 1);
+    let made = solidified(&soup);
+    assert_eq!(made.report.readied.turned, 1);
+    let reversed: Vec<u32> =
+        made.origins.iter().filter(|origin| origin.reversed).map(|origin| origin.triangle).collect();
+    assert_eq!(reversed, [3]);
+}
+
+#[test]
 fn walls_that_end_exactly_on_a_floor_are_closed() {
     // The sides of a box stand on a floor that is wider, under a roof that is wider, and have no vertex in common with them.
     let mut soup = primitives::cuboid([0.0; 3], [1.0, 1.0, 3.0]).expect("a box");

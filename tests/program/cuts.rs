@@ -229,6 +229,25 @@ fn surfaces_part_a_solid_or_are_refused() {
 }
 
 #[test]
+fn what_parts_an_input_is_read_as_it_is_named() {
+    let folder = folder();
+    // (An input that is no file is made, not read; what parts it is a file all the same.)
+    square(-9.0, 9.0, 0.5).save(folder.path("through.off")).expect("written");
+    folder.run("split box:2 --sheet through.off -o cell.off").exits(0).says("2 parts");
+    folder.run("split box:2 --by block.off -o cell.off").exits(0).says("reverse:");
+    // A part of a file.
+    let text = "v -9 -9 0.5\nv 9 -9 0.5\nv 9 9 0.5\nv -9 9 0.5\nv -9 -9 -9\nv 0 0 0.25\nv 9 9 -9\n\
+                o floor\nf 1 2 3\nf 1 3 4\no short\nf 5 6 7\n";
+    std::fs::write(folder.path("sheets.obj"), text).expect("written");
+    folder.run("split box:2 --sheet sheets.obj#floor -o cell.off").exits(0).says("2 parts");
+    folder.run("split box:2 --sheet sheets.obj#none -o cell.off").exits(3).says("none");
+    // The format of standard input is not that of a file.
+    square(-9.0, 9.0, 0.5).save(folder.path("through.stl")).expect("written");
+    let bytes = std::fs::read(folder.path("block.off")).expect("a file");
+    folder.run_with("split - --format off --sheet through.stl -o cell.off", &bytes).exits(0).says("2 parts");
+}
+
+#[test]
 fn curves_are_drawn_on_two_files() {
     let folder = folder();
     square(-9.0, 9.0, 1.0).save(folder.path("sheet.off")).expect("written");

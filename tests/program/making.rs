@@ -6,6 +6,10 @@ use super::common::program::Folder;
 
 const FONT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/fonts/DejaVuSans-Latin.ttf");
 
+/// A tetrahedron in two groups.
+const NAMED: &str =
+    "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\ng side\nf 1 3 2\nf 1 2 4\ng other\nf 2 3 4\nf 3 1 4\n";
+
 fn volume(object: &Value) -> f64 {
     object["result"]["volume"].as_f64().expect("a volume")
 }
@@ -19,6 +23,8 @@ fn hulls_of_one_and_of_several() {
     assert_eq!((volume(&both.json()), both.json()["result"]["vertices"].as_u64()), (48.0, Some(8)));
     folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     folder.run("hull flat.obj -o x.off").exits(3).says("one plane");
+    folder.write("named.obj", NAMED);
+    folder.run("hull named.obj -o hull.off").exits(0).says("groups and materials not kept");
     folder.run("hull box:1").exits(1).says("nowhere to put the result");
     assert!(!folder.exists("x.off"));
 }
@@ -57,6 +63,11 @@ fn offsets_and_shells_say_how_near_they_are() {
     folder.run("hollow box:2 --wall 2 -o x.stl").exits(3).says("no room inside");
     folder.run("hollow box:2 -o x.stl").exits(1).says("--wall");
     folder.run("offset box:2 --distance 0 -o x.stl").exits(3).says("not zero");
+    folder.write("named.obj", NAMED);
+    folder
+        .run("offset named.obj --distance 0.2 --tolerance 0.2 -o named.off")
+        .exits(0)
+        .says("named.obj: groups and materials not kept");
 }
 
 #[test]
@@ -79,6 +90,11 @@ fn patterns_are_one_operand() {
     assert_eq!((volume(&chain), chain["result"]["shells"].as_u64()), (24.0, Some(1)));
     folder.run("union box:1 --pattern points:none.csv box:1 -o x.off").exits(2).says("none.csv");
     folder.run("union box:1 --pattern grid:0x1:1,1 box:1 -o x.off").exits(1).says("number of copies");
+    folder
+        .run("union box:1 --pattern linear:9999999:2,0,0 box:1 -o x.off --memory 100M")
+        .exits(4)
+        .says("limit");
+    folder.run("union box:1 --pattern linear:999999999:2,0,0 box:1 -o x.off").says("at most 10000000");
 }
 
 #[test]

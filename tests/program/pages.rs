@@ -28,6 +28,7 @@ fn a_page_holds_the_model_and_asks_for_nothing() {
     assert_eq!(folder.names(), ["a.obj", "b.obj", "result.html"]);
     let page = folder.read("result.html");
     // 1. Nothing is fetched: there is no address but those in the library's own text, which is packed.
+    assert!(page.contains("default-src 'none'"), "not even by a model whose pictures have addresses");
     for word in ["src=", "href=", "http:", "https:", "@import", "url(", "{{"] {
         assert!(!page.contains(word), "{word}");
     }

@@ -54,8 +54,7 @@ impl Expression {
     pub(crate) fn as_operation(&self) -> Option<(Operation, Vec<usize>)> {
         let mut list = Vec::new();
         let operation = match self {
-            Self::Operand(_) => Operation::Union,
-            Self::Union(_) => Operation::Union,
+            Self::Operand(_) | Self::Union(_) => Operation::Union,
             Self::Intersection(_) => Operation::Intersection,
             Self::Difference(_) => Operation::Difference,
             Self::SymmetricDifference(_) => Operation::SymmetricDifference,

@@ -17,6 +17,8 @@ pub struct ExpressionError {
 
 /// The deepest nesting of parentheses that is read.
 const DEEPEST: usize = 200;
+/// The most changes between unions and differences that are read: each puts what is to the left of it in another set.
+const MOST_CHANGES: usize = 500;
 
 impl Expression {
     /// Reads an expression. Operands are called by `names`, by their places. `+` or `|` is a union, `-` a difference, `^` a
@@ -37,7 +39,15 @@ impl Expression {
     pub fn parse(text: &str, names: &[impl AsRef<str>]) -> Result<Self, ExpressionError> {
         let place_of = |name: &str| names.iter().position(|known| known.as_ref() == name);
         let known = || names.iter().map(AsRef::as_ref).collect::<Vec<_>>().join(", ");
-        Parser { text: text.chars().collect(), at: 0, depth: 0, place_of: &place_of, known: &known }.whole()
+        Parser {
+            text: text.chars().collect(),
+            at: 0,
+            depth: 0,
+            changes: 0,
+            place_of: &place_of,
+            known: &known,
+        }
+        .whole()
     }
 }
 
@@ -55,6 +65,7 @@ struct Parser<'a> {
     text: Vec<char>,
     at: usize,
     depth: usize,
+    changes: usize,
     place_of: &'a dyn Fn(&str) -> Option<usize>,
     known: &'a dyn Fn() -> String,
 }
@@ -90,27 +101,30 @@ impl Parser<'_> {
     fn sums(&mut self) -> Result<Expression, ExpressionError> {
         let mut left = self.exclusive()?;
         loop {
-            if self.take('+') || self.take('|') {
-                let right = self.exclusive()?;
-                left = match left {
-                    Expression::Union(mut sets) => {
-                        sets.push(right);
-                        Expression::Union(sets)
-                    }
-                    left => Expression::Union(vec![left, right]),
-                };
-            } else if self.take('-') {
-                let right = self.exclusive()?;
-                left = match left {
-                    Expression::Difference(mut sets) => {
-                        sets.push(right);
-                        Expression::Difference(sets)
-                    }
-                    left => Expression::Difference(vec![left, right]),
-                };
-            } else {
+            let is_union = self.take('+') || self.take('|');
+            if !is_union && !self.take('-') {
                 return Ok(left);
             }
+            let right = self.exclusive()?;
+            left = match left {
+                Expression::Union(mut sets) if is_union => {
+                    sets.push(right);
+                    Expression::Union(sets)
+                }
+                Expression::Difference(mut sets) if !is_union => {
+                    sets.push(right);
+                    Expression::Difference(sets)
+                }
+                left => {
+                    let is_change = matches!(left, Expression::Union(_) | Expression::Difference(_));
+                    self.changes += usize::from(is_change);
+                    if self.changes > MOST_CHANGES {
+                        return Err(self.fault(format!("more than {MOST_CHANGES} changes between + and -")));
+                    }
+                    let sets = vec![left, right];
+                    if is_union { Expression::Union(sets) } else { Expression::Difference(sets) }
+                }
+            };
         }
     }
 
@@ -232,5 +246,7 @@ mod tests {
         assert!(fault("atleast(a, b)").contains("begins with a count"));
         let deep = format!("{}a{}", "(".repeat(100_000), ")".repeat(100_000));
         assert!(fault(&deep).contains("more than 200 parentheses"));
+        let changing = format!("a{}", "+b-a".repeat(100_000));
+        assert!(fault(&changing).contains("more than 500 changes"));
     }
 }

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use super::cells::{AROUND, Beside, Ground};
-use super::face_view::{Both, FaceView};
+use super::face_view::{Both, Crossing, FaceView};
 use super::pairs::FaceBoxes;
 use crate::Error;
 use crate::boolean::complex::Corner;
@@ -157,12 +157,7 @@ impl Search<'_> {
     }
 
     /// The sectors before and after a face along x, at a point of it.
-    fn along(
-        &self,
-        face: FaceId,
-        point: [f64; 3],
-        found: &mut Vec<super::face_view::Crossing>,
-    ) -> Option<[u32; 2]> {
+    fn along(&self, face: FaceId, point: [f64; 3], found: &mut Vec<Crossing>) -> Option<[u32; 2]> {
         let Ground { surfaces, crossings, .. } = self.sectors.ground;
         let [outer, inner]: Both = if crossings.of_face(face).is_empty() {
             self.sectors.side(face, 0, 0)

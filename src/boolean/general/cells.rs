@@ -16,14 +16,13 @@
 use super::cell_neighbours;
 use super::crossings::Crossings;
 use super::edges::{Edges, Side};
-use super::labels::Labels;
 use super::lines::Lines;
 use super::pairs::FaceBoxes;
 use super::segment_labels::{Quadrants, SegmentLabels};
 use super::surfaces::Surfaces;
 use super::walk::FaceLabels;
 use crate::Error;
-use crate::boolean::complex::ids::{FaceId, LabelId, SegmentId};
+use crate::boolean::complex::ids::{FaceId, LabelId, PointId, SegmentId};
 use crate::boolean::complex::predicates::Predicates;
 use crate::mesh::{Bounds, UnionFind};
 use crate::parallel::Runner;
@@ -137,14 +136,8 @@ impl<'a> Sectors<'a> {
             next += 1;
             LabelId::new(next)
         };
-        let mut faces = FaceLabels {
-            labels: Labels::new(),
-            of_face: vec![u32::MAX; count],
-            inner: vec![LabelId::NONE; count],
-            of_pieces: Vec::new(),
-            inner_of_pieces: Vec::new(),
-            starts: Vec::new(),
-        };
+        let (of_face, inner) = (vec![u32::MAX; count], vec![LabelId::NONE; count]);
+        let mut faces = FaceLabels { of_face, inner, ..FaceLabels::none() };
         for face in surfaces.faces() {
             if crossings.of_face(face).is_empty() {
                 faces.of_face[face.index()] = new().number();
@@ -161,7 +154,7 @@ impl<'a> Sectors<'a> {
                 start
             }));
         }
-        let mut segments = SegmentLabels { starts: Vec::new(), pieces: Vec::new() };
+        let mut segments = SegmentLabels::none();
         for (id, _) in crossings.iter() {
             segments.starts.push(segments.pieces.len() as u32);
             for _ in 0..=lines.on_segment(id).len() {
@@ -286,7 +279,7 @@ impl<'a> Sectors<'a> {
         let mut rays: Vec<Ray> = Vec::new();
         for &id in crossings.of_face(face) {
             let segment = crossings.segment(id);
-            let begins = |point: crate::boolean::complex::ids::PointId| point.number() == corner.number();
+            let begins = |point: PointId| point.number() == corner.number();
             let from_tail = begins(segment.tail);
             if !from_tail && !begins(segment.head) {
                 continue;
@@ -336,5 +329,5 @@ struct Ray {
     is_first: bool,
     partner: FaceId,
     inside_left: bool,
-    end: crate::boolean::complex::ids::PointId,
+    end: PointId,
 }

@@ -3,7 +3,8 @@
 use super::cells::Beside;
 use super::face_view::{Both, FaceView};
 use crate::boolean::complex::ids::FaceId;
-use crate::mesh::cross;
+use crate::boolean::complex::predicates::Perturbed;
+use crate::mesh::{cross, scale};
 
 /// Lines that are laid across a cut face, at most. (Faces with more regions than that across are rare, and cells have other faces.)
 const MOST_LINES: usize = 48;
@@ -15,6 +16,7 @@ pub(crate) struct Strip {
     /// Its middle.
     pub(crate) at: [f64; 3],
     pub(crate) normal: [f64; 3],
+    /// Its area, in units that are the same for all strips.
     pub(crate) area: f64,
     /// Its width, or its height if that is less.
     pub(crate) extent: f64,
@@ -23,8 +25,9 @@ pub(crate) struct Strip {
 /// Visits strips of all regions of a face: one of a face that is not cut, else what is between the crossings of lines across it with
 /// its pieces. Nothing for a face without area.
 pub(crate) fn visit_strips(beside: &Beside<'_>, face: FaceId, mut visit: impl FnMut(Strip)) {
-    let corners = beside.ground.surfaces.positions(face);
-    let edge = |k: usize| std::array::from_fn(|axis| corners[k][axis] - corners[0][axis]);
+    let surfaces = beside.ground.surfaces;
+    let (corners, scale) = (surfaces.positions(face), scale::factor(surfaces.largest_coordinate()));
+    let edge = |k: usize| std::array::from_fn(|axis| scale * (corners[k][axis] - corners[0][axis]));
     let across = cross(edge(1), edge(2));
     let twice_area = across.iter().map(|x| x * x).sum::<f64>().sqrt();
     if !(twice_area > 0.0 && twice_area.is_finite()) {
@@ -34,7 +37,7 @@ pub(crate) fn visit_strips(beside: &Beside<'_>, face: FaceId, mut visit: impl Fn
     if beside.ground.crossings.of_face(face).is_empty() {
         let at = std::array::from_fn(|axis| (0..3).map(|k| corners[k][axis]).sum::<f64>() / 3.0);
         let beside = beside.side(face, 0, 0);
-        visit(Strip { beside, at, normal, area: 0.5 * twice_area, extent: twice_area.sqrt() });
+        visit(Strip { beside, at, normal, area: 0.5 * twice_area, extent: twice_area.sqrt() / scale });
         return;
     }
     // Lines halfway between the heights of points that follow on each other: between two such heights all regions are trapezia.
@@ -54,7 +57,7 @@ pub(crate) fn visit_strips(beside: &Beside<'_>, face: FaceId, mut visit: impl Fn
             (at[seen.x], at[seen.y]) = (x, y);
             let off = normal[seen.x] * (x - corners[0][seen.x]) + normal[seen.y] * (y - corners[0][seen.y]);
             at[axis] = corners[0][axis] - off / normal[axis];
-            let area = step as f64 * width * height / steep;
+            let area = step as f64 * (scale * width) * (scale * height) / steep;
             visit(Strip { beside, at, normal, area, extent: width.min(height) });
         }
     }

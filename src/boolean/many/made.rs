@@ -87,7 +87,7 @@ impl Made {
 }
 
 /// The polygons of the operands, on the triangles of the result that are as the operands have them.
-pub(super) fn whole_polygons(origins: &Origins, mesh: &Mesh, operands: &[&Mesh]) -> Polygons {
+pub(in crate::boolean) fn whole_polygons(origins: &Origins, mesh: &Mesh, operands: &[&Mesh]) -> Polygons {
     if operands.iter().all(|given| given.polygons.is_empty()) {
         return Polygons::default();
     }

@@ -1,14 +1,17 @@
 //! The curve in which two surfaces meet, on both, with nothing taken away.
 
-use super::{of_surface, without_needless};
+use super::Sheet;
 use crate::boolean::complex::ids::{FaceId, PointId};
+use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::arrangement::{Crossed, General};
+use crate::boolean::many::made::whole_polygons;
 use crate::boolean::many::options::BooleanOptions;
-use crate::exact::Projection;
+use crate::boolean::result::origins::Origins;
+use crate::exact::{Projection, collinear};
 use crate::mesh::{Descent, Run, carry};
 use crate::parallel::Runner;
 use crate::polygon::{Overlay, Triangulator};
-use crate::{Error, Mesh};
+use crate::{Error, Mesh, MeshError};
 
 /// A surface with the curve in which another meets it.
 #[derive(Clone, Debug)]
@@ -43,22 +46,24 @@ impl BooleanOptions {
     /// # Errors
     /// As [`trim`](Self::trim), of both.
     pub fn imprint(&self, a: &Mesh, b: &Mesh) -> Result<[Imprinted; 2], Error> {
-        for (number, surface) in [a, b].into_iter().enumerate() {
-            surface.check().map_err(|error| of_surface(error, number))?;
-        }
+        let sheet = |operand: usize, surface| {
+            let of_operand =
+                |error: MeshError| Error::from(error).of_operand(operand, format!("surface {}", operand + 1));
+            Sheet::new(surface).map_err(of_operand)
+        };
+        let sheets = [sheet(0, a)?, sheet(1, b)?];
         self.work(|_, runner| {
-            let meshes = [without_needless(a), without_needless(b)];
-            let crossed = Crossed::of_open(&[&meshes[0], &meshes[1]], runner)?;
+            let crossed = Crossed::of_open(&[&sheets[0].mesh, &sheets[1].mesh], runner)?;
             let general = General::without_labels(crossed, runner)?;
-            let [a, b] = [0, 1].map(|owner| imprinted(&general, owner, &meshes[owner as usize], runner));
+            let [a, b] = [0, 1].map(|owner| imprinted(&general, owner, &sheets[owner as usize], runner));
             Ok([a?, b?])
         })
     }
 }
 
 /// One of the surfaces.
-fn imprinted(general: &General, owner: u32, given: &Mesh, runner: Runner<'_>) -> Result<Imprinted, Error> {
-    let surfaces = &general.surfaces;
+fn imprinted(general: &General, owner: u32, of: &Sheet<'_>, runner: Runner<'_>) -> Result<Imprinted, Error> {
+    let (surfaces, given) = (&general.surfaces, &*of.mesh);
     let mut numbers = vec![u32::MAX; general.lines.point_count() as usize];
     let (mut positions, mut triangles, mut origins, mut incomplete) = (Vec::new(), Vec::new(), Vec::new(), 0);
     let mut drawing = Drawing::default();
@@ -96,6 +101,9 @@ fn imprinted(general: &General, owner: u32, given: &Mesh, runner: Runner<'_>) ->
         beyond: &|_, _, _| None,
     };
     mesh.attributes = carry(&descent, runner)?;
+    let origin = |&triangle: &u32| Origin { operand: 0, triangle, reversed: false };
+    mesh.polygons = whole_polygons(&Origins::from_iter(origins.iter().map(origin)), &mesh, &[given]);
+    origins.iter_mut().for_each(|origin| *origin = of.number[*origin as usize]);
     Ok(Imprinted { mesh, origins, incomplete })
 }
 
@@ -112,7 +120,8 @@ impl Drawing {
         let General { surfaces, lines, .. } = general;
         let seen = Projection::of(&surfaces.positions(face));
         // 1. The outline, and the lines within.
-        let (outline, within) = (outline(general, face), lines_within(general, face));
+        let within = lines_within(general, face);
+        let outline = outline(general, face, &within);
         // 2. Local numbers.
         let mut ids: Vec<PointId> = outline.iter().copied().chain(within.iter().flatten().copied()).collect();
         ids.sort_unstable();
@@ -146,26 +155,54 @@ impl Drawing {
     }
 }
 
-/// The points round a face.
-fn outline(general: &General, face: FaceId) -> Vec<PointId> {
+/// The points round a face. Of those of lines `within` it has what lies exactly on an open side: where two borders cross, the curve
+/// ends on both, but only one of them pierces the other surface. (A side between two faces is left alone, or they would come apart.)
+fn outline(general: &General, face: FaceId, within: &[[PointId; 2]]) -> Vec<PointId> {
     let General { surfaces, edges, crossings, lines, identification, .. } = general;
+    let vertices = surfaces.vertices(face).map(|v| identification.representative(PointId::new(v.number())));
     let mut outline: Vec<PointId> = Vec::new();
-    let mut add = |point: PointId| {
-        let point = identification.representative(point);
-        if outline.last() != Some(&point) {
-            outline.push(point);
-        }
-    };
     for k in 0..3 {
         let (edge, is_forward) = edges.of_side(surfaces, face, k);
-        add(PointId::new(surfaces.vertices(face)[k].number()));
-        let nodes = lines.on_edge(edge).iter().map(|&node| crossings.point(node));
-        if is_forward { nodes.for_each(&mut add) } else { nodes.rev().for_each(&mut add) }
+        let nodes =
+            lines.on_edge(edge).iter().map(|&node| identification.representative(crossings.point(node)));
+        let mut along: Vec<PointId> = nodes.collect();
+        if !is_forward {
+            along.reverse();
+        }
+        if edges.sides(edge).len() == 1 {
+            let place = |point: PointId| *lines.position(surfaces, point);
+            add_touching(place, [vertices[k], vertices[(k + 1) % 3]], within, &mut along);
+        }
+        outline.push(vertices[k]);
+        outline.extend(along);
     }
+    outline.dedup();
     if outline.len() > 1 && outline.first() == outline.last() {
         outline.pop();
     }
     outline
+}
+
+/// Adds the ends of lines that lie exactly on a side, between its ends, to the points along it.
+fn add_touching(
+    place: impl Fn(PointId) -> [f64; 3],
+    side: [PointId; 2],
+    lines: &[[PointId; 2]],
+    along: &mut Vec<PointId>,
+) {
+    let [from, to] = side.map(&place);
+    let length = |axis: usize| (to[axis] - from[axis]).abs();
+    let axis = (1..3).fold(0, |best, axis| if length(axis) > length(best) { axis } else { best });
+    // How far along the side, in its direction.
+    let way = |at: &[f64; 3]| if from[axis] < to[axis] { at[axis] } else { -at[axis] };
+    for &point in lines.iter().flatten() {
+        let at = place(point);
+        let is_between = way(&from) < way(&at) && way(&at) < way(&to);
+        if is_between && collinear(&from, &at, &to) && !along.contains(&point) {
+            let next = along.partition_point(|&other| way(&place(other)) < way(&at));
+            along.insert(next, point);
+        }
+    }
 }
 
 /// The pieces of lines on a face where it meets the other surface.

@@ -7,6 +7,8 @@ mod imprint;
 
 pub use imprint::Imprinted;
 
+use std::borrow::Cow;
+
 use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::arrangement::{Crossed, General};
@@ -14,8 +16,10 @@ use crate::boolean::general::evaluate::{Finish, evaluate};
 use crate::boolean::general::strips::visit_strips;
 use crate::boolean::many::expressions::is_simple;
 use crate::boolean::many::groups::{MergedGroups, merged_groups_of};
+use crate::boolean::many::made::whole_polygons;
 use crate::boolean::many::options::BooleanOptions;
 use crate::boolean::many::policy::Policy;
+use crate::boolean::result::outcome::Outcome;
 use crate::boolean::solidify::measure::mean_winding;
 use crate::mesh::{Bounds, Descent, Run, carry};
 use crate::parallel::Runner;
@@ -53,16 +57,18 @@ impl BooleanOptions {
     /// [`MeshError::EndsInside`] with the place where a surface ends inside the solid and parts nothing there (as of the operand that
     /// it is, the solid being the first); otherwise as [`trim`](Self::trim).
     pub fn split(&self, solid: &Solid, by: &[&Mesh]) -> Result<Vec<Cell>, Error> {
-        for (number, surface) in by.iter().enumerate() {
-            surface.check().map_err(|error| of_surface(error, number))?;
-        }
+        let sheets: Vec<Sheet<'_>> = by
+            .iter()
+            .enumerate()
+            .map(|(number, surface)| Sheet::new(surface).map_err(|error| of_surface(error, number)))
+            .collect::<Result<_, Error>>()?;
         self.work(|policy, runner| {
             let resolved =
                 if is_simple(policy, solid, runner.control)? { None } else { Some(self.resolve(solid)?) };
             let solid = resolved.as_ref().map_or(solid, |outcome| outcome.solid());
-            let surfaces: Vec<Mesh> = by.iter().map(|surface| without_needless(surface)).collect();
-            let meshes: Vec<&Mesh> = std::iter::once(solid.mesh()).chain(&surfaces).collect();
-            Parting { meshes, policy, runner }.cells()
+            let surfaces = sheets.iter().map(|sheet| &*sheet.mesh);
+            let meshes: Vec<&Mesh> = std::iter::once(solid.mesh()).chain(surfaces).collect();
+            Parting { meshes, resolved: resolved.as_ref(), sheets: &sheets, policy, runner }.cells()
         })
     }
 }
@@ -71,21 +77,34 @@ fn of_surface(error: MeshError, number: usize) -> Error {
     Error::from(error).of_operand(number + 1, format!("surface {}", number + 1))
 }
 
-/// The mesh without triangles that have a repeated corner. (Their numbers stay as they are in origins only if there are none, which
-/// is what readers give.)
-fn without_needless(mesh: &Mesh) -> Mesh {
-    let kept: Vec<u32> = (0u32..)
-        .zip(&mesh.triangles)
-        .filter(|(_, [a, b, c])| a != b && b != c && c != a)
-        .map(|(triangle, _)| triangle)
-        .collect();
-    if kept.len() == mesh.triangles.len() { mesh.clone() } else { mesh.selected(&kept) }
+/// A surface without the triangles that have a repeated corner.
+struct Sheet<'a> {
+    mesh: Cow<'a, Mesh>,
+    /// By triangle its number as given.
+    number: Vec<u32>,
+}
+
+impl<'a> Sheet<'a> {
+    fn new(given: &'a Mesh) -> Result<Self, MeshError> {
+        given.check()?;
+        let number: Vec<u32> = (0u32..)
+            .zip(&given.triangles)
+            .filter(|(_, [a, b, c])| a != b && b != c && c != a)
+            .map(|(triangle, _)| triangle)
+            .collect();
+        let is_whole = number.len() == given.triangles.len();
+        let mesh = if is_whole { Cow::Borrowed(given) } else { Cow::Owned(given.selected(&number)) };
+        Ok(Self { mesh, number })
+    }
 }
 
 /// A solid and the surfaces that part it.
 struct Parting<'a> {
     /// The solid first.
     meshes: Vec<&'a Mesh>,
+    /// How the solid was made of the given one, if that had to be resolved.
+    resolved: Option<&'a Outcome>,
+    sheets: &'a [Sheet<'a>],
     policy: Policy,
     runner: Runner<'a>,
 }
@@ -169,6 +188,21 @@ impl Parting<'_> {
             beyond: &|_, _, _| None,
         };
         mesh.attributes = carry(&descent, self.runner)?;
+        mesh.polygons = whole_polygons(&arrays.origins, &mesh, &self.meshes);
+        let origins = origins.into_iter().map(|origin| self.as_given(origin)).collect();
         Ok(Cell { solid: Solid::from_closed_unchecked(mesh), origins })
+    }
+
+    /// The origin with the number that its triangle was given with.
+    fn as_given(&self, origin: Origin) -> Origin {
+        let triangle = origin.triangle as usize;
+        match (origin.operand.checked_sub(1), self.resolved) {
+            (Some(sheet), _) => Origin { triangle: self.sheets[sheet as usize].number[triangle], ..origin },
+            (None, Some(resolved)) => {
+                let of = resolved.origins()[triangle];
+                Origin { reversed: of.reversed != origin.reversed, ..of }
+            }
+            (None, None) => origin,
+        }
     }
 }

@@ -7,9 +7,11 @@
 use crate::Error;
 use crate::Mesh;
 use crate::boolean::complex::ids::FaceId;
+use crate::boolean::complex::predicates::Perturbed;
 use crate::boolean::general::arrangement::General;
 use crate::boolean::general::cells::{Beside, CellCount};
 use crate::boolean::general::strips::visit_strips;
+use crate::mesh::scale;
 use crate::parallel::Runner;
 use crate::spatial::{FastWinding, TriangleTree};
 
@@ -51,10 +53,14 @@ pub(in crate::boolean) fn mean_winding(
     samples.sort_by_key(|sample| sample.cell);
     let chosen: Vec<Sample> = samples.chunk_by(|x, y| x.cell == y.cell).flat_map(evenly).copied().collect();
     // 2. The winding numbers there.
-    let tree = TriangleTree::new(given);
+    let factor = scale::factor(general.surfaces.largest_coordinate());
+    let scaled = |at: [f64; 3]| at.map(|x| factor * x);
+    let near_one = (factor != 1.0)
+        .then(|| Mesh::new(given.positions.iter().copied().map(scaled).collect(), given.triangles.clone()));
+    let tree = TriangleTree::new(near_one.as_ref().unwrap_or(given));
     let fast = FastWinding::new(&tree);
     let windings: Vec<f64> = runner.gather(chosen.len(), AT_ONCE, chosen.len(), |range, windings| {
-        windings.extend(chosen[range].iter().map(|sample| fast.at(&tree, sample.at)));
+        windings.extend(chosen[range].iter().map(|sample| fast.at(&tree, scaled(sample.at))));
     })?;
     // 3. Their means.
     let mut sums = vec![[0.0; 2]; cells.0];

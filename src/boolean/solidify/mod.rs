@@ -13,9 +13,11 @@ use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::arrangement::{Crossed, General};
 use crate::boolean::general::embed::{Grid, Parts, embed};
 use crate::boolean::general::evaluate::{Finish, evaluate};
+use crate::boolean::many::made::whole_polygons;
 use crate::boolean::many::options::BooleanOptions;
 use crate::boolean::many::policy::{Embed, Policy};
 use crate::boolean::result::assemble::Assembled;
+use crate::boolean::result::origins::Origins;
 use crate::mesh::{Descent, Readied, Run, Soup, Welding, carry};
 use crate::parallel::Runner;
 use crate::{Error, FaceGroups, Mesh, Solid};
@@ -96,7 +98,7 @@ impl Solidify {
 
     fn run(&self, mesh: &Mesh) -> Result<Solidified, Error> {
         let soup = Soup::new(mesh, self.welding)?;
-        self.options.work(|policy, runner| Work { soup: &soup, policy, runner }.run())
+        self.options.work(|policy, runner| Work { given: mesh, soup: &soup, policy, runner }.run())
     }
 }
 
@@ -133,6 +135,7 @@ impl Mesh {
 
 /// One soup on its way.
 struct Work<'a> {
+    given: &'a Mesh,
     soup: &'a Soup,
     policy: Policy,
     runner: Runner<'a>,
@@ -179,8 +182,10 @@ impl Work<'_> {
         report.added_area = result.selected(&made).area();
         report.dropped_area = (report.given_area - result.selected(&kept).area()).max(0.0);
         report.volume = result.volume();
-        let solid = self.solid(result, &parts.origins)?;
-        Ok(Solidified { solid, origins: self.given_origins(&parts.origins), report })
+        let mut mesh = self.with_attributes(result, &parts.origins)?;
+        let origins = self.given_origins(&parts.origins);
+        mesh.polygons = whole_polygons(&Origins::from_iter(origins.iter().copied()), &mesh, &[self.given]);
+        Ok(Solidified { solid: Solid::from_closed_unchecked(mesh), origins, report })
     }
 
     /// The faces that wind around cells: those without as many copies that face the other way.
@@ -230,7 +235,8 @@ impl Work<'_> {
         Ok((parts, report.left))
     }
 
-    fn solid(&self, mut mesh: Mesh, origins: &[Origin]) -> Result<Solid, Error> {
+    /// The result with groups and attributes.
+    fn with_attributes(&self, mut mesh: Mesh, origins: &[Origin]) -> Result<Mesh, Error> {
         let soup = self.soup;
         let given = soup.mesh.triangles.len() as u32;
         let groups = self.groups_of_faces();
@@ -259,19 +265,19 @@ impl Work<'_> {
             beyond: &|_, _, _| None,
         };
         mesh.attributes = carry(&descent, self.runner)?;
-        Ok(Solid::from_closed_unchecked(mesh))
+        Ok(mesh)
     }
 
-    /// Origins with the numbers of triangles as given.
+    /// Origins with the numbers of triangles as given, of which some were turned.
     fn given_origins(&self, origins: &[Origin]) -> Vec<Origin> {
         let given = self.soup.mesh.triangles.len();
         let origin = |origin: &Origin| {
             let triangle = origin.triangle as usize;
-            let (operand, of_soup) = match triangle.checked_sub(given) {
-                None => (0, triangle),
-                Some(closing) => (1, self.soup.beside[closing] as usize),
+            let (operand, of_soup, turned) = match triangle.checked_sub(given) {
+                None => (0, triangle, self.soup.turned[triangle]),
+                Some(closing) => (1, self.soup.beside[closing] as usize, false),
             };
-            Origin { operand, triangle: self.soup.source[of_soup], ..*origin }
+            Origin { operand, triangle: self.soup.source[of_soup], reversed: origin.reversed != turned }
         };
         origins.iter().map(origin).collect()
     }

@@ -237,6 +237,14 @@ mod tests {
         assert!(words.ends_with("./-x.stl b.stl --translate=1,0,-0.5 --weld=auto -o c.ply"), "{words}");
     }
 
+    /// An object has no order: transforms of an input are done in that of their names.
+    #[test]
+    fn transforms_are_in_the_order_of_their_names() {
+        let text = r#"{"verb": "convert", "inputs": [{"translate": [1, 0, 0], "file": "a.stl", "scale": 2, "rotate": 90}]}"#;
+        let words = line(text, &NONE).unwrap();
+        assert!(words.ends_with(" a.stl --rotate=90 --scale=2 --translate=1,0,0"), "{words}");
+    }
+
     #[test]
     fn what_is_no_job_is_told() {
         for (text, words) in [

@@ -105,7 +105,6 @@ pub(crate) fn run(arguments: &Batch, session: &mut Session<'_>) -> Result<Exit, 
     let (mut tally, start, control) = (Tally::default(), Instant::now(), session.control());
     loop {
         if let Err(limit) = control.check() {
-            pool.stop();
             session.note("batch", summary(&tally, pool.skipped(), total));
             return Err(Error::from(limit).into());
         }

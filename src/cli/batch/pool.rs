@@ -90,9 +90,11 @@ impl Pool {
     pub(super) fn skipped(&self) -> u64 {
         self.shared.skipped.load(Ordering::Relaxed)
     }
+}
 
-    /// Ends all processes; what they were at is not reported.
-    pub(super) fn stop(&self) {
+/// Ends all processes, however the run ends; what they were at is not reported.
+impl Drop for Pool {
+    fn drop(&mut self) {
         self.shared.stopped.store(true, Ordering::SeqCst);
         for process in &self.shared.processes {
             if let Some(child) = locked(process).as_mut() {

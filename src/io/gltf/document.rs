@@ -16,7 +16,7 @@
 //! So a file of nothing but `{},{},{}` does not grow in memory; `tests/format_memory.rs` measures it.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::fmt;
 
 use gltf::json::Asset;
@@ -170,7 +170,7 @@ pub(super) struct Draco {
     #[serde(default)]
     pub(super) buffer_view: u32,
     #[serde(default)]
-    pub(super) attributes: HashMap<String, u32>,
+    pub(super) attributes: BTreeMap<String, u32>,
 }
 
 #[derive(Debug, Deserialize)]

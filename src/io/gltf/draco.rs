@@ -43,9 +43,9 @@ pub(super) fn decode(
         points = accessor.count.max(points);
         wanted.push((index, accessor, id));
     }
-    wanted.sort_unstable_by_key(|&(index, ..)| index);
-    let decoded: u64 =
-        wanted.iter().map(|(_, accessor, _)| accessor.count.saturating_mul(item_size(accessor))).sum();
+    let decoded = (wanted.iter())
+        .map(|(_, accessor, _)| accessor.count.saturating_mul(item_size(accessor)))
+        .fold(0, u64::saturating_add);
     let tables = points.saturating_mul(PER_POINT).saturating_add(faces.saturating_mul(PER_FACE));
     budget.charge(decoded.saturating_mul(2).saturating_add(tables))?;
     // 2. The mesh. (Attributes that nobody asks for may be as large again.)

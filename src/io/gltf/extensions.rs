@@ -4,11 +4,12 @@ use super::super::{Format, unsupported};
 use crate::Error;
 
 /// Extensions that change geometry and are understood.
-const UNDERSTOOD: [&str; 4] = [
+const UNDERSTOOD: &[&str] = &[
     "KHR_mesh_quantization",
     "EXT_mesh_gpu_instancing",
     "EXT_mesh_manifold",
-    if cfg!(feature = "draco") { "KHR_draco_mesh_compression" } else { "EXT_mesh_manifold" },
+    #[cfg(feature = "draco")]
+    "KHR_draco_mesh_compression",
 ];
 
 /// Beginnings of the names of extensions that do not change geometry: materials, textures, lights, metadata.

@@ -7,6 +7,7 @@ use gltf::json::accessor::Type;
 use gltf::json::mesh::{LINE_STRIP, POINTS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 
 use super::super::ReadOptions;
+use super::super::mirror::is_mirrored;
 use super::super::notes::Notes;
 use super::super::outline::{NOWHERE, Outline};
 use super::Reader;
@@ -197,7 +198,7 @@ impl<'a> Builder<'a> {
         let first = self.place(position, vertices, world, &morph, &here)?;
         let indices = self.indices(primitive, mode, vertices, &format!("{pointer}/indices"))?;
         let merged = merged.and_then(|merged| merged.get(..indices.len()));
-        let (before, mirrored) = (self.mesh.triangles.len(), is_mirrored(world));
+        let (before, mirrored) = (self.mesh.triangles.len(), is_mirrored(&world.matrix3));
         let mut corners = Vec::new();
         self.triangles(mode, &indices, first, mirrored, merged, &mut corners, pointer);
         if names.len() > 1 {
@@ -228,7 +229,11 @@ impl<'a> Builder<'a> {
             return Ok(());
         };
         #[cfg(feature = "draco")]
-        if self.accessors.decoded.contains_key(&position) {
+        if [Some(position), primitive.indices]
+            .into_iter()
+            .flatten()
+            .all(|accessor| self.accessors.decoded.contains_key(&accessor))
+        {
             return Ok(());
         }
         #[cfg(feature = "draco")]
@@ -296,9 +301,9 @@ impl<'a> Builder<'a> {
             return Ok(first);
         }
         let first = self.mesh.positions.len();
-        if first as u64 + count > u64::from(u32::MAX) {
+        if (first as u64).saturating_add(count) > u64::from(u32::MAX) {
             return Err(Error::TooLarge {
-                what: format!("the scene has {} vertices or more", first as u64 + count),
+                what: format!("the scene has {} vertices or more", (first as u64).saturating_add(count)),
             });
         }
         // Once decoded, once in the mesh.
@@ -373,11 +378,4 @@ impl<'a> Builder<'a> {
 #[derive(serde::Deserialize)]
 struct GroupName {
     group: Option<String>,
-}
-
-/// Whether a transform turns left hands into right ones.
-fn is_mirrored(world: &DAffine3) -> bool {
-    let matrix = world.matrix3;
-    let largest = matrix.to_cols_array().into_iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
-    largest > 0.0 && (matrix * largest.recip()).determinant() < 0.0
 }

@@ -300,6 +300,17 @@ fn compressed_primitives_are_decoded_or_refused() {
         json!({"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0}}}),
     )]);
     assert_eq!(read_json(&both).unwrap().0.triangles, TRIANGLES);
+    // More than can be counted, twice.
+    let countless = changed(&[
+        ("/accessors/0", json!({"componentType": 5126, "count": u64::MAX, "type": "VEC3"})),
+        ("/meshes/0/primitives/0/attributes", json!({"POSITION": 0, "NORMAL": 0})),
+        (
+            "/meshes/0/primitives/0/extensions",
+            json!({"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {"POSITION": 0, "NORMAL": 1}}}),
+        ),
+    ]);
+    let error = read_json(&countless).unwrap_err();
+    assert!(matches!(error, Error::TooLarge { .. }) || !cfg!(feature = "draco"), "{error}");
 }
 
 #[test]

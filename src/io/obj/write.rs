@@ -4,7 +4,7 @@ use std::io::Write;
 
 use super::super::rounding::{self, Written};
 use super::super::text::{NumberWriter, line_name, write_all, write_blocks};
-use super::super::{Format, Precision, WriteOptions};
+use super::super::{Format, WriteOptions};
 use super::groups::NO_MATERIAL;
 use super::labels::Labels;
 use super::mtl::MaterialNames;
@@ -18,10 +18,7 @@ pub(in crate::io) fn write(
     output: &mut dyn Write,
     options: &WriteOptions,
 ) -> Result<Written, Error> {
-    let mut written = Written::default();
-    if options.precision == Precision::Single {
-        written = rounding::of_single(mesh, Format::Obj, options)?;
-    }
+    let mut written = rounding::of_precision(mesh, Format::Obj, options)?;
     let names = MaterialNames::of(mesh);
     let mut header = format!("# {} vertices, {} triangles\n", mesh.positions.len(), mesh.triangles.len());
     if let Some(library) = options.material_library.as_ref().filter(|_| !names.list.is_empty()) {

@@ -8,7 +8,7 @@ use super::notes::Notes;
 use super::rounding::{self, Written};
 use super::scan::{Scanner, line_place, quote};
 use super::text::{write_all, write_lines};
-use super::{Format, Precision, ReadOptions, WriteOptions, malformed, unsupported};
+use super::{Format, ReadOptions, WriteOptions, malformed, unsupported};
 use crate::mesh::{Faces, Polygons};
 use crate::{Control, Error, Mesh};
 
@@ -223,10 +223,7 @@ impl Reader<'_> {
 
 /// Writes vertices and triangles.
 pub(super) fn write(mesh: &Mesh, output: &mut dyn Write, options: &WriteOptions) -> Result<Written, Error> {
-    let mut written = Written::default();
-    if options.precision == Precision::Single {
-        written = rounding::of_single(mesh, Format::Off, options)?;
-    }
+    let mut written = rounding::of_precision(mesh, Format::Off, options)?;
     let faces = Faces::of(mesh, usize::MAX, |_, _| true);
     let header = format!("OFF\n{} {} 0\n", mesh.positions.len(), faces.len());
     write_all(output, header.as_bytes())?;

@@ -59,6 +59,8 @@ pub(super) struct Body {
     /// Further properties of vertices and of the faces kept, each with its name and type, a number for each.
     pub(super) of_vertices: Vec<Channel>,
     pub(super) of_faces: Vec<Channel>,
+    /// How many triangles of strips come before those faces; they have no properties.
+    pub(super) before_faces: usize,
     /// Texture coordinates of the corners of faces.
     pub(super) texture: Vec<[f64; 2]>,
     pub(super) labels: Labels,
@@ -163,8 +165,7 @@ impl Body {
     ) -> Result<(), Error> {
         let mut item = ListItem::new(element, indices);
         let mut channels = Channel::of(element, 0);
-        // Triangles of strips that come before have no properties.
-        channels.iter_mut().for_each(|channel| channel.values.resize(self.faces.len(), f64::NAN));
+        let before = self.faces.len();
         for i in 0..element.count {
             if i % CHECK_INTERVAL == 0 {
                 control.check()?;
@@ -181,7 +182,7 @@ impl Body {
             }
         }
         if !item.strips {
-            self.of_faces = channels;
+            (self.of_faces, self.before_faces) = (channels, before);
         }
         Ok(())
     }

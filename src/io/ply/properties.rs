@@ -19,15 +19,19 @@ pub(super) fn attributes(
     room: usize,
     notes: &mut Notes,
 ) -> Vec<Attribute> {
-    let Body { of_vertices, of_faces, texture, labels, .. } = body;
+    let Body { of_vertices, of_faces, before_faces, texture, labels, .. } = body;
     let mut list = Vec::new();
     // Every attribute takes 12 bytes a triangle, of which a file has eight or more.
     let most = room / (12 * triangles.len()).max(1);
     let vertices: Vec<u32> =
         if of_vertices.is_empty() { Vec::new() } else { triangles.as_flattened().to_vec() };
     taken(of_vertices, &vertices, most, &mut list, notes);
-    let corners: Vec<u32> =
-        if of_faces.is_empty() { Vec::new() } else { faces.iter().flat_map(|&face| [face; 3]).collect() };
+    let item = |face: u32| face.checked_sub(before_faces as u32).unwrap_or(Attribute::NONE);
+    let corners: Vec<u32> = if of_faces.is_empty() {
+        Vec::new()
+    } else {
+        faces.iter().flat_map(|&face| [item(face); 3]).collect()
+    };
     taken(of_faces, &corners, most, &mut list, notes);
     if !texture.is_empty() && list.iter().all(|attribute| attribute.name != "TEXCOORD_0") {
         let corners = of_triangles(triangles, faces, &labels, [texture.len(), 0]);

@@ -17,11 +17,8 @@ pub(in crate::io) fn write(
     output: &mut dyn Write,
     options: &WriteOptions,
 ) -> Result<Written, Error> {
-    let mut written = Written::default();
+    let mut written = rounding::of_precision(mesh, Format::Ply, options)?;
     let double = options.precision == Precision::Double;
-    if !double {
-        written = rounding::of_single(mesh, Format::Ply, options)?;
-    }
     // Nobody looks for names of groups in PLY.
     if mesh.groups.list.iter().any(|group| group.material.is_some()) {
         written

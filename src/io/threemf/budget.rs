@@ -13,6 +13,9 @@ pub(super) struct Budget {
     limit: u64,
     /// Bytes of text that were unpacked.
     unpacked: u64,
+    /// Bytes of text since the last that is done with, and the most that were held so at once.
+    text: u64,
+    most_text: u64,
     /// Bytes of memory.
     charged: u64,
     reserved: u64,
@@ -30,6 +33,8 @@ impl Budget {
             file_bytes,
             limit,
             unpacked: 0,
+            text: 0,
+            most_text: 0,
             charged: 0,
             reserved: 0,
             reservations: Vec::new(),
@@ -40,12 +45,20 @@ impl Budget {
     /// Accounts for text that was unpacked; false, with the fault noted, where that is to end.
     pub(super) fn unpack(&mut self, bytes: u64) -> bool {
         self.unpacked = self.unpacked.saturating_add(bytes);
-        if self.unpacked > self.limit {
-            self.fault = Some(self.too_large("the unpacked models are"));
-        } else if let Err(limit) = self.control.check() {
-            self.fault = Some(limit.into());
-        }
+        self.text = self.text.saturating_add(bytes);
+        let more = self.text.saturating_sub(self.most_text);
+        self.most_text += more;
+        self.fault = if self.unpacked > self.limit {
+            Some(self.too_large("the unpacked models are"))
+        } else {
+            self.charge(more).and_then(|()| Ok(self.control.check()?)).err()
+        };
         self.fault.is_none()
+    }
+
+    /// Notes that the text so far is done with: an element of a model, or a part as a whole. What comes takes its place.
+    pub(super) fn release_text(&mut self) {
+        self.text = 0;
     }
 
     /// Why unpacking ended, if it was not for the package.

@@ -1,9 +1,11 @@
 //! One mesh of what is built.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
+use super::super::mirror::is_mirrored;
 use super::super::notes::Notes;
 use super::super::{Format, color, malformed};
 use super::budget::Budget;
@@ -16,6 +18,12 @@ const MOST_DEPTH: usize = 256;
 
 /// Bytes that an instance takes, besides its name.
 const INSTANCE: u64 = 120;
+
+/// Bytes that a name of groups takes, besides its text.
+const NAME: u64 = 80;
+
+/// Bytes that a group takes, besides its name and that of its material.
+const GROUP: u64 = size_of::<FaceGroup>() as u64 + 40;
 
 /// A mesh at a place.
 struct Instance {
@@ -34,7 +42,8 @@ pub(super) fn flatten(document: &Document, budget: &mut Budget, notes: &mut Note
         groups: Vec::new(),
         list: Vec::new(),
         known: HashMap::new(),
-        names: HashMap::new(),
+        names: Vec::new(),
+        by_name: HashMap::new(),
         colours: Colours::default(),
     };
     for instance in &instances {
@@ -115,7 +124,9 @@ struct Builder<'d> {
     groups: Vec<u32>,
     list: Vec<FaceGroup>,
     known: HashMap<GroupKey, u32>,
-    names: HashMap<String, u32>,
+    /// The names of groups, each once, and their numbers.
+    names: Vec<Arc<str>>,
+    by_name: HashMap<Arc<str>, u32>,
     colours: Colours,
 }
 
@@ -141,8 +152,8 @@ impl Builder<'_> {
             if scale == 1.0 { point } else { point.map(|coordinate| coordinate * scale) }
         }));
         // 2. Triangles: a mirror turns them round.
-        let is_mirrored = instance.transform.matrix3.determinant() < 0.0;
-        let mut groups = GroupFinder { name: &instance.name, mesh, last: None };
+        let is_mirrored = is_mirrored(&instance.transform.matrix3);
+        let mut groups = GroupFinder { name: &instance.name, mesh, names: HashMap::new(), last: None };
         let mut dropped = 0;
         for (index, &[a, b, c]) in mesh.triangles.iter().enumerate() {
             if a == b || b == c || c == a {
@@ -154,7 +165,7 @@ impl Builder<'_> {
             // 3. What they are made of.
             let label = mesh.labels.get(index).copied().flatten().or(object.label);
             let material = self.material(instance.part, label, is_mirrored, notes);
-            let group = groups.group(self, index, material);
+            let group = groups.group(self, index, material, budget)?;
             self.groups.push(group);
         }
         notes.add("triangle with a repeated corner dropped", dropped);
@@ -189,7 +200,7 @@ impl Builder<'_> {
                 None
             }
             Some(Property::Other(what)) => {
-                notes.add(format!("triangle with {what} for its material, which is not kept"), 1);
+                notes.add(*what, 1);
                 None
             }
             None => {
@@ -199,24 +210,32 @@ impl Builder<'_> {
         }
     }
 
-    /// The number of a group.
-    fn group(&mut self, name: &str, material: Option<BaseKey>) -> u32 {
-        let number = match self.names.get(name) {
-            Some(&number) => number,
-            None => {
-                let number = self.names.len() as u32;
-                self.names.insert(name.to_owned(), number);
-                number
-            }
-        };
-        let (document, list) = (self.document, &mut self.list);
-        *self.known.entry((number, material)).or_insert_with(|| {
-            list.push(FaceGroup {
-                name: name.to_owned(),
-                material: material.and_then(|key| base(document, key)),
-            });
-            list.len() as u32 - 1
-        })
+    /// The number of a name.
+    fn name(&mut self, name: &str, budget: &mut Budget) -> Result<u32, Error> {
+        // A long name may be looked up for many sets; that counts as if each had its own.
+        budget.charge(NAME + name.len() as u64)?;
+        if let Some(&number) = self.by_name.get(name) {
+            return Ok(number);
+        }
+        let (name, number): (Arc<str>, _) = (name.into(), self.names.len() as u32);
+        self.names.push(Arc::clone(&name));
+        self.by_name.insert(name, number);
+        Ok(number)
+    }
+
+    /// The number of a group, by the number of its name.
+    fn group(&mut self, key: GroupKey, budget: &mut Budget) -> Result<u32, Error> {
+        if let Some(&known) = self.known.get(&key) {
+            return Ok(known);
+        }
+        let (name, material) = key;
+        let name = self.names.get(name as usize).map_or("", |name| &**name);
+        let entry = material.and_then(|key| base(self.document, key));
+        budget.charge(GROUP + (name.len() + entry.map_or(0, |(name, _)| name.len())) as u64)?;
+        self.list.push(FaceGroup { name: name.to_owned(), material: entry.map(material_of) });
+        let number = self.list.len() as u32 - 1;
+        self.known.insert(key, number);
+        Ok(number)
     }
 
     fn finish(self) -> Mesh {
@@ -233,30 +252,50 @@ impl Builder<'_> {
 struct GroupFinder<'i> {
     name: &'i str,
     mesh: &'i ObjectMesh,
+    /// The numbers of the names of its sets.
+    names: HashMap<u32, u32>,
     /// The triangle set and the material of the last one, and its group.
     last: Option<(u32, Option<BaseKey>, u32)>,
 }
 
 impl GroupFinder<'_> {
-    fn group(&mut self, builder: &mut Builder<'_>, triangle: usize, material: Option<BaseKey>) -> u32 {
+    fn group(
+        &mut self,
+        builder: &mut Builder<'_>,
+        triangle: usize,
+        material: Option<BaseKey>,
+        budget: &mut Budget,
+    ) -> Result<u32, Error> {
         let set = self.mesh.sets.get(triangle).copied().unwrap_or(0);
         if let Some((_, _, group)) = self.last.filter(|&(s, m, _)| (s, m) == (set, material)) {
-            return group;
+            return Ok(group);
         }
-        let set_name = (set as usize).checked_sub(1).and_then(|set| self.mesh.set_names.get(set));
-        let group = builder.group(&joined(self.name, set_name.map_or("", String::as_str)), material);
+        let name = match self.names.get(&set) {
+            Some(&name) => name,
+            None => {
+                let set_name = (set as usize).checked_sub(1).and_then(|set| self.mesh.set_names.get(set));
+                let name = builder.name(&joined(self.name, set_name.map_or("", String::as_str)), budget)?;
+                self.names.insert(set, name);
+                name
+            }
+        };
+        let group = builder.group((name, material), budget)?;
         self.last = Some((set, material, group));
-        group
+        Ok(group)
     }
 }
 
-/// A base material; its colour is encoded for screens.
-fn base(document: &Document, (part, property, index): BaseKey) -> Option<Material> {
+/// A base material: its name, and its colour as in the file.
+fn base(document: &Document, (part, property, index): BaseKey) -> Option<&(String, [u8; 4])> {
     let model = document.models.get(part as usize)?;
     let Some(Property::Base(list)) = model.properties.get(&property) else { return None };
-    let (name, [red, green, blue, opacity]) = list.get(index as usize)?;
+    list.get(index as usize)
+}
+
+/// The material of such an entry; colours of files are encoded for screens.
+fn material_of((name, [red, green, blue, opacity]): &(String, [u8; 4])) -> Material {
     let [red, green, blue] = [red, green, blue].map(|&byte| color::linear(f64::from(byte) / 255.0) as f32);
-    Some(Material::plain(name.clone(), [red, green, blue, f32::from(*opacity) / 255.0]))
+    Material::plain(name.clone(), [red, green, blue, f32::from(*opacity) / 255.0])
 }
 
 /// Colours of corners, as they become known.

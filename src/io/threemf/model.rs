@@ -44,7 +44,7 @@ pub(super) enum Property {
     Base(Vec<(String, [u8; 4])>),
     /// Colours.
     Colours(Vec<[u8; 4]>),
-    /// Pictures, mixtures and others, by the name of their element.
+    /// Pictures, mixtures and others, by what is said of triangles that have them.
     Other(&'static str),
 }
 

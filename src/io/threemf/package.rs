@@ -61,6 +61,7 @@ impl<'a> Package<'a> {
     ) -> Result<PartText<'s, 'a>, Error> {
         let missing = || malformed(Format::ThreeMf, path, "the package has no such part; it is incomplete");
         let index = self.find(path).ok_or_else(missing)?;
+        budget.release_text();
         let file = self.archive.by_index(index).map_err(|error| zip_error(path, &error))?;
         Ok(BufReader::with_capacity(BLOCK, Metered { inner: file, budget }))
     }

@@ -5,9 +5,10 @@ use std::io::{Cursor, Write as _};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
+use crate::control::Limit;
 use crate::io::{Contents, Format, FormatError, Loaded, ReadOptions, WriteOptions, read, write};
 use crate::mesh::Attribute;
-use crate::{Error, FaceGroup, Material, Mesh};
+use crate::{Control, Error, FaceGroup, Material, Mesh};
 
 const ROOT: &str = "<Relationships xmlns=\"r\"><Relationship Id=\"a\" Target=\"/3D/m.model\" \
     Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
@@ -87,6 +88,9 @@ fn a_mirror_turns_triangles_round() {
     let mesh = loaded(&bytes).mesh;
     assert_eq!(mesh.triangles[0], [0, 1, 2]);
     assert!(mesh.groups.is_empty() && mesh.volume() > 0.0);
+    // One so small that its determinant is none that a number can hold.
+    let tiny = "<item objectid=\"1\" transform=\"-1e-120 0 0 0 1e-120 0 0 0 1e-120 0 0 0\"/>";
+    assert_eq!(loaded(&model("", &tetrahedron(1, ""), tiny)).mesh.triangles[0], [0, 1, 2]);
 }
 
 #[test]
@@ -223,6 +227,7 @@ fn what_is_no_sound_package_is_refused() {
         (model("", &ok.replace("x=\"1\"", ""), item), "without a coordinate"),
         (model("", &ok.replace("v3=\"3\"", "v3=\"-3\""), item), "not a whole number"),
         (model("", &ok.replace("</object>", ""), item), "ill-formed"),
+        (model("", &"<a>".repeat(1000), item), "256 deep"),
         (model("", "<vertex x=\"0\" y=\"0\" z=\"0\"/>", item), "in no object"),
         (model("xmlns:z=\"http://z/slice/1\" requiredextensions=\"p z\"", &ok, item), "needs slices"),
         (model("requiredextensions=\"q\"", &ok, item), "needs the extension \"q\""),
@@ -266,6 +271,49 @@ fn what_would_unfold_without_end_is_refused() {
     too_large(&model("", &(tetrahedron(1, "") + &levels), "<item objectid=\"41\"/>"));
     let circle = "<object id=\"2\"><components><component objectid=\"2\"/></components></object>";
     assert!(refused(&model("", circle, "<item objectid=\"2\"/>")).contains("in a circle"));
+}
+
+#[test]
+fn long_names_and_texts_count_as_memory() {
+    let refused = |bytes: &[u8], options: &ReadOptions| read(bytes, Format::ThreeMf, options).unwrap_err();
+    // 1. A long name of an object that is part of the name of each of many groups: of its sets, or with its materials.
+    let name = "n".repeat(100_000);
+    let triangles = |more: &dyn Fn(usize) -> String| -> String {
+        (0..1000).map(|i| format!("<triangle v1=\"0\" v2=\"1\" v3=\"2\"{}/>", more(i))).collect()
+    };
+    let object = |triangles: &str, sets: &str| {
+        format!(
+            "<object id=\"1\" name=\"{name}\"><mesh>{CORNERS}<triangles>{triangles}</triangles>{sets}</mesh></object>"
+        )
+    };
+    let sets: String = (0..1000)
+        .map(|i| format!("<t:triangleset name=\"{i}\"><t:ref index=\"{i}\"/></t:triangleset>"))
+        .collect();
+    let bases: String = (0..1000).map(|i| format!("<base name=\"{i}\"/>")).collect();
+    let materials = format!("<basematerials id=\"5\">{bases}</basematerials>");
+    let by_sets = object(&triangles(&|_| String::new()), &sets);
+    let by_materials = materials + &object(&triangles(&|i| format!(" pid=\"5\" p1=\"{i}\"")), "");
+    for resources in [by_sets, by_materials] {
+        let error = refused(&model("", &resources, "<item objectid=\"1\"/>"), &ReadOptions::new());
+        assert!(matches!(error, Error::TooLarge { .. }), "{error}");
+    }
+    // 2. Text that the parser holds as a whole, against a ceiling of memory.
+    let options = ReadOptions::new().control(Control::new().memory_limit(8 << 20));
+    let blanks = model("", &" ".repeat(20 << 20), "");
+    assert!(blanks.len() < 1 << 20);
+    let relations = ROOT.replace("<Relationship ", &format!("{}<Relationship ", " ".repeat(20 << 20)));
+    let relations = package(&[("_rels/.rels", &relations), ("3D/m.model", "")]);
+    for bytes in [blanks, relations] {
+        let error = refused(&bytes, &options);
+        assert!(matches!(error, Error::Limit(Limit::Memory { .. })), "{error}");
+    }
+    // 3. Many short texts are not held together.
+    let many = model(
+        "",
+        &format!("{}{}", tetrahedron(1, ""), "<a>some text</a>".repeat(1 << 20)),
+        "<item objectid=\"1\"/>",
+    );
+    assert_eq!(read(&many, Format::ThreeMf, &options).unwrap().mesh.triangles.len(), 4);
 }
 
 #[test]

@@ -23,23 +23,14 @@ pub(super) fn fill(surface: &mut Surface<'_>, most: usize) {
         return;
     }
     // 1. The triangle beside each open edge, whose group its filling gets; and all edges between vertices of holes.
-    let on_hole: FxHashSet<u32> = loops.iter().flatten().copied().collect();
-    let mut beside: FxHashMap<(u32, u32), u32> = FxHashMap::default();
-    for (triangle, &source) in surface.triangles.iter().zip(&surface.source) {
-        for k in 0..3 {
-            let (u, v) = (triangle[k], triangle[(k + 1) % 3]);
-            if on_hole.contains(&u) && on_hole.contains(&v) {
-                beside.entry((u, v)).or_insert(source);
-            }
-        }
-    }
+    let beside = between(&surface.triangles, &loops);
     // 2. Loop by loop.
     let spots = Spots { mesh: surface.mesh };
     for ring in loops {
         let has_edge = |u: u32, v: u32| beside.contains_key(&(u, v)) || beside.contains_key(&(v, u));
         let triangles = filling(positions, &ring, has_edge);
         let source = beside.get(&(ring[0], ring[ring.len() - 1])).or_else(|| beside.get(&(ring[1], ring[0])));
-        let source = source.copied().unwrap_or(0);
+        let source = source.map_or(0, |&triangle| surface.source[triangle as usize]);
         if let Some(bounds) = Bounds::of(ring.iter().map(|&v| &positions[v as usize])) {
             surface.report.filled_area += measure::area(positions, &triangles, &bounds);
         }
@@ -48,6 +39,21 @@ pub(super) fn fill(surface: &mut Surface<'_>, most: usize) {
         surface.source.extend(std::iter::repeat_n(source, triangles.len()));
         surface.triangles.extend(triangles);
     }
+}
+
+/// By edge between vertices of loops, as triangles run, the first triangle that has it.
+pub(super) fn between(triangles: &[[u32; 3]], loops: &[Vec<u32>]) -> FxHashMap<(u32, u32), u32> {
+    let on_loop: FxHashSet<u32> = loops.iter().flatten().copied().collect();
+    let mut found = FxHashMap::default();
+    for (index, corners) in (0..).zip(triangles) {
+        for k in 0..3 {
+            let (u, v) = (corners[k], corners[(k + 1) % 3]);
+            if on_loop.contains(&u) && on_loop.contains(&v) {
+                found.entry((u, v)).or_insert(index);
+            }
+        }
+    }
+    found
 }
 
 /// The triangles that fill a loop.

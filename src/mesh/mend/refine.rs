@@ -219,7 +219,7 @@ fn make_fair(positions: &mut [[f64; 3]], filling: &[[u32; 3]], given: usize, aro
     let place = |v: u32| (v as usize).checked_sub(given);
     // 2. Axis by axis.
     for axis in 0..3 {
-        let mut values: Vec<f64> = positions.iter().map(|p| p[axis]).collect();
+        let mut values: Vec<f64> = positions[given..].iter().map(|p| p[axis]).collect();
         let bend = |values: &dyn Fn(u32) -> f64, bends: &mut Vec<f64>| {
             bends.clear();
             bends.extend(rows.iter().map(|(at, others)| {
@@ -239,7 +239,7 @@ fn make_fair(positions: &mut [[f64; 3]], filling: &[[u32; 3]], given: usize, aro
             }
         };
         let (mut residual, mut slope, mut moved) = (Vec::new(), Vec::new(), Vec::new());
-        bend(&|v| values[v as usize], &mut residual);
+        bend(&|v| positions[v as usize][axis], &mut residual);
         residual.iter_mut().for_each(|x| *x = -*x);
         gather(&residual, &mut slope);
         let mut direction = slope.clone();
@@ -256,7 +256,7 @@ fn make_fair(positions: &mut [[f64; 3]], filling: &[[u32; 3]], given: usize, aro
                 break;
             }
             let step = now / size;
-            direction.iter().enumerate().for_each(|(i, x)| values[given + i] += step * x);
+            values.iter_mut().zip(&direction).for_each(|(value, x)| *value += step * x);
             residual.iter_mut().zip(&moved).for_each(|(r, m)| *r -= step * m);
             gather(&residual, &mut slope);
             let next = square(&slope);
@@ -264,7 +264,7 @@ fn make_fair(positions: &mut [[f64; 3]], filling: &[[u32; 3]], given: usize, aro
             now = next;
         }
         if values.iter().all(|x| x.is_finite()) {
-            positions[given..].iter_mut().zip(&values[given..]).for_each(|(p, x)| p[axis] = *x);
+            positions[given..].iter_mut().zip(&values).for_each(|(p, x)| p[axis] = *x);
         }
     }
 }

@@ -23,6 +23,8 @@ pub(crate) struct Soup {
     pub(crate) mesh: Mesh,
     /// By triangle its number as given.
     pub(crate) source: Vec<u32>,
+    /// By triangle, whether it was turned.
+    pub(crate) turned: Vec<bool>,
     /// By triangle, whether there were as many copies of it that face the other way: a wall between what touches, say.
     pub(crate) cancelled: Vec<bool>,
     /// Triangles over the same vertices that fill holes.
@@ -114,7 +116,7 @@ impl Soup {
         let positions = clean::compact(&given.positions, &mut all);
         let closing = all.split_off(count);
         let mesh = assembled(given, positions, all, &source, &turned);
-        Ok(Self { mesh, source, cancelled, closing, beside, done })
+        Ok(Self { mesh, source, turned, cancelled, closing, beside, done })
     }
 }
 
@@ -343,12 +345,7 @@ struct Closing {
 impl Closing {
     fn new(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Self {
         let loops = fill::rings(&weld::boundary(triangles, positions.len()));
-        let mut at_edge = FxHashMap::default();
-        for (index, corners) in (0u32..).zip(triangles) {
-            (0..3).for_each(|k| {
-                at_edge.entry((corners[k], corners[(k + 1) % 3])).or_insert(index);
-            });
-        }
+        let at_edge = fill::between(triangles, &loops);
         let has_edge = |u: u32, v: u32| at_edge.contains_key(&(u, v)) || at_edge.contains_key(&(v, u));
         let mut all = Self { filling: Vec::new(), of_loops: 0, beside: Vec::new(), loops: loops.len() };
         for (number, found) in fill::fillings(positions, &loops, has_edge).into_iter().enumerate() {

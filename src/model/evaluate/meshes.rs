@@ -50,10 +50,10 @@ impl State<'_> {
         control.check()?;
         let at = &self.model.nodes[node];
         let label = self.label(node);
-        let mesh = if at.extrude.is_some() {
+        let within = |error: Error| error.in_node(label);
+        let mesh = if let Some([low, high]) = at.extrude {
             let contours = self.region(node)?;
-            let [low, high] = at.extrude.unwrap_or_default();
-            extrude(&contours, low, high).map_err(|error| error.in_node(label))?
+            extrude(&contours, low, high).map_err(within)?
         } else {
             match &at.kind {
                 #[cfg(feature = "subdivision")]
@@ -70,18 +70,14 @@ impl State<'_> {
                     return Err(unbounded("a half-space", instead).in_node(label));
                 }
                 Kind::Reference(_, target) => (*self.operand_solid(*target)?).mesh().clone(),
-                Kind::Mesh(file) => {
-                    self.loaded(&self.model.folder.join(file)).map_err(|error| error.in_node(label))?
-                }
+                Kind::Mesh(file) => self.loaded(&self.model.folder.join(file)).map_err(within)?,
                 Kind::Primitive(primitive) => {
                     let tolerance = self.tolerance(node, primitive.diagonal());
-                    primitive.mesh(tolerance).map_err(|error| error.in_node(label))?
+                    primitive.mesh(tolerance).map_err(within)?
                 }
                 // (Transformed already.)
                 Kind::Formula { .. } | Kind::Contour(_) => return self.extracted(node),
-                Kind::Parametric(solid) => {
-                    solid.mesh(self.given_tolerance(node), control).map_err(|error| error.in_node(label))?
-                }
+                Kind::Parametric(solid) => solid.mesh(self.given_tolerance(node), control).map_err(within)?,
                 Kind::Made(made, operands) => self.made(node, made, operands)?,
                 #[cfg(feature = "subdivision")]
                 Kind::Cage(cage) => self.limit_mesh(node, cage)?,
@@ -93,9 +89,7 @@ impl State<'_> {
                         return Err(Error::Model(what).in_node(label));
                     };
                     let tolerance = self.given_tolerance(node);
-                    handler
-                        .mesh(value, tolerance, &self.model.folder, control)
-                        .map_err(|error| error.in_node(label))?
+                    handler.mesh(value, tolerance, &self.model.folder, control).map_err(within)?
                 }
             }
         };

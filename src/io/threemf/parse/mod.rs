@@ -15,6 +15,9 @@ use super::space::{Space, Spaces};
 use super::xml;
 use crate::Error;
 
+/// Elements may stand this deep in each other; those of 3MF do ten at most. The reader of XML remembers each.
+const MOST_DEPTH: usize = 256;
+
 /// Reads the model in the text of a part.
 pub(super) fn model(
     text: PartText<'_, '_>,
@@ -33,6 +36,7 @@ pub(super) fn model(
         model: Model { unit: 1.0, ..Model::default() },
         object: None,
         property: None,
+        told: Vec::new(),
         root: Root::Awaited,
     };
     parser.read_all()?;
@@ -63,21 +67,36 @@ struct Parser<'p, 's, 'a> {
     model: Model,
     object: Option<(u32, Object)>,
     property: Option<(u32, Property)>,
+    /// The specifications of which something was left out.
+    told: Vec<&'static str>,
     root: Root,
 }
 
 impl Parser<'_, '_, '_> {
     fn read_all(&mut self) -> Result<(), Error> {
         let mut buffer = Vec::new();
+        let mut depth = 0_usize;
         loop {
             buffer.clear();
+            self.reader.get_mut().get_mut().budget().release_text();
             match self.reader.read_event_into(&mut buffer) {
-                Ok(Event::Start(element)) => self.start(&element)?,
+                Ok(Event::Start(element)) => {
+                    depth += 1;
+                    if depth > MOST_DEPTH {
+                        return Err(
+                            self.error(format!("elements stand more than {MOST_DEPTH} deep in each other"))
+                        );
+                    }
+                    self.start(&element)?;
+                }
                 Ok(Event::Empty(element)) => {
                     self.start(&element)?;
                     self.end(element.name().0)?;
                 }
-                Ok(Event::End(element)) => self.end(element.name().0)?,
+                Ok(Event::End(element)) => {
+                    depth = depth.saturating_sub(1);
+                    self.end(element.name().0)?;
+                }
                 Ok(Event::DocType(_)) => return Err(xml::doctype(self.part, self.at())),
                 Ok(Event::Eof) => return Ok(()),
                 Ok(_) => {}
@@ -116,14 +135,8 @@ impl Parser<'_, '_, '_> {
             (Space::Core, "base") => self.base(element),
             (Space::Materials, "colorgroup") => self.start_property(element, Property::Colours(Vec::new())),
             (Space::Materials, "color") => self.colour(element),
-            (Space::Materials, "texture2dgroup") => {
-                self.start_property(element, Property::Other("a picture"))
-            }
-            (Space::Materials, "compositematerials") => {
-                self.start_property(element, Property::Other("a mixture of materials"))
-            }
-            (Space::Materials, "multiproperties") => {
-                self.start_property(element, Property::Other("several layers of materials"))
+            (Space::Materials, name @ ("texture2dgroup" | "compositematerials" | "multiproperties")) => {
+                self.start_property(element, Property::Other(properties::told(name)))
             }
             (Space::Materials, "texture2d") => {
                 self.notes.add("picture not kept", 1);
@@ -131,11 +144,21 @@ impl Parser<'_, '_, '_> {
             }
             (Space::TriangleSets, "triangleset") => self.start_set(element),
             (Space::TriangleSets, "ref" | "refrange") => self.set_triangles(element),
-            (Space::Other(what), "beamlattice" | "slicestack" | "volumetricstack" | "booleanshape") => {
-                self.notes.add(format!("{what} not kept"), 1);
+            (Space::Other(what), name) => {
+                self.not_kept(what, name);
                 Ok(())
             }
             _ => Ok(()),
+        }
+    }
+
+    /// Notes an element of a specification that is not understood: how many there are of the known ones that stand for a whole.
+    fn not_kept(&mut self, what: &'static str, name: &str) {
+        if matches!(name, "beamlattice" | "slicestack" | "volumetricstack" | "booleanshape") {
+            self.notes.add(format!("{what} not kept"), 1);
+        } else if !self.told.contains(&what) {
+            self.notes.say(format!("{what} not kept"));
+            self.told.push(what);
         }
     }
 

@@ -68,8 +68,10 @@ impl Parser<'_, '_, '_> {
             let place = format!("{}, object {id}", self.part);
             return Err(index_error(Format::ThreeMf, place, u64::from(index), vertices));
         }
-        let said = mesh.labels.len();
-        mesh.labels.resize(if said > 0 { mesh.triangles.len() } else { 0 }, None);
+        if !mesh.labels.is_empty() {
+            self.charge(LABEL * (mesh.triangles.len() - mesh.labels.len()) as u64)?;
+            mesh.labels.resize(mesh.triangles.len(), None);
+        }
         if self.model.objects.contains_key(&id) {
             self.notes.add("object whose number another one has ignored", 1);
             return Ok(());
@@ -121,27 +123,34 @@ impl Parser<'_, '_, '_> {
         let [Some(a), Some(b), Some(c)] = corners else {
             return Err(self.error("a triangle without a corner v1, v2 or v3"));
         };
-        let is_labelled = property.is_some() || indices[0].is_some();
-        self.charge(if is_labelled { 12 + LABEL } else { 12 })?;
-        let at = self.at() as usize;
-        let Some((_, object)) = &mut self.object else {
+        let Some((_, object)) = &self.object else {
             return Err(self.error("a triangle that is in no object"));
         };
-        if object.mesh.triangles.len() >= u32::MAX as usize {
+        let (count, said) = (object.mesh.triangles.len(), object.mesh.labels.len());
+        if count >= u32::MAX as usize {
             return Err(too_large(Format::ThreeMf, "triangles"));
         }
-        if is_labelled {
+        let mut label = None;
+        if property.is_some() || indices[0].is_some() {
             let default = object.label;
             let first = indices[0].or(default.map(|label| label.indices[0]));
             if let (Some(property), Some(first)) = (property.or(default.map(|label| label.property)), first) {
-                let label = Label { property, indices: indices.map(|index| index.unwrap_or(first)) };
-                object.mesh.labels.resize(object.mesh.triangles.len(), None);
-                object.mesh.labels.push(Some(label));
+                label = Some(Label { property, indices: indices.map(|index| index.unwrap_or(first)) });
             } else {
+                let at = self.at() as usize;
                 self.notes.at("triangle with half of a material taken as without", at);
             }
         }
-        object.mesh.triangles.push([a, b, c]);
+        // Those before that say nothing have a place among the labels then.
+        let labels = if label.is_some() { count - said + 1 } else { 0 };
+        self.charge(12 + LABEL * labels as u64)?;
+        if let Some((_, Object { mesh, .. })) = &mut self.object {
+            if label.is_some() {
+                mesh.labels.resize(count, None);
+                mesh.labels.push(label);
+            }
+            mesh.triangles.push([a, b, c]);
+        }
         Ok(())
     }
 
@@ -166,7 +175,8 @@ impl Parser<'_, '_, '_> {
                 _ => {}
             }
         }
-        let count = self.object.as_ref().map_or(0, |(_, object)| object.mesh.triangles.len());
+        let mesh = self.object.as_ref().map(|(_, object)| &object.mesh);
+        let (count, known) = mesh.map_or((0, 0), |mesh| (mesh.triangles.len(), mesh.sets.len()));
         let (Some(first), Some(last)) = (first, last) else { return Ok(()) };
         if first > last || last as usize >= count {
             let at = self.at() as usize;
@@ -174,11 +184,14 @@ impl Parser<'_, '_, '_> {
             return Ok(());
         }
         // Ranges may cover each other as often as they are; so their length counts as memory.
-        self.charge(4 * (u64::from(last - first) + 1))?;
+        self.charge(4 * (u64::from(last - first) + 1 + (count - known) as u64))?;
         if let Some((_, object)) = &mut self.object {
             let (number, mesh) = (object.mesh.set_names.len() as u32, &mut object.mesh);
             mesh.sets.resize(count, 0);
-            mesh.sets[first as usize..=last as usize].fill(number);
+            let triangles = &mut mesh.sets[first as usize..=last as usize];
+            let taken = triangles.iter().filter(|&&set| set != 0 && set != number).count();
+            triangles.fill(number);
+            self.notes.add("triangle in several sets taken as in the last one", taken);
         }
         Ok(())
     }

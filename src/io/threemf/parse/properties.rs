@@ -10,8 +10,20 @@ use crate::Error;
 /// Bytes that a base material takes.
 const BASE: u64 = 80;
 
+/// Bytes that a colour takes, in the table of the mesh too.
+const COLOUR: u64 = 60;
+
 /// Bytes that a list of materials or colours takes.
 const PROPERTY: u64 = 120;
+
+/// What is said of triangles with a property that is not kept, by the name of its element.
+pub(super) fn told(element: &str) -> &'static str {
+    match element {
+        "compositematerials" => "triangle with a mixture of materials, which is not kept",
+        "multiproperties" => "triangle with several layers of materials, which are not kept",
+        _ => "triangle with a picture for its material, which is not kept",
+    }
+}
 
 impl Parser<'_, '_, '_> {
     pub(super) fn start_property(
@@ -56,7 +68,7 @@ impl Parser<'_, '_, '_> {
 
     pub(super) fn colour(&mut self, element: &BytesStart<'_>) -> Result<(), Error> {
         let colour = self.colour_attribute(element, "color")?;
-        self.charge(4)?;
+        self.charge(COLOUR)?;
         if let Some((_, Property::Colours(list))) = &mut self.property {
             list.push(colour);
         }

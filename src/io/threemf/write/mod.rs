@@ -12,7 +12,7 @@ use zip::{CompressionMethod, ZipWriter};
 
 use super::super::rounding::{self, Written};
 use super::super::text::write_all;
-use super::super::{Format, Precision, WriteOptions, write_error};
+use super::super::{Format, WriteOptions, write_error};
 use crate::{Error, Mesh};
 use objects::objects;
 use palette::Palette;
@@ -40,13 +40,10 @@ pub(in crate::io) fn write(
     output: &mut dyn Write,
     options: &WriteOptions,
 ) -> Result<Written, Error> {
-    let mut written = Written::default();
-    if options.precision == Precision::Single {
-        written = rounding::of_single(mesh, Format::ThreeMf, options)?;
-    }
+    let mut written = rounding::of_precision(mesh, Format::ThreeMf, options)?;
     let size = PACKED[0] * mesh.positions.len() as u64 + PACKED[1] * mesh.triangles.len() as u64;
     let _reservation = options.control.reserve(size)?;
-    let objects = objects(mesh, options)?;
+    let (objects, _room) = objects(mesh, options)?;
     let palette = Palette::of(mesh);
     let mut package = ZipWriter::new(Cursor::new(Vec::new()));
     // Without a time, so that the same mesh gives the same bytes.

@@ -4,11 +4,15 @@ use std::collections::HashMap;
 
 use super::super::super::weld::Weld;
 use super::super::super::{Format, WriteOptions, unsupported};
+use crate::control::Reservation;
 use crate::mesh::is_closed;
 use crate::{Error, Mesh};
 
 /// The most vertices and triangles of an object: indices are below 2^31.
 const MOST: usize = 1 << 31;
+
+/// Bytes that a vertex or a triangle takes at most while objects are told apart.
+const ROOM: u64 = 32;
 
 /// An object that is written.
 pub(super) struct ObjectParts {
@@ -30,8 +34,11 @@ pub(super) struct Selection {
 }
 
 /// The objects of a mesh. Where all that has a name is closed, for every name, each is an object of its own. Else the mesh is one
-/// object, and names are those of sets of its triangles.
-pub(super) fn objects(mesh: &Mesh, options: &WriteOptions) -> Result<Vec<ObjectParts>, Error> {
+/// object, and names are those of sets of its triangles. With them the memory that they take.
+pub(super) fn objects(
+    mesh: &Mesh,
+    options: &WriteOptions,
+) -> Result<(Vec<ObjectParts>, Option<Reservation>), Error> {
     if mesh.positions.len().max(mesh.triangles.len()) >= MOST {
         return Err(unsupported(
             Format::ThreeMf,
@@ -39,23 +46,24 @@ pub(super) fn objects(mesh: &Mesh, options: &WriteOptions) -> Result<Vec<ObjectP
         ));
     }
     if mesh.is_empty() {
-        return Ok(Vec::new());
+        return Ok((Vec::new(), None));
     }
+    let room = || options.control.reserve(ROOM * (mesh.positions.len() + mesh.triangles.len()) as u64);
     let (names, of_group) = names(mesh);
     if names.len() > 1 {
-        let _reservation = options.control.reserve(32 * mesh.triangles.len() as u64)?;
+        let reservation = room()?;
         if let Some(objects) = closed_objects(mesh, &names, &of_group) {
-            return Ok(objects);
+            return Ok((objects, Some(reservation)));
         }
     }
     let sets = if names.len() > 1 { sets(mesh, &names, &of_group) } else { Vec::new() };
     let name = if names.len() == 1 { names[0].to_owned() } else { String::new() };
     if is_closed(mesh) {
-        return Ok(vec![ObjectParts { name, selection: None, is_closed: true, sets }]);
+        return Ok((vec![ObjectParts { name, selection: None, is_closed: true, sets }], None));
     }
-    let _reservation = options.control.reserve(32 * (mesh.positions.len() + mesh.triangles.len()) as u64)?;
+    let reservation = room()?;
     let selection = welded(mesh)?;
-    Ok(vec![ObjectParts { name, is_closed: selection.is_some(), selection, sets }])
+    Ok((vec![ObjectParts { name, is_closed: selection.is_some(), selection, sets }], Some(reservation)))
 }
 
 /// The mesh with one vertex for all at a place, if it is closed then: seams of its file make it look open.
