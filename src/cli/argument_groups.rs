@@ -132,6 +132,14 @@ pub(crate) struct Placing {
     /// along:FILE:COUNT[:turn]
     #[arg(long, value_name = "PATTERN", value_parser = transforms::repetition, allow_hyphen_values = true)]
     pattern: Vec<Repetition>,
+    /// Take the input, a cage (*.obj, *.json, *.glb with a cage), as its limit surface, within a tolerance in its units there
+    /// [default: 1/1000 of its diagonal]; with commas: creases:DEGREES, loop or catmull-clark, opensubdiv or biermann
+    #[cfg(feature = "subdivision")]
+    #[arg(
+        long, value_name = "TOLERANCE,...", value_parser = super::smoothing::smoothing, num_args = 0..=1,
+        require_equals = true, default_missing_value = "auto", action = clap::ArgAction::Append
+    )]
+    subdivide: Vec<super::smoothing::Smoothing>,
     #[command(flatten)]
     texts: Texts,
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use trisect::Operation;
-use trisect::subdivision::Rules;
+use trisect::subdivision::{Rules, Scheme};
 
 use super::argument_groups::{Drawing, Placing, Results};
 use super::values;
@@ -16,9 +16,30 @@ pub(crate) struct Cages {
     /// Tag edges as creases where faces meet at more than this angle, in degrees
     #[arg(long, value_name = "DEGREES", value_parser = values::number, allow_hyphen_values = true)]
     pub(crate) creases_from_angle: Option<f64>,
-    /// Weights of the subdivision
+    /// Weights of Loop's scheme
     #[arg(long, value_enum, default_value_t = RulesChoice::Loop)]
     pub(crate) rules: RulesChoice,
+    /// Scheme of OBJ files [default: catmull-clark if a face has more than three corners, loop otherwise]
+    #[arg(long, value_enum)]
+    pub(crate) scheme: Option<SchemeChoice>,
+}
+
+/// Schemes of subdivision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SchemeChoice {
+    /// Loop's: triangles; larger faces are split
+    Loop,
+    /// Catmull and Clark's: polygons
+    CatmullClark,
+}
+
+impl SchemeChoice {
+    pub(crate) fn scheme(self) -> Scheme {
+        match self {
+            Self::Loop => Scheme::Loop,
+            Self::CatmullClark => Scheme::CatmullClark,
+        }
+    }
 }
 
 /// Weights of the subdivision.
@@ -46,7 +67,7 @@ impl RulesChoice {
 /// Subdividing a cage.
 #[derive(Debug, Args)]
 pub(crate) struct Subdivide {
-    /// Cage: *.obj with tag lines, or *.json
+    /// Cage: *.obj with tag lines, *.json, or a *.glb that has one
     #[arg(value_name = "CAGE", required = true, num_args = 1)]
     pub(crate) files: Vec<PathBuf>,
     #[command(flatten)]
@@ -75,14 +96,14 @@ pub(crate) struct FreeFormVerb {
     /// What to do
     #[arg(value_name = "OPERATION", value_enum)]
     pub(crate) operation: CageOperation,
-    /// Cages: *.obj with tag lines, or *.json; of more than two, the result of two and the next
+    /// Cages: *.obj with tag lines, *.json, or *.glb that have one; of more than two, the result of two and the next
     #[arg(value_name = "CAGE", required = true, num_args = 2..)]
     pub(crate) files: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) placing: Placing,
     #[command(flatten)]
     pub(crate) cages: Cages,
-    /// Output file; may be repeated: *.obj and *.json get the cage, *.glb and others the limit surface, *.png a picture
+    /// Output file; may be repeated: *.obj and *.json get the cage, *.glb the limit surface with the cage in it, others the limit surface, *.png a picture
     #[arg(short, long, value_name = "FILE", help_heading = "Outputs")]
     pub(crate) output: Vec<PathBuf>,
     /// Write the exact boolean of the limit meshes

@@ -4,24 +4,27 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
+use trisect::io::{Contents, Format};
 use trisect::render::Picture;
-use trisect::subdivision::{ControlMesh, LimitMesh};
-use trisect::{Error, Mesh};
+use trisect::subdivision::{Cage, Rules, Scheme};
+use trisect::{Control, Error, Mesh};
 
 use super::argument_groups::Drawing;
-use super::cage_arguments::Cages;
+use super::cage_arguments::{Cages, SchemeChoice};
 use super::documents::Document;
 use super::fault::Fault;
+use super::limits::Limits;
 use super::output;
-use super::reading;
+use super::reading::{self, Input};
 use super::requests::{self, Request};
 use super::session::Session;
+use super::shapes;
 use super::stream::STANDARD;
 use super::transforms::Transform;
 
 /// A cage that was read.
 pub(crate) struct Read {
-    pub(crate) cage: ControlMesh,
+    pub(crate) cage: Cage,
     pub(crate) name: String,
 }
 
@@ -44,42 +47,96 @@ pub(crate) fn read(
     Ok(cages)
 }
 
-fn one(request: &Request, choice: Cages, session: &Session<'_>) -> Result<(ControlMesh, Vec<String>), Error> {
-    let text = reading::text(&request.path, &session.limits)?;
-    let rules = choice.rules.rules();
-    let is_json =
-        has_ending(&request.path, "json") || (request.is_standard() && text.trim_start().starts_with('{'));
-    let (mut cage, warnings) = if is_json {
-        (ControlMesh::from_json(text.as_bytes())?, Vec::new())
-    } else if has_ending(&request.path, "obj") || request.is_standard() {
-        ControlMesh::from_obj(text.as_bytes(), rules)?
-    } else {
-        return Err(Error::InvalidArgument(
-            "a cage is read from *.obj or *.json; `convert` makes an OBJ of other meshes".into(),
-        ));
-    };
-    if !request.transforms.is_empty() {
-        // Details turn with the surface, but keep their lengths: a cage that is scaled loses them first.
-        if request.transforms.iter().any(Transform::is_repetition) {
-            let what = "a cage cannot be repeated by --pattern: repeat the mesh that `subdivide` makes of it";
-            return Err(Error::InvalidArgument(what.into()));
-        }
-        if !request.transforms.iter().all(Transform::is_rigid) {
-            cage = cage.subdivided(0)?;
-        }
-        let mut mesh = cage.mesh();
-        for transform in &request.transforms {
-            mesh = transform.apply(mesh, &session.control())?;
-        }
-        // A reflection turns the faces over: the mesh has done that already.
-        let details = cage.details().to_vec();
-        cage = ControlMesh::new(mesh.positions, mesh.triangles, cage.tags().clone(), cage.rules())?
-            .with_details(details)?;
+fn one(request: &Request, choice: Cages, session: &Session<'_>) -> Result<(Cage, Vec<String>), Error> {
+    if request.is_cage() {
+        let what = "--subdivide is for inputs of other verbs: here every input is a cage";
+        return Err(Error::InvalidArgument(what.into()));
     }
+    let scheme = choice.scheme.map(SchemeChoice::scheme);
+    let (cage, warnings) = load(request, choice.rules.rules(), scheme, &session.limits)?;
+    let mut cage = moved(cage, &request.transforms, &session.control())?;
     if let Some(degrees) = choice.creases_from_angle {
         cage = cage.with_creases_from_angle(degrees)?;
     }
     Ok((cage, warnings))
+}
+
+/// A cage as its file has it, and warnings.
+fn load(
+    request: &Request,
+    rules: Rules,
+    scheme: Option<Scheme>,
+    limits: &Limits,
+) -> Result<(Cage, Vec<String>), Error> {
+    if let Some(part) = &request.part {
+        return Err(Error::InvalidArgument(format!("a cage is a whole file, and not its part `{part}`")));
+    }
+    let path = &request.path;
+    if has_ending(path, "glb") || has_ending(path, "gltf") {
+        return Ok((Cage::from_gltf(&reading::file(path, limits)?)?, Vec::new()));
+    }
+    let is_known = request.is_standard() || has_ending(path, "obj") || has_ending(path, "json");
+    if !is_known || request.chosen.as_ref().is_some_and(|_| shapes::named(path).is_some()) {
+        return Err(Error::InvalidArgument(
+            "a cage is read from *.obj, *.json, or a *.glb that has one; `convert` makes an OBJ of other meshes, with the \
+             polygons of their files"
+                .into(),
+        ));
+    }
+    let text = reading::text(path, limits)?;
+    if has_ending(path, "json") || (request.is_standard() && text.trim_start().starts_with('{')) {
+        return Ok((Cage::from_json(text.as_bytes())?, Vec::new()));
+    }
+    Cage::from_obj(text.as_bytes(), rules, scheme)
+}
+
+/// A cage after transforms.
+fn moved(cage: Cage, transforms: &[Transform], control: &Control) -> Result<Cage, Error> {
+    if transforms.is_empty() {
+        return Ok(cage);
+    }
+    if transforms.iter().any(Transform::is_repetition) {
+        let what = "a cage cannot be repeated by --pattern: repeat the mesh that `subdivide` makes of it, or put --subdivide \
+                    before --pattern";
+        return Err(Error::InvalidArgument(what.into()));
+    }
+    // Control points alone are moved: what makes a mesh of a cage would leave out polygons.
+    let points = |positions: &[[f64; 3]]| {
+        let mesh = Mesh::new(positions.to_vec(), Vec::new());
+        Ok(reading::moved(mesh, transforms, control)?.positions)
+    };
+    let reflects = transforms.iter().filter(|transform| transform.reflects()).count() % 2 == 1;
+    cage.moved(points, reflects, transforms.iter().all(Transform::is_rigid))
+}
+
+/// An input with `--subdivide`: transforms before it move the cage, those after it the triangles of its surface.
+pub(crate) fn input(request: &Request, limits: &Limits, control: &Control) -> Result<Option<Input>, Error> {
+    let found = request.transforms.iter().enumerate().find_map(|(at, transform)| match transform {
+        Transform::Subdivide(smoothing) => Some((at, smoothing)),
+        _ => None,
+    });
+    let Some((at, smoothing)) = found else { return Ok(None) };
+    let (before, after) = (&request.transforms[..at], &request.transforms[at + 1..]);
+    if after.iter().any(|transform| matches!(transform, Transform::Subdivide(_))) {
+        return Err(Error::InvalidArgument("--subdivide is given twice".into()));
+    }
+    let (cage, warnings) = load(request, smoothing.rules.unwrap_or_default(), smoothing.scheme, limits)?;
+    let cage = moved(cage, before, control)?;
+    control.check()?;
+    let mesh = reading::moved(smoothing.mesh(&cage)?, after, control)?;
+    let bytes = size_of_val(&*mesh.positions) + size_of_val(&*mesh.triangles);
+    let reserved = control.reserve(bytes as u64)?;
+    let is_gltf = has_ending(&request.path, "glb") || has_ending(&request.path, "gltf");
+    let format = if is_gltf { Format::Glb } else { Format::Obj };
+    Ok(Some(Input { mesh, format, warnings, contents: Contents::default(), reserved }))
+}
+
+/// The length of the diagonal of a cage's bounds; 1 of a cage that is a point.
+pub(crate) fn diagonal(cage: &Cage) -> f64 {
+    let bounds = Mesh::new(cage.positions().to_vec(), Vec::new()).bounds();
+    let length = bounds
+        .map_or(1.0, |bounds| (0..3).map(|k| (bounds.high[k] - bounds.low[k]).powi(2)).sum::<f64>().sqrt());
+    if length > 0.0 { length } else { 1.0 }
 }
 
 fn has_ending(path: &Path, ending: &str) -> bool {
@@ -92,13 +149,17 @@ pub(crate) fn holds_cage(path: &Path) -> bool {
 }
 
 /// The cage as a file, by its name's ending.
-pub(crate) fn document(path: &Path, cage: &ControlMesh) -> Result<Document, Fault> {
+pub(crate) fn document(path: &Path, cage: &Cage) -> Result<Document, Fault> {
     let json = has_ending(path, "json");
-    if !json && !cage.details().is_empty() {
+    let levels = match cage {
+        Cage::Loop(cage) => cage.details().len(),
+        _ => 0,
+    };
+    if !json && levels > 0 {
         return Err(Fault::unusable(format!(
             "{}: OBJ has no details, and the result has {} levels of them; write *.json, or subdivide it (--flatten)",
             path.display(),
-            cage.details().len()
+            levels
         )));
     }
     let mut text = if json { cage.to_json() } else { cage.to_obj() };
@@ -128,9 +189,8 @@ const COLOURS: [[u8; 3]; 2] = [[70, 88, 120], [214, 40, 32]];
 const SURFACE: [u8; 3] = [196, 203, 212];
 
 /// The cage's lines over its shaded limit surface, creases red.
-pub(crate) fn picture(cage: &ControlMesh, drawing: &Drawing) -> Result<Picture, Error> {
-    let fine: LimitMesh = cage.limit_mesh_of_steps(PICTURE_STEPS)?;
-    let mut mesh = fine.mesh().clone();
+pub(crate) fn picture(cage: &Cage, drawing: &Drawing) -> Result<Picture, Error> {
+    let mut mesh = cage.limit_mesh_of_steps(PICTURE_STEPS)?;
     let mut colours = vec![SURFACE; mesh.triangles.len()];
     let mut view = output::view(drawing, None);
     view.edges = false;
@@ -140,8 +200,8 @@ pub(crate) fn picture(cage: &ControlMesh, drawing: &Drawing) -> Result<Picture, 
         let creases: BTreeSet<[u32; 2]> = cage.tags().creases.iter().map(|crease| crease.edge).collect();
         let mut seen = BTreeSet::new();
         for face in cage.faces() {
-            for k in 0..3 {
-                let (u, v) = (face[k], face[(k + 1) % 3]);
+            for k in 0..face.len() {
+                let (u, v) = (face[k], face[(k + 1) % face.len()]);
                 let edge = [u.min(v), u.max(v)];
                 if seen.insert(edge) {
                     let kind = usize::from(creases.contains(&edge));

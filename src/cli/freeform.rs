@@ -5,7 +5,7 @@ use std::time::Instant;
 use clap::ArgMatches;
 use serde_json::{Value, json};
 use trisect::Error;
-use trisect::subdivision::{ControlMesh, FreeForm, FreeFormOutcome, FreeFormReport};
+use trisect::subdivision::{Cage, ControlMesh, FreeForm, FreeFormOutcome, FreeFormReport, Scheme};
 
 use super::argument_groups::{Drawing, Writing};
 use super::cage_arguments::FreeFormVerb;
@@ -48,13 +48,14 @@ pub(crate) fn run(
     let read = cages::read(matches, arguments.cages, session)?;
     session.took("read", start);
     let start = Instant::now();
+    let read = of_triangles(read, arguments.tolerance, session)?;
     let outcome = combine(arguments, &read, session)?;
     let seconds = session.took("run", start);
     // 3. The outputs.
     let start = Instant::now();
     let flat = arguments.flatten.then(|| outcome.surface().subdivided(0)).transpose()?;
-    let cage = flat.as_ref().unwrap_or_else(|| outcome.surface());
-    write(arguments, cage, &cage_paths, &targets, session)?;
+    let cage = Cage::from(flat.unwrap_or_else(|| outcome.surface().clone()));
+    write(arguments, &cage, &cage_paths, &targets, session)?;
     if !exact_targets.is_empty() {
         let mesh = outcome.exact().solid().mesh();
         let options = output::write_options(&writing(Vec::new()), &session.limits);
@@ -68,9 +69,33 @@ pub(crate) fn run(
     Ok(Exit::Fine)
 }
 
+/// All cages as cages of triangles; what had to be fitted is told.
+fn of_triangles(
+    read: Vec<Read>,
+    tolerance: Option<f64>,
+    session: &mut Session<'_>,
+) -> Result<Vec<(String, ControlMesh)>, Fault> {
+    let mut cages = Vec::with_capacity(read.len());
+    for (index, Read { cage, name }) in read.into_iter().enumerate() {
+        // Half of the tolerance; the other half is for the boolean.
+        let allowed = 0.5 * tolerance.unwrap_or_else(|| 1e-3 * cages::diagonal(&cage));
+        let found = cage.to_loop(allowed).map_err(|error| error.of_operand(index, name.clone()))?;
+        if cage.scheme() == Scheme::CatmullClark {
+            session.warn(format!(
+                "{name}: its polygons became {}, fitted to the Catmull-Clark surface: within {} of it; the result is a cage of \
+                 triangles",
+                words::counted(found.0.faces().len(), "triangle"),
+                words::short(found.1)
+            ));
+        }
+        cages.push((name, found.0));
+    }
+    Ok(cages)
+}
+
 fn combine(
     arguments: &FreeFormVerb,
-    read: &[Read],
+    read: &[(String, ControlMesh)],
     session: &mut Session<'_>,
 ) -> Result<FreeFormOutcome, Fault> {
     let mut settings = FreeForm::new()
@@ -86,11 +111,11 @@ fn combine(
     let operation = arguments.operation.operation();
     let mut steps = Vec::new();
     let mut outcome: Option<FreeFormOutcome> = None;
-    for (index, next) in read.iter().enumerate().skip(1) {
-        let first = outcome.as_ref().map_or(&read[0].cage, FreeFormOutcome::surface);
-        let done = settings.run(operation, first, &next.cage).map_err(name_option)?;
+    for (index, (name, next)) in read.iter().enumerate().skip(1) {
+        let first = outcome.as_ref().map_or(&read[0].1, FreeFormOutcome::surface);
+        let done = settings.run(operation, first, next).map_err(name_option)?;
         for warning in &done.report().warnings {
-            session.warn(format!("after operand {} ({}): {warning}", index + 1, next.name));
+            session.warn(format!("after operand {} ({name}): {warning}", index + 1));
         }
         steps.push(described(done.report()));
         outcome = Some(done);
@@ -110,7 +135,7 @@ fn name_option(error: Error) -> Fault {
 
 fn write(
     arguments: &FreeFormVerb,
-    cage: &ControlMesh,
+    cage: &Cage,
     cage_paths: &[std::path::PathBuf],
     targets: &[output::Target],
     session: &mut Session<'_>,
@@ -120,15 +145,15 @@ fn write(
     let mesh = if targets.is_empty() {
         trisect::Mesh::default()
     } else {
-        let tolerance = arguments.tolerance.unwrap_or_else(|| 1e-3 * diagonal(cage));
-        if cage.faces().is_empty() { cage.mesh() } else { cage.limit_mesh(tolerance)?.mesh().clone() }
+        let tolerance = arguments.tolerance.unwrap_or_else(|| 1e-3 * cages::diagonal(cage));
+        if cage.face_count() == 0 { cage.mesh()? } else { cage.limit_mesh(tolerance)? }
     };
     let picture = || {
         cages::picture(cage, &arguments.drawing)
             .unwrap_or_else(|_| trisect::render::mesh(&mesh, &output::view(&arguments.drawing, None), None))
     };
     let empty = Writing::default();
-    let options = output::write_options(&empty, &session.limits);
+    let options = cage.beside(output::write_options(&empty, &session.limits));
     let shown = Shown::new(&arguments.drawing, None, None);
     let product = Product { mesh: &mesh, options, picture: &picture, documents: &documents, shown };
     let (written, warnings) = output::write_all(targets, &product, &session.limits)?;
@@ -137,12 +162,6 @@ fn write(
         session.warn(warning);
     }
     Ok(())
-}
-
-fn diagonal(cage: &ControlMesh) -> f64 {
-    cage.mesh()
-        .bounds()
-        .map_or(1.0, |bounds| (0..3).map(|k| (bounds.high[k] - bounds.low[k]).powi(2)).sum::<f64>().sqrt())
 }
 
 /// What the JSON report says of one operation.

@@ -56,6 +56,8 @@ mod session;
 mod shapes;
 mod shell;
 mod slice;
+#[cfg(feature = "subdivision")]
+mod smoothing;
 mod solidify;
 mod source;
 mod split;

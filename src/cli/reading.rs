@@ -10,6 +10,7 @@ use trisect::{Control, Error, Mesh};
 use super::limits::Limits;
 use super::requests::Request;
 use super::stream::STANDARD;
+use super::transforms::Transform;
 
 /// A file that was read and moved.
 pub(crate) struct Input {
@@ -24,6 +25,10 @@ pub(crate) struct Input {
 
 /// Reads one input and moves it to its place.
 pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Result<Input, Error> {
+    #[cfg(feature = "subdivision")]
+    if let Some(input) = super::cages::input(request, limits, control)? {
+        return Ok(input);
+    }
     let (mut mesh, format, warnings, contents) = match &request.chosen {
         Some(chosen) => {
             (chosen.mesh.clone(), chosen.format, chosen.warnings.clone(), chosen.contents.clone())
@@ -42,18 +47,23 @@ pub(crate) fn read(request: &Request, limits: &Limits, control: &Control) -> Res
         }
     };
     control.check()?;
-    for transform in &request.transforms {
+    mesh = moved(mesh, &request.transforms, control)?;
+    let bytes = size_of_val(&*mesh.positions) + size_of_val(&*mesh.triangles);
+    let reserved = control.reserve(bytes as u64)?;
+    Ok(Input { mesh, format, warnings, contents, reserved })
+}
+
+/// A mesh after all transforms.
+pub(crate) fn moved(mut mesh: Mesh, transforms: &[Transform], control: &Control) -> Result<Mesh, Error> {
+    for transform in transforms {
         mesh = transform.apply(mesh, control)?;
     }
-    if !request.transforms.is_empty() && mesh.positions.as_flattened().iter().any(|value| !value.is_finite())
-    {
+    if !transforms.is_empty() && mesh.positions.as_flattened().iter().any(|value| !value.is_finite()) {
         return Err(Error::InvalidArgument(
             "its transforms move vertices out of the range of numbers".into(),
         ));
     }
-    let bytes = size_of_val(&*mesh.positions) + size_of_val(&*mesh.triangles);
-    let reserved = control.reserve(bytes as u64)?;
-    Ok(Input { mesh, format, warnings, contents, reserved })
+    Ok(mesh)
 }
 
 /// How an input is read.
@@ -89,7 +99,8 @@ pub(crate) fn name_option(error: Error) -> Error {
     }
 }
 
-fn file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Error> {
+/// The bytes of a file, or of standard input.
+pub(crate) fn file(path: &Path, limits: &Limits) -> Result<Vec<u8>, Error> {
     let endless = std::fs::metadata(path).is_ok_and(|file| !file.is_file());
     let bytes = if endless { limits.while_waiting(|| std::fs::read(path)) } else { std::fs::read(path) };
     bytes.map_err(|source| Error::File {

@@ -52,6 +52,14 @@ impl Request {
         stem.filter(|stem| !stem.is_empty() && stem != STANDARD).unwrap_or_else(|| "input".into())
     }
 
+    /// Whether the input is a cage that is to be subdivided.
+    pub(crate) fn is_cage(&self) -> bool {
+        #[cfg(feature = "subdivision")]
+        return self.transforms.iter().any(|transform| matches!(transform, Transform::Subdivide(_)));
+        #[cfg(not(feature = "subdivision"))]
+        false
+    }
+
     /// Whether this is standard input.
     pub(crate) fn is_standard(&self) -> bool {
         self.path == Path::new(STANDARD)

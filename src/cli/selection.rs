@@ -86,7 +86,7 @@ pub(crate) fn whole(
     limits: &Limits,
     control: &Control,
 ) -> Result<(Request, Vec<PartName>), Error> {
-    if request.chosen.is_some() {
+    if request.chosen.is_some() || request.is_cage() {
         return Ok((request, Vec::new()));
     }
     let file = read(&request, limits, control)?;

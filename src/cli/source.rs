@@ -40,12 +40,13 @@ pub(crate) fn field(
     control: &Control,
 ) -> Result<Field, Fault> {
     let mut distance = None;
+    let requests = requests::placed_requests(matches)?;
+    let is_cage = requests.iter().any(requests::Request::is_cage);
     let (expression, own, name) = if let Some(text) = &source.formula {
         let formula = Formula::parse(text).map_err(trisect::Error::from)?;
         let expression = formula.compile(System::default(), &[], &[]).map_err(trisect::Error::from)?;
         (expression, None, "the formula".to_owned())
-    } else if let Some(path) = source.files.iter().find(|path| is_json(path)) {
-        let requests = requests::placed_requests(matches)?;
+    } else if let Some(path) = source.files.iter().find(|path| is_json(path) && !is_cage) {
         if requests.iter().any(|request| !request.transforms.is_empty()) || source.reading.format.is_some() {
             return Err(Fault::usage("a model file takes neither transforms nor --format"));
         }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::{Value, json};
-use trisect::subdivision::ControlMesh;
+use trisect::subdivision::{Cage, Rules};
 use trisect::{Error, Mesh};
 
 use super::argument_groups::{Drawing, Writing};
@@ -24,7 +24,7 @@ use super::words;
 
 /// What subdivision gave.
 enum Made {
-    Cage(Box<ControlMesh>),
+    Cage(Box<Cage>),
     Mesh(Mesh),
 }
 
@@ -60,22 +60,22 @@ pub(crate) fn run(
     let seconds = session.took("run", start);
     // 3. The outputs.
     let mesh = match &made {
-        Made::Cage(cage) => cage.mesh(),
+        Made::Cage(cage) => cage.mesh()?,
         Made::Mesh(mesh) => mesh.clone(),
     };
-    let written = write(&made, &mesh, &cage_paths, &targets, &writing, (drawing, session))?;
+    let written = write((&made, &input.cage), &mesh, &cage_paths, &targets, &writing, (drawing, session))?;
     let measures = Measures::of_mesh(&mesh);
     session.note("result", measures.to_json());
     session.note("outputs", written);
     session.note(
         "cage",
-        json!({ "vertices": input.cage.positions().len(), "faces": input.cage.faces().len(),
-                "creases": input.cage.tags().creases.len(), "rules": input.cage.rules().name() }),
+        json!({ "vertices": input.cage.positions().len(), "faces": input.cage.face_count(),
+                "creases": input.cage.tags().creases.len(), "scheme": input.cage.scheme().name(), "rules": rules(&input.cage) }),
     );
     session.console.say(&format!(
         "{}: {} -> {} ({})",
         input.name,
-        words::counted(input.cage.faces().len(), "face"),
+        words::counted(input.cage.face_count(), "face"),
         words::counted(mesh.triangles.len(), "triangle"),
         words::time(seconds)
     ));
@@ -84,7 +84,7 @@ pub(crate) fn run(
 
 /// Writes cages, meshes and pictures; what the report says of them.
 fn write(
-    made: &Made,
+    (made, input): (&Made, &Cage),
     mesh: &Mesh,
     cage_paths: &[PathBuf],
     targets: &[Target],
@@ -110,7 +110,10 @@ fn write(
         Some(Ok(picture)) => picture,
         _ => trisect::render::mesh(mesh, &output::view(drawing, None), None),
     };
-    let options = output::write_options(writing, &session.limits);
+    let mut options = output::write_options(writing, &session.limits);
+    if !writing.recenter {
+        options = cage.unwrap_or(input).beside(options);
+    }
     let shown = Shown::new(drawing, None, None);
     let product = Product { mesh, options, picture: &picture, documents: &documents, shown };
     let (written, warnings) = output::write_all(targets, &product, &session.limits)?;
@@ -121,11 +124,19 @@ fn write(
     Ok(written)
 }
 
-fn make(arguments: &Subdivide, cage: &ControlMesh) -> Result<Made, Error> {
+/// The name of the rules a cage has.
+fn rules(cage: &Cage) -> &'static str {
+    match cage {
+        Cage::Loop(cage) => cage.rules().name(),
+        _ => Rules::OpenSubdiv.name(),
+    }
+}
+
+fn make(arguments: &Subdivide, cage: &Cage) -> Result<Made, Error> {
     let levels = arguments.levels.unwrap_or(1) as usize;
     Ok(match arguments.tolerance {
-        Some(tolerance) => Made::Mesh(cage.limit_mesh(tolerance)?.mesh().clone()),
-        None if arguments.limit => Made::Mesh(cage.limit_mesh_of_steps(levels)?.mesh().clone()),
+        Some(tolerance) => Made::Mesh(cage.limit_mesh(tolerance)?),
+        None if arguments.limit => Made::Mesh(cage.limit_mesh_of_steps(levels)?),
         None => Made::Cage(Box::new(cage.subdivided(levels)?)),
     })
 }

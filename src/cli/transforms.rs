@@ -10,6 +10,8 @@ use trisect::{Control, Error, Mesh};
 
 use super::points;
 use super::requests::placed;
+#[cfg(feature = "subdivision")]
+use super::smoothing::Smoothing;
 use super::values;
 
 /// A transform of an input.
@@ -31,6 +33,9 @@ pub(crate) enum Transform {
     /// Evenly into a box of this size.
     Fit([f64; 3]),
     Repeat(Repetition),
+    /// A cage to its limit surface.
+    #[cfg(feature = "subdivision")]
+    Subdivide(Smoothing),
 }
 
 /// A side of the bounds to a coordinate.
@@ -68,6 +73,11 @@ pub(crate) fn all(matches: &ArgMatches) -> Vec<(usize, &'static str, Transform)>
     add("--mirror", placed(matches, "mirror").map(|(at, v)| (at, Transform::Mirror(v))).collect());
     add("--fit", placed(matches, "fit").map(|(at, v)| (at, Transform::Fit(v))).collect());
     add("--pattern", placed(matches, "pattern").map(|(at, v)| (at, Transform::Repeat(v))).collect());
+    #[cfg(feature = "subdivision")]
+    if matches.try_contains_id("subdivide").is_ok() {
+        let all = placed(matches, "subdivide");
+        found.extend(all.map(|(at, v)| (at, "--subdivide", Transform::Subdivide(v))));
+    }
     found
 }
 
@@ -92,6 +102,9 @@ impl Transform {
                 let _copies = control.reserve(pattern.memory(&mesh))?;
                 pattern.repeat(&mesh)?
             }
+            // What becomes of cages is done where files are read (`cages::input`).
+            #[cfg(feature = "subdivision")]
+            Self::Subdivide(_) => mesh,
         })
     }
 
@@ -106,6 +119,19 @@ impl Transform {
     #[cfg(feature = "subdivision")]
     pub(crate) fn is_repetition(&self) -> bool {
         matches!(self, Self::Repeat(_))
+    }
+
+    /// Whether it turns faces over.
+    #[cfg(feature = "subdivision")]
+    pub(crate) fn reflects(&self) -> bool {
+        match self {
+            Self::Mirror(_) => true,
+            Self::Scale(by) => by.iter().product::<f64>() < 0.0,
+            Self::Matrix([[a, b, c, _], [d, e, f, _], [g, h, i, _], _]) => {
+                a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0.0
+            }
+            _ => false,
+        }
     }
 }
 
@@ -144,6 +170,8 @@ impl fmt::Display for Transform {
             Self::Drop => return f.write_str("drop"),
             Self::Mirror(axis) => return write!(f, "mirror {}", AXES[*axis]),
             Self::Repeat(repetition) => return write!(f, "pattern {repetition}"),
+            #[cfg(feature = "subdivision")]
+            Self::Subdivide(smoothing) => return write!(f, "subdivide {smoothing}"),
         };
         let values: Vec<String> = values.iter().map(ToString::to_string).collect();
         write!(f, "{name} {}", values.join(","))

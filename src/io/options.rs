@@ -85,6 +85,9 @@ pub struct WriteOptions {
     pub(super) separate: bool,
     pub(super) destination: Option<PathBuf>,
     pub(super) scene: Option<KeptScene>,
+    /// What is written into the extras of the first mesh of a glTF file.
+    #[cfg(feature = "formats")]
+    pub(super) extra: Option<(&'static str, serde_json::Value)>,
     pub(super) control: Control,
 }
 
@@ -131,6 +134,13 @@ impl WriteOptions {
     #[must_use]
     pub fn separate(mut self, wanted: bool) -> Self {
         self.separate = wanted;
+        self
+    }
+
+    /// Writes a value into the extras of a glTF file's first mesh.
+    #[cfg(all(feature = "formats", feature = "subdivision"))]
+    pub(crate) fn extra(mut self, key: &'static str, value: serde_json::Value) -> Self {
+        self.extra = Some((key, value));
         self
     }
 

@@ -6,7 +6,7 @@ use glam::{DAffine3, DVec3};
 use serde_json::{Map, Value};
 
 use super::fault;
-use crate::subdivision::{ControlMesh, Rules, json};
+use crate::subdivision::{self, ControlMesh, Rules, json};
 use crate::{Error, FileAction, Mesh};
 
 /// Default tolerance, in units of the cage's diagonal.
@@ -14,7 +14,7 @@ const DEFAULT_TOLERANCE: f64 = 1e-3;
 
 /// A cage in a model.
 #[derive(Clone, Debug)]
-pub(super) struct Cage(pub(super) ControlMesh);
+pub(super) struct Cage(pub(super) subdivision::Cage);
 
 impl Cage {
     /// From a node's keys: `file`, or those of a cage file itself.
@@ -34,32 +34,56 @@ impl Cage {
         })?;
         let is_json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
         let cage = if is_json {
-            ControlMesh::from_json(&bytes)
+            subdivision::Cage::from_json(&bytes)
         } else {
-            ControlMesh::from_obj(&bytes, Rules::default()).map(|(cage, _)| cage)
+            subdivision::Cage::from_obj(&bytes, Rules::default(), None).map(|(cage, _)| cage)
         };
         cage.map(Self).map_err(|error| fault(format!("{}: {error}", path.display())))
     }
 
     /// The limit surface's closed mesh within `tolerance`, or a thousandth of the cage's diagonal.
     pub(super) fn mesh(&self, tolerance: Option<f64>) -> Result<Mesh, Error> {
-        let tolerance = tolerance.unwrap_or_else(|| DEFAULT_TOLERANCE * self.diagonal());
-        let fine = self.0.limit_mesh(tolerance)?;
-        Ok(fine.solid().mesh().clone())
+        self.0.limit_mesh(tolerance.unwrap_or_else(|| self.default_tolerance()))
     }
 
-    fn diagonal(&self) -> f64 {
-        self.0.mesh().bounds().map_or(1.0, |bounds| DVec3::from(bounds.low).distance(bounds.high.into()))
+    /// The cage as one of triangles for operations that give cages; and what is to be said of it.
+    pub(super) fn of_triangles(
+        &self,
+        tolerance: Option<f64>,
+    ) -> Result<(ControlMesh, Option<String>), Error> {
+        // Half of what the operation may be off by.
+        let tolerance = 0.5 * tolerance.unwrap_or_else(|| self.default_tolerance());
+        let (cage, distance) = self.0.to_loop(tolerance)?;
+        let warning = (self.0.scheme() == subdivision::Scheme::CatmullClark).then(|| {
+            format!(
+                "a cage of polygons became one of {} triangles, whose surface is within {distance:.3e} of it",
+                cage.faces().len()
+            )
+        });
+        Ok((cage, warning))
+    }
+
+    fn default_tolerance(&self) -> f64 {
+        let mut low = DVec3::INFINITY;
+        let mut high = DVec3::NEG_INFINITY;
+        for &p in self.0.positions() {
+            (low, high) = (low.min(p.into()), high.max(p.into()));
+        }
+        let diagonal = low.distance(high);
+        if diagonal.is_finite() { DEFAULT_TOLERANCE * diagonal } else { DEFAULT_TOLERANCE }
     }
 
     /// The cage, moved. A reflection turns its faces over.
     pub(super) fn moved(&self, transform: DAffine3) -> Result<Self, Error> {
-        let positions =
-            self.0.positions().iter().map(|&p| transform.transform_point3(p.into()).to_array()).collect();
-        let mut faces = self.0.faces().to_vec();
-        if transform.matrix3.determinant() < 0.0 {
-            faces.iter_mut().for_each(|face| face.swap(1, 2));
+        if transform == DAffine3::IDENTITY {
+            return Ok(self.clone());
         }
-        ControlMesh::new(positions, faces, self.0.tags().clone(), self.0.rules()).map(Self)
+        let points = |positions: &[[f64; 3]]| {
+            Ok(positions.iter().map(|&p| transform.transform_point3(p.into()).to_array()).collect())
+        };
+        let turn = transform.matrix3;
+        let is_rigid = (turn * turn.transpose()).abs_diff_eq(glam::DMat3::IDENTITY, 1e-14);
+        let reflects = turn.determinant() < 0.0;
+        self.0.moved(points, reflects, is_rigid && !reflects).map(Self)
     }
 }

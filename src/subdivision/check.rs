@@ -10,7 +10,11 @@ use super::refine::CONCAVE_FROM;
 use super::tags::{Sector, Tags};
 
 /// Refuses coordinates that are not finite, indices of no vertex, and values without meaning.
-pub(super) fn check(positions: &[[f64; 3]], faces: &[[u32; 3]], tags: &Tags) -> Result<(), CageError> {
+pub(super) fn check<'f>(
+    positions: &[[f64; 3]],
+    faces: impl Iterator<Item = &'f [u32]>,
+    tags: &Tags,
+) -> Result<(), CageError> {
     let count = positions.len();
     if let Some(vertex) = positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
         return Err(CageError::NotFinite { vertex });
@@ -21,11 +25,13 @@ pub(super) fn check(positions: &[[f64; 3]], faces: &[[u32; 3]], tags: &Tags) -> 
         }
         Err(CageError::NoSuchVertex { what: what(), vertex: u64::from(vertex), count })
     };
-    for (f, face) in faces.iter().enumerate() {
-        for k in 0..3 {
-            known(&|| format!("face {f}"), face[k])?;
-            if face[k] == face[(k + 1) % 3] {
-                return Err(CageError::RepeatedVertex { face: f, vertex: face[k] });
+    for (f, face) in faces.enumerate() {
+        for (k, &vertex) in face.iter().enumerate() {
+            known(&|| format!("face {f}"), vertex)?;
+            // (Of faces with very many corners, neighbours alone: a look at all others would take too long.)
+            let others = if face.len() > 64 { &face[k.saturating_sub(1)..k] } else { &face[..k] };
+            if others.contains(&vertex) {
+                return Err(CageError::RepeatedVertex { face: f, vertex });
             }
         }
     }

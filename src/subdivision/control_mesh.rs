@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 
+use super::cage::{Cage, Scheme};
 use super::check::{check, note_concave};
 use super::details::{Details, MOST_LEVELS, synthesised};
 use super::error::CageError;
@@ -47,7 +48,7 @@ impl ControlMesh {
         tags: Tags,
         rules: Rules,
     ) -> Result<Self, Error> {
-        check(&positions, &faces, &tags)?;
+        check(&positions, faces.iter().map(|face| &face[..]), &tags)?;
         let tags = tags.normalised();
         let mut level = Level::new(rules, positions.len(), faces, &tags)?;
         note_concave(&mut level, &positions);
@@ -213,30 +214,39 @@ impl ControlMesh {
     /// # Errors
     /// [`Error::Cage`] with the line.
     pub fn from_obj(bytes: &[u8], rules: Rules) -> Result<(Self, Vec<String>), Error> {
-        super::obj::read(bytes, rules)
+        match super::obj::read(bytes, rules, Some(Scheme::Loop))? {
+            (Cage::Loop(cage), warnings) => Ok((cage, warnings)),
+            _ => Err(CageError::Tag("a cage of polygons".into()).into()),
+        }
     }
 
     /// The cage as an OBJ file with tag lines; reading it gives the same bits. OBJ has no details: what is written is the cage
     /// without them, so write [`subdivided(0)`](Self::subdivided) to have their surface.
     #[must_use]
     pub fn to_obj(&self) -> String {
-        super::obj::write(self)
+        super::obj::write(&self.positions, self.level.faces.iter().map(|face| &face[..]), &self.tags)
     }
 
     /// Reads a cage from a JSON object with `positions`, `faces`, and if need be `creases`, `corners`, `sectors`, `rules`.
     ///
     /// # Errors
-    /// [`Error::Cage`] with the key.
+    /// [`Error::Cage`] with the key, and for a cage of polygons, which [`Cage::from_json`] reads.
     #[cfg(feature = "formats")]
     pub fn from_json(bytes: &[u8]) -> Result<Self, Error> {
-        super::json::read(bytes)
+        match super::json::read(bytes)? {
+            Cage::Loop(cage) => Ok(cage),
+            Cage::CatmullClark(_) => {
+                Err(CageError::Tag("its faces have more than three corners: `Cage` reads such cages".into())
+                    .into())
+            }
+        }
     }
 
     /// The cage as a JSON object; reading it gives the same bits.
     #[cfg(feature = "formats")]
     #[must_use]
     pub fn to_json(&self) -> String {
-        super::json::to_value(self).to_string()
+        super::json::to_value(&Cage::Loop(self.clone())).to_string()
     }
 
     pub(crate) fn surface(&self) -> Surface {

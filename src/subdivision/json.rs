@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::ControlMesh;
+use super::cage::{Cage, Scheme};
 use super::details::{Details, DomainVertex};
 use super::error::CageError;
 use super::rules::Rules;
@@ -10,10 +10,11 @@ use super::tags::{Corner, Crease, INFINITE_SHARPNESS, Sector, Tags};
 use crate::Error;
 
 /// The keys of a cage.
-const KEYS: [&str; 8] = ["kind", "positions", "faces", "creases", "corners", "sectors", "rules", "details"];
+const KEYS: [&str; 9] =
+    ["kind", "positions", "faces", "creases", "corners", "sectors", "scheme", "rules", "details"];
 
 /// Reads a cage from a JSON object.
-pub(crate) fn read(bytes: &[u8]) -> Result<ControlMesh, Error> {
+pub(crate) fn read(bytes: &[u8]) -> Result<Cage, Error> {
     let value: Value = serde_json::from_slice(bytes).map_err(|error| {
         fault(&format!("line {}, column {}", error.line(), error.column()), "it is not JSON")
     })?;
@@ -21,7 +22,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<ControlMesh, Error> {
 }
 
 /// Reads a cage from a parsed JSON object.
-pub(crate) fn from_value(value: &Value) -> Result<ControlMesh, Error> {
+pub(crate) fn from_value(value: &Value) -> Result<Cage, Error> {
     let object = value
         .as_object()
         .ok_or_else(|| fault("the whole", "a cage is an object with `positions` and `faces`"))?;
@@ -61,12 +62,28 @@ pub(crate) fn from_value(value: &Value) -> Result<ControlMesh, Error> {
         let [x, y, z] = row[..] else { return Err(wrong("positions", at, "[x, y, z]").into()) };
         points.push([x, y, z]);
     }
-    let mut triangles = Vec::with_capacity(faces.len());
+    let scheme = match object.get("scheme") {
+        None => None,
+        Some(name) => Some(name.as_str().and_then(Scheme::named).ok_or_else(|| {
+            fault("scheme", &format!("it is one of {}", Scheme::ALL.map(Scheme::name).join(", ")))
+        })?),
+    };
+    let mut polygons = Vec::with_capacity(faces.len());
     for (at, row) in faces.iter().enumerate() {
-        let [a, b, c] = row[..] else { return Err(wrong("faces", at, "[vertex, vertex, vertex]").into()) };
-        triangles.push([index("faces", at, a)?, index("faces", at, b)?, index("faces", at, c)?]);
+        if row.len() < 3 || (row.len() > 3 && scheme == Some(Scheme::Loop)) {
+            return Err(wrong("faces", at, "[vertex, vertex, vertex]").into());
+        }
+        polygons.push(row.iter().map(|&v| index("faces", at, v)).collect::<Result<_, CageError>>()?);
     }
-    ControlMesh::new(points, triangles, tags, rules)?.with_details(details(object)?)
+    let details = details(object)?;
+    let (cage, _) = Cage::new(points, polygons, tags, rules, scheme)?;
+    match cage {
+        Cage::Loop(cage) => Ok(Cage::Loop(cage.with_details(details)?)),
+        Cage::CatmullClark(_) if !details.is_empty() => {
+            Err(fault("details", "they are of Loop's scheme: a cage of polygons has none").into())
+        }
+        polygons => Ok(polygons),
+    }
 }
 
 /// The levels of details: each a list of [face, i, j, k, along, across, up].
@@ -120,13 +137,25 @@ fn index(key: &str, at: usize, value: f64) -> Result<u32, CageError> {
 }
 
 /// A cage as one JSON object; reading it gives the same bits.
-pub(crate) fn to_value(cage: &ControlMesh) -> Value {
+pub(crate) fn to_value(cage: &Cage) -> Value {
     let finite = |sharpness: f64| if sharpness.is_finite() { sharpness } else { INFINITE_SHARPNESS };
     let tags = cage.tags();
     let creases: Vec<Value> =
         tags.creases.iter().map(|c| json!([c.edge[0], c.edge[1], finite(c.sharpness)])).collect();
     let corners: Vec<Value> = tags.corners.iter().map(|c| json!([c.vertex, finite(c.sharpness)])).collect();
-    let sectors: Vec<Value> =
+    let mut object = json!({
+        "kind": "freeform",
+        "positions": cage.positions(),
+        "faces": cage.faces(),
+        "creases": creases,
+        "corners": corners,
+    });
+    let Cage::Loop(cage) = cage else {
+        object["scheme"] = cage.scheme().name().into();
+        return object;
+    };
+    object["rules"] = cage.rules().name().into();
+    object["sectors"] =
         tags.sectors.iter().map(|s| json!([s.vertex, s.first, s.angle, s.flatness])).collect();
     let details: Vec<Vec<Value>> = cage
         .details()
@@ -139,15 +168,6 @@ pub(crate) fn to_value(cage: &ControlMesh) -> Value {
             level.at.iter().map(row).collect()
         })
         .collect();
-    let mut object = json!({
-        "kind": "freeform",
-        "rules": cage.rules().name(),
-        "positions": cage.positions(),
-        "faces": cage.faces(),
-        "creases": creases,
-        "corners": corners,
-        "sectors": sectors,
-    });
     if !details.is_empty() {
         object["details"] = details.into();
     }
@@ -166,7 +186,27 @@ mod tests {
         let again = read(to_value(&cage).to_string().as_bytes()).expect("valid");
         assert_eq!(again.tags(), cage.tags());
         assert_eq!(again.positions(), cage.positions());
-        assert_eq!((again.faces(), again.rules()), (cage.faces(), Rules::Biermann));
+        assert_eq!(again.faces(), cage.faces());
+        assert!(
+            matches!((cage, again), (Cage::Loop(a), Cage::Loop(b)) if a.rules() == Rules::Biermann && b.rules() == a.rules())
+        );
+    }
+
+    #[test]
+    fn quads_are_of_catmull_and_clark_s_scheme() {
+        let text =
+            r#"{"positions": [[0,0,0],[1,0,0],[1,1,0],[0,1,0]], "faces": [[0,1,2,3]], "corners": [[2,10]]}"#;
+        let cage = read(text.as_bytes()).expect("valid");
+        assert_eq!((cage.scheme(), cage.face_count()), (Scheme::CatmullClark, 1));
+        let again = read(to_value(&cage).to_string().as_bytes()).expect("valid");
+        assert_eq!((again.tags(), again.faces(), again.scheme()), (cage.tags(), cage.faces(), cage.scheme()));
+        let with = |key: &str| {
+            read(text.replacen('{', &format!("{{{key}, "), 1).as_bytes()).unwrap_err().to_string()
+        };
+        assert!(with(r#""scheme": "loop""#).contains("faces[0]"));
+        assert!(with(r#""scheme": "doo-sabin""#).contains("catmull-clark"));
+        assert!(with(r#""details": [[[0, 1, 1, 0, 0, 0, 1]]]"#).contains("polygons"));
+        assert!(with(r#""sectors": [[2, 1, 4, 0.5]]"#).contains("sectors"));
     }
 
     #[test]

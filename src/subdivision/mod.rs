@@ -1,5 +1,6 @@
 //! Subdivision surfaces given by control meshes, which modellers call cages, and booleans of them that give cages again.
 //!
+//! [`Cage`] is what files have: triangles or polygons. [`PolygonCage`] is a Catmull-Clark surface, given by quads and other polygons.
 //! [`ControlMesh`] is a piecewise-smooth Loop surface: faces, control points, creases and corners. It subdivides, tells its limit
 //! surface at any place, and becomes triangles within a tolerance ([`ControlMesh::limit_mesh`]), which every other boolean
 //! takes. [`FreeForm`] combines two cages: the result is a cage whose surface is the boolean of both surfaces within a measured
@@ -14,12 +15,16 @@
     reason = "a NaN fails every comparison, and is meant to be refused"
 )]
 
+mod cage;
+mod catmull_clark;
 mod check;
 mod control_mesh;
 mod details;
 mod error;
 mod evaluate;
 mod freeform;
+#[cfg(feature = "formats")]
+mod gltf;
 #[cfg(feature = "formats")]
 pub(crate) mod json;
 mod level;
@@ -33,6 +38,8 @@ mod refine;
 mod rules;
 mod tags;
 
+pub use cage::{Cage, Scheme};
+pub use catmull_clark::{Converted, PolygonCage};
 pub use control_mesh::{ControlMesh, Evaluator};
 pub use details::{Details, DomainVertex};
 pub use error::CageError;

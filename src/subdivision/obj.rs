@@ -4,14 +4,14 @@
 
 use std::fmt::Write as _;
 
+use super::cage::{Cage, Scheme};
 use super::error::CageError;
 use super::rules::Rules;
 use super::tags::{Corner, Crease, INFINITE_SHARPNESS, Sector, Tags};
-use super::{ControlMesh, polygons};
 use crate::Error;
 
 /// Reads a cage and warnings of what was left out or changed.
-pub(crate) fn read(bytes: &[u8], rules: Rules) -> Result<(ControlMesh, Vec<String>), Error> {
+pub(crate) fn read(bytes: &[u8], rules: Rules, scheme: Option<Scheme>) -> Result<(Cage, Vec<String>), Error> {
     let mut reader = Reader::default();
     for (i, line) in bytes.split(|&byte| byte == b'\n').enumerate() {
         let text = String::from_utf8_lossy(line);
@@ -21,7 +21,7 @@ pub(crate) fn read(bytes: &[u8], rules: Rules) -> Result<(ControlMesh, Vec<Strin
             .statement(&words)
             .map_err(|what| CageError::File { place: format!("line {}", i + 1), what })?;
     }
-    reader.finish(rules)
+    reader.finish(rules, scheme)
 }
 
 #[derive(Default)]
@@ -113,7 +113,7 @@ impl Reader {
         Ok(())
     }
 
-    fn finish(self, rules: Rules) -> Result<(ControlMesh, Vec<String>), Error> {
+    fn finish(self, rules: Rules, scheme: Option<Scheme>) -> Result<(Cage, Vec<String>), Error> {
         let mut warnings: Vec<String> =
             self.skipped.iter().map(|what| format!("{what} was skipped")).collect();
         if self.faces.is_empty() {
@@ -123,14 +123,9 @@ impl Reader {
             }
             .into());
         }
-        let (faces, split) = polygons::triangles(&self.positions, &self.faces)?;
-        if split > 0 {
-            warnings.push(format!(
-                "{split} faces with more than three corners were split into triangles: the surface is Loop's of the triangles, not \
-                 the Catmull-Clark surface that the program which wrote the file may have shown"
-            ));
-        }
-        Ok((ControlMesh::new(self.positions, faces, self.tags, rules)?, warnings))
+        let (cage, more) = Cage::new(self.positions, self.faces, self.tags, rules, scheme)?;
+        warnings.extend(more);
+        Ok((cage, warnings))
     }
 }
 
@@ -146,19 +141,25 @@ fn short(word: &str) -> String {
     word.chars().take(40).collect()
 }
 
-/// The cage as text; numbers in full, so that reading gives the same bits.
-pub(crate) fn write(cage: &ControlMesh) -> String {
-    let mut text =
-        format!("# control mesh: {} vertices, {} faces\n", cage.positions().len(), cage.faces().len());
+/// A cage as text; numbers in full, so that reading gives the same bits.
+pub(crate) fn write<'f>(
+    positions: &[[f64; 3]],
+    faces: impl ExactSizeIterator<Item = &'f [u32]>,
+    tags: &Tags,
+) -> String {
+    let mut text = format!("# control mesh: {} vertices, {} faces\n", positions.len(), faces.len());
     // Writing to a string cannot fail.
-    for [x, y, z] in cage.positions() {
+    for [x, y, z] in positions {
         let _ = writeln!(text, "v {x} {y} {z}");
     }
-    for [a, b, c] in cage.faces() {
-        let _ = writeln!(text, "f {} {} {}", a + 1, b + 1, c + 1);
+    for face in faces {
+        text.push('f');
+        for vertex in face {
+            let _ = write!(text, " {}", vertex + 1);
+        }
+        text.push('\n');
     }
     let finite = |sharpness: f64| if sharpness.is_finite() { sharpness } else { INFINITE_SHARPNESS };
-    let tags = cage.tags();
     for crease in &tags.creases {
         let _ = writeln!(
             text,
@@ -184,17 +185,17 @@ mod tests {
     const TENT: &str = "v 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 -1 0\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 4 3\n";
 
     fn fault(text: &str) -> String {
-        read(text.as_bytes(), Rules::Loop).unwrap_err().to_string()
+        read(text.as_bytes(), Rules::Loop, None).unwrap_err().to_string()
     }
 
     #[test]
     fn tags_survive_a_round_trip() {
         let text = format!("{TENT}t crease 2/1/0 1 2 10\nt crease 3/1/0 2 3 1 2.5\nt corner 1/1/0 0 3.5\n");
-        let (cage, warnings) = read(text.as_bytes(), Rules::Loop).expect("valid");
+        let (cage, warnings) = read(text.as_bytes(), Rules::Loop, None).expect("valid");
         assert!(warnings.is_empty());
         assert_eq!(cage.tags().creases.len(), 3);
         assert!(cage.tags().creases[0].sharpness.is_infinite());
-        let (again, _) = read(write(&cage).as_bytes(), Rules::Loop).expect("valid");
+        let (again, _) = read(cage.to_obj().as_bytes(), Rules::Loop, None).expect("valid");
         assert_eq!(again.tags(), cage.tags());
         assert_eq!(again.positions(), cage.positions());
         assert_eq!(again.faces(), cage.faces());
@@ -227,8 +228,12 @@ mod tests {
     #[test]
     fn creases_that_are_no_edges_are_refused() {
         let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
-        let (cage, warnings) = read(text.as_bytes(), Rules::Loop).expect("valid");
-        assert_eq!((cage.faces().len(), warnings.len()), (2, 1));
+        let (cage, warnings) = read(text.as_bytes(), Rules::Loop, Some(Scheme::Loop)).expect("valid");
+        assert_eq!((cage.face_count(), warnings.len()), (2, 1));
+        let (cage, warnings) = read(text.as_bytes(), Rules::Loop, None).expect("valid");
+        assert_eq!((cage.face_count(), cage.scheme(), warnings.len()), (1, Scheme::CatmullClark, 0));
+        let (again, _) = read(cage.to_obj().as_bytes(), Rules::Loop, None).expect("valid");
+        assert_eq!((again.faces(), again.positions()), (cage.faces(), cage.positions()));
         let fault = fault("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 2 0\nf 1 2 3\nf 1 3 4\nt crease 2/1/0 1 3 10\n");
         assert!(fault.contains("no edge"), "{fault}");
     }

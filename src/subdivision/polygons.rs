@@ -35,3 +35,11 @@ pub(crate) fn triangles(
     }
     Ok((triangles, split))
 }
+
+/// What is said where faces were split.
+pub(crate) fn split_warning(count: usize) -> String {
+    format!(
+        "{count} faces with more than three corners were split into triangles: the surface is Loop's of the triangles, not the \
+         Catmull-Clark surface that the program which wrote the file may have shown"
+    )
+}

@@ -3,7 +3,7 @@
 use crate::boolean::Operation;
 use crate::model::cage::Cage;
 use crate::model::{Kind, Mode};
-use crate::subdivision::FreeForm;
+use crate::subdivision::{ControlMesh, FreeForm};
 use crate::{Error, Mesh};
 
 use super::state::State;
@@ -48,22 +48,27 @@ impl State<'_> {
         if let Some(tolerance) = self.given_tolerance(node) {
             settings = settings.tolerance(tolerance);
         }
-        let mut result: Option<Cage> = None;
+        let mut result: Option<ControlMesh> = None;
         for &operand in operands {
             let next = self.cage(operand)?;
+            let within = |error: Error| error.in_node(self.label(operand));
+            let (next, warning) = next.of_triangles(self.given_tolerance(node)).map_err(within)?;
+            if let Some(warning) = warning {
+                self.warnings.push(format!("node {}: {warning}", self.label(operand)));
+            }
             result = Some(match result {
                 None => next,
                 Some(before) => {
-                    let outcome = settings.run(*operation, &before.0, &next.0);
+                    let outcome = settings.run(*operation, &before, &next);
                     let outcome = outcome.map_err(|error| error.in_node(self.label(node)))?;
                     for warning in &outcome.report().warnings {
                         self.warnings.push(format!("node {}: {warning}", self.label(node)));
                     }
-                    Cage(outcome.into_surface())
+                    outcome.into_surface()
                 }
             });
         }
         let empty = || Error::Model(format!("`{}` needs an operand", Operation::name(*operation)));
-        result.ok_or_else(empty)
+        result.map(|cage| Cage(cage.into())).ok_or_else(empty)
     }
 }

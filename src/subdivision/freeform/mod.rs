@@ -26,7 +26,7 @@ mod relax;
 mod report;
 mod run;
 mod sizes;
-mod solve;
+pub(crate) mod solve;
 mod start;
 #[cfg(test)]
 mod tests;

@@ -4,15 +4,15 @@ use glam::{DMat3, DVec3};
 
 /// A sample of the surface as a combination of unknown points and what fixed points add, and where it should be.
 #[derive(Clone, Debug)]
-pub(super) struct Equation {
+pub(crate) struct Equation {
     /// Unknowns with their weights.
-    pub(super) row: Vec<(u32, f64)>,
+    pub(crate) row: Vec<(u32, f64)>,
     /// What the fixed points add.
-    pub(super) known: DVec3,
+    pub(crate) known: DVec3,
     /// Where the sample should be.
-    pub(super) target: DVec3,
+    pub(crate) target: DVec3,
     /// What a residual weighs in each direction: symmetric, not negative.
-    pub(super) weight: DMat3,
+    pub(crate) weight: DMat3,
 }
 
 /// How far the unknowns may be from solving the equations, relative to the right side.
@@ -21,14 +21,14 @@ const TOLERANCE: f64 = 1e-9;
 const STEPS: usize = 600;
 
 /// The weights of a residual: `along` a direction, and `across` it.
-pub(super) fn weighted(direction: DVec3, along: f64, across: f64) -> DMat3 {
+pub(crate) fn weighted(direction: DVec3, along: f64, across: f64) -> DMat3 {
     let outer = DMat3::from_cols(direction * direction.x, direction * direction.y, direction * direction.z);
     outer * (along - across) + DMat3::IDENTITY * across
 }
 
 /// Moves the unknowns to where the weighted squares of the residuals, and of the ways from `ridge` times the mean weight, are
 /// least. Returns the steps taken.
-pub(super) fn solve(equations: &[Equation], unknowns: &mut [DVec3], ridge: f64) -> usize {
+pub(crate) fn solve(equations: &[Equation], unknowns: &mut [DVec3], ridge: f64) -> usize {
     let n = unknowns.len();
     // 1. The diagonal, for the ridge and as the preconditioner.
     let mut diagonal = vec![DMat3::ZERO; n];

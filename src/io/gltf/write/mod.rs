@@ -68,6 +68,9 @@ pub(in crate::io) fn write(
     }
     let pictures = aside.as_ref().map(|aside| aside.pictures);
     let (layout, mut document) = document::document(mesh, pictures, manifold, &mut warnings);
+    if let Some((key, value)) = &options.extra {
+        document["meshes"][0]["extras"] = json!({ *key: value });
+    }
     let bytes = layout.bytes();
     match aside {
         Some(Aside { buffer: (name, buffer), .. }) if format == Format::Gltf => {
