@@ -1,16 +1,18 @@
-//! Free forms: a mug, linked rings and a machine part, each a chain of booleans of cages. Writes the cages as OBJ files.
-//!
-//!     cargo run --release --example free_forms -- FOLDER
-//!     trisect subdivide FOLDER/mug.obj --levels 0 --png mug.png -o mug-again.obj
+//! Cages made by code.
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
-use trisect::subdivision::{ControlMesh, Crease, FreeForm, Rules, Tags};
-use trisect::{Error, Operation};
+use trisect::Error;
+use trisect::subdivision::{ControlMesh, Crease, Rules, Tags};
 
 /// A cylinder along z with creased rims.
-fn cylinder(sides: u32, rows: u32, radius: f64, low: f64, high: f64) -> Result<ControlMesh, Error> {
+pub(crate) fn cylinder(
+    sides: u32,
+    rows: u32,
+    radius: f64,
+    low: f64,
+    high: f64,
+) -> Result<ControlMesh, Error> {
     let mut positions = vec![[0.0, 0.0, low], [0.0, 0.0, high]];
     for j in 0..=rows {
         for i in 0..sides {
@@ -38,7 +40,7 @@ fn cylinder(sides: u32, rows: u32, radius: f64, low: f64, high: f64) -> Result<C
 }
 
 /// A ring in the plane z = 0.
-fn torus(around: u32, across: u32, radius: f64, tube: f64) -> Result<ControlMesh, Error> {
+pub(crate) fn torus(around: u32, across: u32, radius: f64, tube: f64) -> Result<ControlMesh, Error> {
     let mut positions = Vec::new();
     for i in 0..around {
         for j in 0..across {
@@ -60,7 +62,12 @@ fn torus(around: u32, across: u32, radius: f64, tube: f64) -> Result<ControlMesh
 }
 
 /// A block of cells, faces outwards; edges between faces of the directions in `sharp` (pairs of axes) are creases.
-fn block(cells: [u32; 3], low: [f64; 3], high: [f64; 3], sharp: &[[usize; 2]]) -> Result<ControlMesh, Error> {
+pub(crate) fn block(
+    cells: [u32; 3],
+    low: [f64; 3],
+    high: [f64; 3],
+    sharp: &[[usize; 2]],
+) -> Result<ControlMesh, Error> {
     let mut numbers = std::collections::BTreeMap::new();
     let mut positions = Vec::new();
     let mut faces = Vec::new();
@@ -106,62 +113,47 @@ fn block(cells: [u32; 3], low: [f64; 3], high: [f64; 3], sharp: &[[usize; 2]]) -
 }
 
 /// The cage moved by a map that keeps its orientation.
-fn moved(cage: &ControlMesh, map: impl Fn([f64; 3]) -> [f64; 3]) -> Result<ControlMesh, Error> {
+pub(crate) fn moved(cage: &ControlMesh, map: impl Fn([f64; 3]) -> [f64; 3]) -> Result<ControlMesh, Error> {
     let positions = cage.positions().iter().map(|&p| map(p)).collect();
     ControlMesh::new(positions, cage.faces().to_vec(), cage.tags().clone(), cage.rules())
 }
 
-/// Takes steps one after the other, and says how near each result is.
-fn chain(
-    name: &str,
-    folder: &Path,
-    first: ControlMesh,
-    steps: &[(Operation, ControlMesh)],
-) -> Result<(), Box<dyn std::error::Error>> {
-    let mut cage = first;
-    for (index, (operation, next)) in steps.iter().enumerate() {
-        std::fs::write(folder.join(format!("{name}-part{}.obj", index + 1)), next.to_obj())?;
-        let outcome = FreeForm::new().attempts(0).run(*operation, &cage, next)?;
-        let report = outcome.report();
-        println!(
-            "{name}, {operation}: {} control points, {} unchanged, at most {} faces at a vertex, off by {:.1e} (asked {:.1e}), \
-             {:.2} s",
-            report.vertices,
-            report.unchanged,
-            report.valence,
-            report.errors.largest(),
-            report.asked,
-            report.seconds.iter().map(|(_, seconds)| seconds).sum::<f64>()
-        );
-        cage = outcome.into_surface();
+/// The boundary of some cells of a grid, with creases wherever it turns.
+pub(crate) fn of_cells(
+    is_in: &dyn Fn([u32; 3]) -> bool,
+    cells: [u32; 3],
+    size: f64,
+) -> Result<ControlMesh, Error> {
+    let inside = |at: [i64; 3]| {
+        (0..3).all(|k| at[k] >= 0 && at[k] < i64::from(cells[k])) && is_in(at.map(|x| x as u32))
+    };
+    let mut numbers = std::collections::BTreeMap::new();
+    let (mut positions, mut faces) = (Vec::new(), Vec::new());
+    for index in 0..cells.iter().product::<u32>() {
+        let at = [index % cells[0], index / cells[0] % cells[1], index / cells[0] / cells[1]].map(i64::from);
+        for axis in (0..3).filter(|_| inside(at)) {
+            for side in [0, 1] {
+                let mut beside = at;
+                beside[axis] += 2 * side - 1;
+                if inside(beside) {
+                    continue;
+                }
+                let (p, q) = ((axis + 1) % 3, (axis + 2) % 3);
+                let mut corner = |i: i64, j: i64| {
+                    let mut corner = at;
+                    corner[axis] += side;
+                    corner[p] += i;
+                    corner[q] += j;
+                    *numbers.entry(corner).or_insert_with(|| {
+                        positions.push(corner.map(|x| x as f64 * size));
+                        positions.len() as u32 - 1
+                    })
+                };
+                let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
+                let two = [[a, b, d], [a, d, c]];
+                faces.extend(two.map(|[a, b, c]| if side == 0 { [a, c, b] } else { [a, b, c] }));
+            }
+        }
     }
-    std::fs::write(folder.join(format!("{name}.obj")), cage.to_obj())?;
-    Ok(())
-}
-
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let folder = std::env::args().nth(1).unwrap_or_else(|| ".".into());
-    let folder = Path::new(&folder);
-    std::fs::create_dir_all(folder)?;
-    // The mug of the paper's figure 3.
-    let body = cylinder(12, 6, 1.0, 0.0, 2.4)?;
-    let handle = moved(&torus(12, 6, 0.65, 0.16)?, |[x, y, z]| [x + 1.05, -z + 0.02, y + 1.2])?;
-    let inside = cylinder(12, 6, 0.85, 0.2, 2.8)?;
-    chain("mug", folder, body, &[(Operation::Union, handle), (Operation::Difference, inside)])?;
-    // Two rings that cross in two places.
-    let ring = torus(20, 10, 1.0, 0.35)?;
-    let other = moved(&ring, |[x, y, z]| [x + 0.55, -z + 0.03, y + 0.02])?;
-    chain("rings", folder, ring, &[(Operation::Union, other)])?;
-    // A block with round corners and sharp rims, four bores and a slot.
-    let plate = block([10, 8, 2], [-1.5, -1.2, 0.0], [1.5, 1.2, 0.6], &[[0, 2], [1, 2]])?;
-    let mut steps = Vec::new();
-    for [x, y] in [[-0.9, -0.6], [0.9, -0.6], [0.9, 0.6], [-0.9, 0.6]] {
-        steps.push((
-            Operation::Difference,
-            moved(&cylinder(8, 4, 0.22, -0.3, 0.9)?, |[a, b, z]| [a + x, b + y, z])?,
-        ));
-    }
-    let slot = block([6, 2, 3], [-0.6, -0.14, 0.3], [0.6, 0.14, 1.2], &[[0, 2], [1, 2]])?;
-    steps.push((Operation::Difference, slot));
-    chain("part", folder, plate, &steps)
+    ControlMesh::new(positions, faces, Tags::default(), Rules::Loop)?.with_creases_from_angle(45.0)
 }
