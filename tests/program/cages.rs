@@ -118,3 +118,107 @@ fn what_is_no_cage_is_refused_with_a_reason() {
     }
     assert!(!folder.exists("x.obj"));
 }
+
+/// A cube of quads, its upper edges creases if asked for.
+fn cube(sharp: bool) -> String {
+    let mut text = String::new();
+    for i in 0..8 {
+        let [x, y, z] = [i & 1, i >> 1 & 1, i >> 2].map(|x| 2 * x - 1);
+        text.push_str(&format!("v {x} {y} {z}\n"));
+    }
+    for face in ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"] {
+        text.push_str(&format!("f {face}\n"));
+    }
+    if sharp {
+        text.push_str("t crease 5/1/0 4 5 7 6 4 10\n");
+    }
+    text
+}
+
+#[test]
+fn quads_stay_quads() {
+    let folder = workshop();
+    folder.write("cube.obj", cube(true));
+    let ran = folder.run("subdivide cube.obj -o one.obj -o one.json -o one.glb").exits(0);
+    assert!(!ran.err.contains("warning"), "{ran:?}");
+    let one = String::from_utf8(program::bytes(&folder.path("one.obj"))).expect("text");
+    let quads = one.lines().filter(|line| line.starts_with("f ")).map(|line| line.split(' ').count());
+    assert!(quads.clone().all(|words| words == 5) && quads.count() == 24, "{one}");
+    assert_eq!(one.lines().filter(|line| line.starts_with("t crease")).count(), 8);
+    // One surface, whichever cage it is made of; from which file is all the same.
+    let mut volumes = Vec::new();
+    for file in ["cube.obj", "one.obj", "one.json", "one.glb"] {
+        folder.run(&format!("subdivide {file} --tolerance 0.01 -o limit.obj")).exits(0);
+        volumes.push(volume(&folder.read("limit.obj")));
+        folder.run("check limit.obj").exits(0);
+    }
+    assert!(volumes.iter().all(|v| (v - volumes[0]).abs() < 0.01 * v), "{volumes:?}");
+    let report = folder.run("subdivide cube.obj --limit --levels 3 -o limit.glb --json").exits(0).json();
+    assert_eq!(report["cage"]["scheme"], "catmull-clark");
+    // Beside the limit surface stands the cage that it is of.
+    folder.run("subdivide limit.glb --levels 0 -o again.obj").exits(0);
+    let again = String::from_utf8(program::bytes(&folder.path("again.obj"))).expect("text");
+    assert_eq!(again.lines().filter(|line| line.starts_with("f ")).count(), 6);
+    // As triangles only if it is asked for, and then it is said.
+    let ran = folder.run("subdivide cube.obj --scheme loop -o triangles.obj").exits(0);
+    assert!(ran.err.contains("6 faces with more than three corners were split"), "{ran:?}");
+}
+
+#[test]
+fn quads_are_fitted_for_booleans_of_cages() {
+    let folder = workshop();
+    folder.write("cube.obj", cube(true));
+    folder.write("ball.obj", cube(false));
+    let line = "freeform difference cube.obj ball.obj --translate 0.7,0.1,0.9 --tolerance 0.05 -o cut.obj -o cut.glb";
+    let ran = folder.run(line).exits(0);
+    assert!(ran.err.contains("fitted to the Catmull-Clark surface"), "{ran:?}");
+    folder.run("subdivide cut.glb --tolerance 0.01 -o near.obj").exits(0);
+    let line = "difference cube.obj --subdivide=0.005 ball.obj --translate 0.7,0.1,0.9 --subdivide=0.005 -o exact.obj";
+    folder.run(line).exits(0);
+    let (near, exact) = (volume(&folder.read("near.obj")), volume(&folder.read("exact.obj")));
+    assert!((near - exact).abs() < 0.03 * exact, "{near} {exact}");
+}
+
+#[test]
+fn cages_are_operands_of_every_verb() {
+    let folder = folder();
+    folder.write("cube.obj", cube(true));
+    folder.run("subdivide two.obj --tolerance 0.01 -o two.off -o fine.obj").exits(0);
+    folder.run("subdivide cube.obj --levels 0 -o cube.json").exits(0);
+    let two = volume(&folder.read("fine.obj"));
+    let made = |line: &str| {
+        folder.run(&format!("{line} -o made.obj")).exits(0);
+        volume(&folder.read("made.obj"))
+    };
+    // The same triangles as those of the verb; per input, in the order of the transforms.
+    assert_eq!(made("union two.obj --subdivide=0.01"), two);
+    assert!((made("union two.obj --subdivide=0.01 --scale 2") - 8.0 * two).abs() < 1e-9 * two);
+    assert!((made("union two.obj --scale 2 --subdivide=0.02") - 8.0 * two).abs() < 1e-9 * two);
+    let twice = made("union two.obj --subdivide=0.01 --pattern linear:2:0,0,9");
+    assert!((twice - 2.0 * two).abs() < 1e-9 * two, "{twice}");
+    let mirrored = made("union two.obj --mirror x --subdivide=0.01");
+    assert!((mirrored - two).abs() < 1e-3 * two, "{mirrored} {two}");
+    let (own, rest) = (made("union cube.json --subdivide"), made("difference box:4 cube.json --subdivide"));
+    assert!((own + rest - 64.0).abs() < 1e-6, "{own} {rest}");
+    let sharp = made("union cube.obj --subdivide=creases:80,0.1");
+    assert!((sharp - 8.0).abs() < 1e-9, "{sharp}");
+    // Without the option a file is what it always was.
+    assert!(folder.run("union cube.obj -o plain.stl").exits(0).err.contains("volume 8"));
+    folder.run("measure cube.json --subdivide=0.1").exits(0);
+    let report = folder.run("union cube.obj --subdivide --json -o made.obj").exits(0).json();
+    assert!(report.to_string().contains("subdivide auto"), "{report}");
+    for (line, word) in [
+        ("union bad.obj --subdivide -o x.off", "names vertex 99"),
+        ("union two.off --subdivide -o x.off", "`convert` makes an OBJ"),
+        ("union box:1 --subdivide -o x.off", "`convert` makes an OBJ"),
+        ("union one.obj --subdivide --subdivide -o x.off", "twice"),
+        ("union open.obj --subdivide -o x.off", "not closed"),
+        ("union one.obj --pattern linear:2:9,0,0 --subdivide -o x.off", "before --pattern"),
+        ("subdivide one.obj --subdivide -o x.off", "every input is a cage"),
+    ] {
+        let ran = folder.run(line).exits(3);
+        assert!(ran.err.contains(word), "{line}: {ran:?}");
+    }
+    let ran = folder.run("union one.obj --subdivide=fine -o x.off").exits(1);
+    assert!(ran.err.contains("creases:DEGREES"), "{ran:?}");
+}
