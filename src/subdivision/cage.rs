@@ -62,7 +62,7 @@ impl Cage {
     /// [`Error::Cage`] with the first place at fault.
     pub fn new(
         positions: Vec<[f64; 3]>,
-        faces: Vec<Vec<u32>>,
+        faces: &[Vec<u32>],
         tags: Tags,
         rules: Rules,
         scheme: Option<Scheme>,
@@ -81,7 +81,7 @@ impl Cage {
                 Ok((Self::CatmullClark(PolygonCage::new(positions, faces, tags)?), warnings))
             }
             Scheme::Loop => {
-                let (triangles, split) = super::polygons::triangles(&positions, &faces)?;
+                let (triangles, split) = super::polygons::triangles(&positions, faces)?;
                 let warnings = (split > 0).then(|| super::polygons::split_warning(split));
                 let cage = ControlMesh::new(positions, triangles, tags, rules)?;
                 Ok((Self::Loop(cage), warnings.into_iter().collect()))

@@ -76,7 +76,7 @@ pub(crate) fn from_value(value: &Value) -> Result<Cage, Error> {
         polygons.push(row.iter().map(|&v| index("faces", at, v)).collect::<Result<_, CageError>>()?);
     }
     let details = details(object)?;
-    let (cage, _) = Cage::new(points, polygons, tags, rules, scheme)?;
+    let (cage, _) = Cage::new(points, &polygons, tags, rules, scheme)?;
     match cage {
         Cage::Loop(cage) => Ok(Cage::Loop(cage.with_details(details)?)),
         Cage::CatmullClark(_) if !details.is_empty() => {

@@ -123,7 +123,7 @@ impl Reader {
             }
             .into());
         }
-        let (cage, more) = Cage::new(self.positions, self.faces, self.tags, rules, scheme)?;
+        let (cage, more) = Cage::new(self.positions, &self.faces, self.tags, rules, scheme)?;
         warnings.extend(more);
         Ok((cage, warnings))
     }

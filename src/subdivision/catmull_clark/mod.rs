@@ -31,7 +31,7 @@ pub use convert::Converted;
 ///
 /// let cube = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(f64::from)).collect();
 /// let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-/// let cage = PolygonCage::new(cube, faces.map(Vec::from).to_vec(), Tags::default())?;
+/// let cage = PolygonCage::new(cube, &faces.map(Vec::from), Tags::default())?;
 /// assert_eq!(cage.subdivided(1)?.faces().count(), 24);
 /// let smooth = Solid::try_from(cage.limit_mesh(0.001)?)?;
 /// assert!(smooth.volume() < 0.5);
@@ -49,7 +49,7 @@ impl PolygonCage {
     ///
     /// # Errors
     /// [`Error::Cage`] with the first place at fault, and for tagged sectors, which these cages do not have.
-    pub fn new(positions: Vec<[f64; 3]>, faces: Vec<Vec<u32>>, tags: Tags) -> Result<Self, Error> {
+    pub fn new(positions: Vec<[f64; 3]>, faces: &[Vec<u32>], tags: Tags) -> Result<Self, Error> {
         if let Some(face) = faces.iter().position(|face| face.len() < 3) {
             return Err(
                 CageError::Tag(format!("face {face} has fewer than three vertices; leave it out")).into()
@@ -60,7 +60,7 @@ impl PolygonCage {
             let what = "sectors are of Loop's scheme; a cage of polygons has none: take the tag out";
             return Err(CageError::Tag(what.into()).into());
         }
-        let level = PolygonLevel::new(positions.len(), &faces, &tags.normalised())?;
+        let level = PolygonLevel::new(positions.len(), faces, &tags.normalised())?;
         Ok(Self { positions, tags: level.tags(), level })
     }
 
@@ -101,8 +101,8 @@ impl PolygonCage {
     /// # Errors
     /// [`Error::Cage`] for another number of points, and points that are not finite.
     pub fn with_positions(&self, positions: Vec<[f64; 3]>) -> Result<Self, Error> {
-        let faces = self.faces().map(<[u32]>::to_vec).collect();
-        Self::new(positions, faces, self.tags.clone())
+        let faces: Vec<_> = self.faces().map(<[u32]>::to_vec).collect();
+        Self::new(positions, &faces, self.tags.clone())
     }
 
     /// The same cage with its faces turned over, as a reflection needs it.
@@ -110,8 +110,8 @@ impl PolygonCage {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn reversed(&self) -> Result<Self, Error> {
-        let faces = self.faces().map(|face| face.iter().rev().copied().collect()).collect();
-        Self::new(self.positions.clone(), faces, self.tags.clone())
+        let faces: Vec<_> = self.faces().map(|face| face.iter().rev().copied().collect()).collect();
+        Self::new(self.positions.clone(), &faces, self.tags.clone())
     }
 
     /// The cage after `steps` subdivisions: the same surface over more faces, all of them quads. The first vertices are the old
@@ -178,8 +178,8 @@ impl PolygonCage {
                 tags.creases.push(Crease { edge, sharpness: f64::INFINITY });
             }
         }
-        let faces = self.faces().map(<[u32]>::to_vec).collect();
-        Self::new(self.positions.clone(), faces, tags)
+        let faces: Vec<_> = self.faces().map(<[u32]>::to_vec).collect();
+        Self::new(self.positions.clone(), &faces, tags)
     }
 
     /// The normal of a face, by Newell's sum.

@@ -8,7 +8,7 @@ const CUBE: [[u32; 4]; 6] =
 
 fn cube(tags: Tags) -> PolygonCage {
     let positions = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|x| 2.0 * f64::from(x) - 1.0)).collect();
-    PolygonCage::new(positions, CUBE.map(Vec::from).to_vec(), tags).expect("a cube")
+    PolygonCage::new(positions, &CUBE.map(Vec::from), tags).expect("a cube")
 }
 
 fn crease(u: u32, v: u32, sharpness: f64) -> Crease {
@@ -28,8 +28,8 @@ fn noise(seed: u32) -> impl FnMut() -> f64 {
 fn fan(k: u32, seed: u32, tags: Tags) -> PolygonCage {
     let mut next = noise(seed);
     let positions = (0..2 * k + 1).map(|_| [next(), next(), next()]).collect();
-    let faces = (0..k).map(|i| vec![0, 1 + i, 1 + k + i, 1 + (i + 1) % k]).collect();
-    PolygonCage::new(positions, faces, tags).expect("a fan")
+    let faces: Vec<_> = (0..k).map(|i| vec![0, 1 + i, 1 + k + i, 1 + (i + 1) % k]).collect();
+    PolygonCage::new(positions, &faces, tags).expect("a fan")
 }
 
 #[test]
@@ -76,11 +76,11 @@ fn a_grid_is_a_cubic_spline_and_its_bound_holds() {
     let at = |i: u32, j: u32| (i % 5) * 7 + j % 7;
     let mut next = noise(3);
     let positions = (0..35).map(|_| [next(), next(), next()]).collect();
-    let faces = (0..35)
+    let faces: Vec<_> = (0..35)
         .map(|f| (f / 7, f % 7))
         .map(|(i, j)| vec![at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)])
         .collect();
-    let cage = PolygonCage::new(positions, faces, Tags::default()).expect("a torus");
+    let cage = PolygonCage::new(positions, &faces, Tags::default()).expect("a torus");
     let weights = [1.0, 4.0, 1.0];
     let limits = cage.limit_positions().expect("small");
     for (v, limit) in limits.iter().enumerate() {
@@ -137,7 +137,7 @@ fn limit_meshes_are_within_their_tolerance() {
     let positions = (0..10).map(|i| [ring[i % 5][0], ring[i % 5][1], (i / 5) as f64]).collect();
     let mut faces: Vec<Vec<u32>> = (0..5).map(|i| vec![i, (i + 1) % 5, 5 + (i + 1) % 5, 5 + i]).collect();
     faces.extend([vec![4, 3, 2, 1, 0], vec![5, 6, 7], vec![5, 7, 8, 9]]);
-    within_tolerance(&PolygonCage::new(positions, faces, Tags::default()).expect("a prism"));
+    within_tolerance(&PolygonCage::new(positions, &faces, Tags::default()).expect("a prism"));
 }
 
 #[test]
@@ -160,7 +160,7 @@ fn borders_are_curves() {
     assert!(!cage.is_closed());
     let mesh = cage.limit_mesh(0.02).expect("open cages have surfaces");
     assert!(Solid::try_from(mesh).is_err());
-    assert!(PolygonCage::new(vec![[0.0; 3]; 2], vec![vec![0, 1]], Tags::default()).is_err());
-    let twice = PolygonCage::new(vec![[0.0; 3]; 4], vec![vec![0, 1, 2, 1]], Tags::default());
+    assert!(PolygonCage::new(vec![[0.0; 3]; 2], &[vec![0, 1]], Tags::default()).is_err());
+    let twice = PolygonCage::new(vec![[0.0; 3]; 4], &[vec![0, 1, 2, 1]], Tags::default());
     assert!(twice.is_err_and(|error| error.to_string().contains("twice")));
 }
