@@ -203,7 +203,7 @@ fn cases(folder: &Path) -> Done {
     table.row("apart", &native, all[0], [&fine, &shifted(&fine, [3.0, 0.0, 0.0])?]);
     table.row("inside", &native, all[2], [&fine, &ball(1, 0.3, [0.0; 3])?]);
     let tall = cylinder(8, 6, 0.5, -1.5, 1.5)?;
-    table.row("touching from outside", &native, all[0], [&tall, &shifted(&tall, [0.98, 0.0, 0.0])?]);
+    table.row("cylinders close by", &native, all[0], [&tall, &shifted(&tall, [0.98, 0.0, 0.0])?]);
     table.row("nearly identical", &native, all[0], [&fine, &shifted(&fine, [0.001, 0.0, 0.0])?]);
     table.row(
         "flush caps",
