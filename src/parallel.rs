@@ -5,7 +5,9 @@
 //!
 //! All of them reach rayon through three doors, [`for_each_number`], [`run_both`] and [`Runner::sort`]. The first two are not
 //! generic: rayon's machinery is compiled once for each of its callers, and was a sixth of the crate's code while every loop
-//! was one. A call through a pointer for each piece of thousands of items costs nothing.
+//! was one. What hands items out and puts results together is compiled for the types of both, not for every loop (which
+//! was another fourteenth): a loop comes to it as `&dyn Fn`. A call through a pointer for each piece of thousands of
+//! items costs nothing.
 
 use std::convert::Infallible;
 use std::ops::Range;
@@ -13,7 +15,7 @@ use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::sync::atomic::{AtomicUsize, Ordering};
 #[cfg(feature = "parallel")]
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::control::{Control, Limit};
 
@@ -67,7 +69,7 @@ impl<'a> Runner<'a> {
         grain: usize,
         piece: impl Fn(Range<usize>) -> T + Sync,
     ) -> Result<Vec<T>, Limit> {
-        self.each(cut(count, grain), piece)
+        self.each_by(cut(count, grain), &piece)
     }
 
     /// The same for work that may fail. After every piece the fraction that is done is reported as that of `stage`.
@@ -80,10 +82,13 @@ impl<'a> Runner<'a> {
     ) -> Result<Vec<T>, E> {
         let pieces = cut(count, grain);
         let (total, done) = (pieces.len(), AtomicUsize::new(0));
-        self.try_each(pieces, |range| {
-            let result = piece(range)?;
+        let finish = || {
             let finished = done.fetch_add(1, Ordering::Relaxed) + 1;
-            self.control.report(stage, finished as f64 / total as f64)?;
+            self.control.report(stage, finished as f64 / total as f64)
+        };
+        self.try_each(pieces, &|range| {
+            let result = piece(range)?;
+            finish()?;
             Ok(result)
         })
     }
@@ -96,6 +101,17 @@ impl<'a> Runner<'a> {
         grain: usize,
         room: usize,
         fill: impl Fn(Range<usize>, &mut Vec<T>) + Sync,
+    ) -> Result<Vec<T>, Limit> {
+        self.gather_by(count, grain, room, &fill)
+    }
+
+    /// [`Self::gather`], compiled once for the type of the items.
+    fn gather_by<T: Copy + Default + Send + Sync>(
+        self,
+        count: usize,
+        grain: usize,
+        room: usize,
+        fill: &(dyn Fn(Range<usize>, &mut Vec<T>) + Sync),
     ) -> Result<Vec<T>, Limit> {
         if self.is_parallel() {
             let pieces = self.pieces(count, grain, |range| {
@@ -119,20 +135,28 @@ impl<'a> Runner<'a> {
         items: Vec<T>,
         work: impl Fn(T) -> R + Sync,
     ) -> Result<Vec<R>, Limit> {
-        self.try_each(items, |item| Ok(work(item)))
+        self.each_by(items, &work)
+    }
+
+    /// [`Self::each`], compiled once for the types of items and results.
+    fn each_by<T: Send, R: Send>(
+        self,
+        items: Vec<T>,
+        work: &(dyn Fn(T) -> R + Sync),
+    ) -> Result<Vec<R>, Limit> {
+        self.try_each(items, &|item| Ok(work(item)))
     }
 
     /// The same for work that may fail.
     fn try_each<T: Send, R: Send, E: From<Limit> + Send>(
         self,
         items: Vec<T>,
-        work: impl Fn(T) -> Result<R, E> + Sync,
+        work: &(dyn Fn(T) -> Result<R, E> + Sync),
     ) -> Result<Vec<R>, E> {
-        let run = |item: T| -> Result<R, E> {
+        map_by(items, self.is_parallel(), &|item| {
             self.control.check()?;
             work(item)
-        };
-        if self.is_parallel() { try_map(items, run) } else { items.into_iter().map(run).collect() }
+        })
     }
 
     /// Lets `fill` write all of `items`, given the index of the first and a piece of `grain`. The limits are checked before
@@ -143,9 +167,18 @@ impl<'a> Runner<'a> {
         grain: usize,
         fill: impl Fn(usize, &mut [T]) + Sync,
     ) -> Result<(), Limit> {
+        self.fill_by(items, grain, &fill)
+    }
+
+    /// [`Self::fill`], compiled once for the type of the items.
+    fn fill_by<T: Send>(
+        self,
+        items: &mut [T],
+        grain: usize,
+        fill: &(dyn Fn(usize, &mut [T]) + Sync),
+    ) -> Result<(), Limit> {
         let grain = grain.max(1);
-        let pieces = items.chunks_mut(grain).enumerate().map(|(i, piece)| (i * grain, piece)).collect();
-        self.each(pieces, |(first, piece)| fill(first, piece)).map(drop)
+        self.each(places(items, grain), |(first, piece)| fill(first, piece)).map(drop)
     }
 
     /// Lists one after the other.
@@ -259,7 +292,12 @@ fn for_each_number(count: usize, work: &(dyn Fn(usize) + Sync)) {
 
 /// The results of `work` on every item, in order.
 pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, work: impl Fn(T) -> R + Sync) -> Vec<R> {
-    match try_map(items, |item| Ok::<R, Infallible>(work(item))) {
+    map_all(items, &work)
+}
+
+/// [`map`], compiled once for the types of items and results.
+fn map_all<T: Send, R: Send>(items: Vec<T>, work: &(dyn Fn(T) -> R + Sync)) -> Vec<R> {
+    match map_by(items, true, &|item| Ok::<R, Infallible>(work(item))) {
         Ok(results) => results,
         Err(never) => match never {},
     }
@@ -271,40 +309,101 @@ pub(crate) fn try_map<T: Send, R: Send, E: Send>(
     items: Vec<T>,
     work: impl Fn(T) -> Result<R, E> + Sync,
 ) -> Result<Vec<R>, E> {
-    #[cfg(feature = "parallel")]
-    if items.len() > 1 && rayon::current_num_threads() > 1 {
-        let has_failed = AtomicBool::new(false);
-        let slots: Vec<Mutex<Slot<T, Result<R, E>>>> =
-            items.into_iter().map(|item| Mutex::new(Slot::Waiting(item))).collect();
-        for_each_number(slots.len(), &|index| {
-            if has_failed.load(Ordering::Relaxed) {
-                return;
-            }
-            // Nobody else asks for it.
-            let mut slot = slots[index].lock().unwrap_or_else(PoisonError::into_inner);
-            if let Slot::Waiting(item) = std::mem::replace(&mut *slot, Slot::Empty) {
-                let result = work(item);
-                has_failed.fetch_or(result.is_err(), Ordering::Relaxed);
-                *slot = Slot::Done(result);
-            }
-        });
-        let results = slots.into_iter().filter_map(|slot| {
-            match slot.into_inner().unwrap_or_else(PoisonError::into_inner) {
-                Slot::Done(result) => Some(result),
-                Slot::Waiting(_) | Slot::Empty => None,
-            }
-        });
-        return results.collect();
-    }
-    items.into_iter().map(work).collect()
+    map_by(items, true, &work)
 }
 
-/// An item, and later its result.
+/// [`try_map`], on other threads only if `parallel`; compiled once for the types of items, results and failures.
+fn map_by<T: Send, R: Send, E: Send>(
+    items: Vec<T>,
+    parallel: bool,
+    work: &(dyn Fn(T) -> Result<R, E> + Sync),
+) -> Result<Vec<R>, E> {
+    #[cfg(feature = "parallel")]
+    if parallel && items.len() > 1 && rayon::current_num_threads() > 1 {
+        return map_on_threads(items, work);
+    }
+    let _ = parallel;
+    let mut results = Vec::with_capacity(items.len());
+    for item in items {
+        results.push(work(item)?);
+    }
+    Ok(results)
+}
+
+/// [`map_by`] on all threads of the current pool.
 #[cfg(feature = "parallel")]
-enum Slot<T, R> {
-    Waiting(T),
-    Empty,
-    Done(R),
+fn map_on_threads<T: Send, R: Send, E: Send>(
+    items: Vec<T>,
+    work: &(dyn Fn(T) -> Result<R, E> + Sync),
+) -> Result<Vec<R>, E> {
+    let items = slots(items);
+    let results: Vec<Slot<R>> = empty_slots(items.len());
+    let has_failed = AtomicBool::new(false);
+    // The failure of the least index.
+    let failure: Mutex<Option<(usize, E)>> = Mutex::new(None);
+    for_each_number(items.len(), &|index| {
+        if has_failed.load(Ordering::Relaxed) {
+            return;
+        }
+        // Nobody else asks for it.
+        let Some(item) = take(&items[index]) else { return };
+        match work(item) {
+            Ok(result) => *lock(&results[index]) = Some(result),
+            Err(error) => {
+                has_failed.store(true, Ordering::Relaxed);
+                let mut first = lock(&failure);
+                if first.as_ref().is_none_or(|(before, _)| index < *before) {
+                    *first = Some((index, error));
+                }
+            }
+        }
+    });
+    match take(&failure) {
+        Some((_, error)) => Err(error),
+        None => Ok(contents(results)),
+    }
+}
+
+/// An item that one thread leaves for another.
+#[cfg(feature = "parallel")]
+type Slot<T> = Mutex<Option<T>>;
+
+/// What is in the slot; who panicked with it has left it whole.
+#[cfg(feature = "parallel")]
+fn lock<T>(slot: &Slot<T>) -> MutexGuard<'_, Option<T>> {
+    slot.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[cfg(feature = "parallel")]
+fn take<T>(slot: &Slot<T>) -> Option<T> {
+    lock(slot).take()
+}
+
+#[cfg(feature = "parallel")]
+fn slots<T>(items: Vec<T>) -> Vec<Slot<T>> {
+    let mut slots = Vec::with_capacity(items.len());
+    for item in items {
+        slots.push(Mutex::new(Some(item)));
+    }
+    slots
+}
+
+#[cfg(feature = "parallel")]
+fn empty_slots<T>(count: usize) -> Vec<Slot<T>> {
+    let mut slots = Vec::with_capacity(count);
+    slots.resize_with(count, || Mutex::new(None));
+    slots
+}
+
+#[cfg(feature = "parallel")]
+fn contents<T>(slots: Vec<Slot<T>>) -> Vec<T> {
+    let mut items = Vec::with_capacity(slots.len());
+    for slot in slots {
+        if let Some(item) = take(&slot) {
+            items.push(item);
+        }
+    }
+    items
 }
 
 /// `work` on pieces of `items` of fixed length; the results in order.
@@ -340,8 +439,17 @@ pub(crate) fn build<T: Copy + Default + Send>(
 ) -> Vec<T> {
     let mut items = vec![T::default(); count];
     let length = count.div_ceil(piece_count(count, smallest)).max(1);
-    map(items.chunks_mut(length).enumerate().collect(), |(i, run)| fill(i * length, run));
+    map(places(&mut items, length), |(first, run)| fill(first, run));
     items
+}
+
+/// Pieces of `length` items, each with the index of its first.
+fn places<T>(items: &mut [T], length: usize) -> Vec<(usize, &mut [T])> {
+    let mut places = Vec::with_capacity(items.len().div_ceil(length));
+    for piece in items.chunks_mut(length) {
+        places.push((places.len() * length, piece));
+    }
+    places
 }
 
 /// Whether `test` holds for every item.

@@ -7,6 +7,7 @@ use rustc_hash::FxHashMap;
 use super::outline::{NOWHERE, Outline};
 use super::{Format, FormatError, Loaded, ReadOptions, file, gltf, read};
 use crate::mesh::Attribute;
+use crate::sorting;
 use crate::{Error, Mesh};
 
 /// This many names are told where one is not found.
@@ -147,7 +148,7 @@ impl Parts {
         }
         // 3. In the order of the file.
         let mut entries: Vec<u32> = triangles.keys().copied().collect();
-        entries.sort_unstable();
+        sorting::sort(&mut entries);
         let part = |entry: u32| Part {
             name: self.outline.entries[entry as usize].name.clone(),
             mesh: cut_out(&self.whole.mesh, &triangles[&entry]),

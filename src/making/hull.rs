@@ -9,6 +9,7 @@
 use rustc_hash::FxHashMap;
 
 use crate::exact::{Sign, collinear, orient3d};
+use crate::sorting;
 use crate::spatial::{Closest, TriangleTree};
 use crate::{Error, Mesh, Solid};
 
@@ -61,7 +62,7 @@ pub fn convex_hull(points: &[[f64; 3]]) -> Result<Mesh, Error> {
         let first = (0..3).min_by_key(|&k| triangle[k]).unwrap_or_default();
         triangle.rotate_left(first);
     }
-    triangles.sort_unstable();
+    sorting::sort(&mut triangles);
     Ok(Mesh::new(chosen, triangles))
 }
 

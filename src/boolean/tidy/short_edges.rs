@@ -3,6 +3,7 @@
 
 use super::face::{Face, LocalPoint};
 use super::patch::Patch;
+use crate::sorting;
 
 /// Collapses edges no longer than rounding at points made by the operation.
 pub(super) fn collapse(patch: &mut Patch<'_>) {
@@ -14,7 +15,7 @@ pub(super) fn collapse(patch: &mut Patch<'_>) {
             }
         }
     }
-    queue.sort_unstable();
+    sorting::sort(&mut queue);
     queue.dedup();
     // The later point goes first: between two new points the one with the lower number stays.
     while let Some((u, v)) = queue.pop() {

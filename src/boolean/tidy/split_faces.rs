@@ -9,6 +9,7 @@ use super::patch::Patch;
 use super::splits::Splits;
 use crate::mesh::{BitSet, Buckets, UnionFind};
 use crate::polygon::Triangulator;
+use crate::sorting;
 
 /// Splits the sides of all faces that are to be split. Diagonals are left alone, whatever else runs along them: they bound two
 /// triangles of one face and so do not matter to others. With `merge`, faces on both sides of a coplanar edge are
@@ -38,7 +39,7 @@ fn strips(patch: &Patch<'_>, faces: &[LocalFace], splits: &Splits) -> Buckets<Lo
         }
     }
     // 2. The borders between two of the faces.
-    sides.sort_unstable();
+    sorting::sort(&mut sides);
     let between = sides.chunk_by(|x, y| x.0 == y.0).filter_map(|group| match *group {
         [(edge, false, one), (_, true, other)] => Some((edge, one, other)),
         _ => None,

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use gltf::json::accessor::{
+use gltf_json::accessor::{
     BYTE, ComponentType, FLOAT, SHORT, Type, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT,
 };
-use gltf::json::validation::Checked;
+use gltf_json::validation::Checked;
 
 use super::Reader;
 use super::buffers::{Buffers, Bytes};

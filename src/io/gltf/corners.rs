@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 
 use glam::DAffine3;
-use gltf::json::accessor::Type;
-use gltf::json::validation::Checked;
+use gltf_json::accessor::Type;
+use gltf_json::validation::Checked;
 
 use super::super::notes::Notes;
 use super::accessor::Accessors;

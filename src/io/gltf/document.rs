@@ -1,6 +1,6 @@
 //! The parts of a glTF document that matter for its geometry. Everything else in the file is skipped.
 //!
-//! Where the types of the crate `gltf` ([`gltf::json`]) hold what is read, they are used: the asset, types of accessors and
+//! Where the types of the crate [`gltf_json`] hold what is read, they are used: the asset, types of accessors and
 //! of their components, modes of primitives, materials. What they cannot hold has structures here:
 //!
 //! - nodes: transforms are single precision there, and an empty node takes two hundred bytes, seventy times its text;
@@ -19,9 +19,9 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
-use gltf::json::Asset;
-use gltf::json::accessor::Type;
-use gltf::json::validation::Checked;
+use gltf_json::Asset;
+use gltf_json::accessor::Type;
+use gltf_json::validation::Checked;
 use serde::de::{IgnoredAny, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
@@ -146,7 +146,7 @@ pub(super) struct Primitive<'a> {
     pub(super) attributes: &'a RawValue,
     pub(super) indices: Option<u32>,
     pub(super) material: Option<u32>,
-    /// One of [`gltf::json::mesh::VALID_MODES`], if the file is right.
+    /// One of [`gltf_json::mesh::VALID_MODES`], if the file is right.
     pub(super) mode: Option<u32>,
     /// Morph targets, as text until the primitive is shown.
     #[serde(borrow)]
@@ -179,7 +179,7 @@ pub(super) struct Accessor {
     pub(super) buffer_view: Option<u32>,
     #[serde(default)]
     pub(super) byte_offset: u64,
-    /// One of [`gltf::json::accessor::VALID_COMPONENT_TYPES`], if the file is right.
+    /// One of [`gltf_json::accessor::VALID_COMPONENT_TYPES`], if the file is right.
     pub(super) component_type: u32,
     #[serde(default)]
     pub(super) normalized: bool,

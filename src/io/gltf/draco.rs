@@ -4,9 +4,9 @@
 use std::rc::Rc;
 
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex};
-use gltf::json::accessor::{BYTE, FLOAT, SHORT, Type, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT};
-use gltf::json::mesh::TRIANGLES;
-use gltf::json::validation::Checked;
+use gltf_json::accessor::{BYTE, FLOAT, SHORT, Type, UNSIGNED_BYTE, UNSIGNED_INT, UNSIGNED_SHORT};
+use gltf_json::mesh::TRIANGLES;
+use gltf_json::validation::Checked;
 
 use super::accessor::Accessors;
 use super::budget::Budget;

@@ -1,6 +1,6 @@
 //! `EXT_mesh_manifold`: which vertices of primitives are one, so that a mesh is closed without a look at positions.
 
-use gltf::json::mesh::TRIANGLES;
+use gltf_json::mesh::TRIANGLES;
 
 use super::accessor::Accessors;
 use super::budget::Budget;
@@ -28,7 +28,7 @@ impl Merged {
             let (Some(list), TRIANGLES) = (primitive.indices, primitive.mode.unwrap_or(TRIANGLES)) else {
                 return Ok(Err("a primitive has no indices or no triangles"));
             };
-            let count = accessors.get(list, gltf::json::accessor::Type::Scalar, "/meshes")?.count;
+            let count = accessors.get(list, gltf_json::accessor::Type::Scalar, "/meshes")?.count;
             budget.charge(count.saturating_mul(8))?;
             indices.extend(accessors.indices(list, "/meshes")?);
         }
@@ -36,7 +36,7 @@ impl Merged {
         if let (Some(places), Some(values)) = (manifold.merge_indices, manifold.merge_values) {
             let pointer = "/meshes/extensions/EXT_mesh_manifold";
             for accessor in [places, values] {
-                let count = accessors.get(accessor, gltf::json::accessor::Type::Scalar, pointer)?.count;
+                let count = accessors.get(accessor, gltf_json::accessor::Type::Scalar, pointer)?.count;
                 budget.charge(count.saturating_mul(4))?;
             }
             let (places, values) = (accessors.indices(places, pointer)?, accessors.indices(values, pointer)?);

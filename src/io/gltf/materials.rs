@@ -16,6 +16,7 @@ use super::document::{Named, PlainMaterial};
 use super::json::{for_each_source, for_each_texture};
 use super::plain::plain_object;
 use crate::mesh::{Image, Material, MaterialLanguage, MaterialText, Texture, TextureUse, Wrap};
+use crate::sorting;
 use crate::{Error, mesh};
 
 /// Longer texts of one material, texture or picture are not kept, bytes: as a tree they take up to thirty times as much.
@@ -73,7 +74,7 @@ impl<'a> Materials<'a> {
         }
         let text = self.reader.get(&self.reader.document.materials, "materials", index as usize, pointer)?;
         // What the crate's type refuses no reader would take.
-        let checked = serde_json::from_str::<gltf::json::Material>(text.get());
+        let checked = serde_json::from_str::<gltf_json::Material>(text.get());
         let json = checked.map_err(|error| error.to_string()).and_then(|_| object(text.get()));
         let material = match json {
             Ok(json) => self.material(json, index, budget, notes)?,
@@ -98,7 +99,7 @@ impl<'a> Materials<'a> {
         // 1. The textures it names, each at a place of its own list.
         let mut named: Vec<u64> = Vec::new();
         for_each_texture(&mut json, &mut |_, place| named.push(*place));
-        named.sort_unstable();
+        sorting::sort(&mut named);
         named.dedup();
         let mut textures = Vec::new();
         let mut places = HashMap::new();

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use glam::{DAffine3, DVec3};
-use gltf::json::accessor::Type;
-use gltf::json::mesh::{LINE_STRIP, POINTS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
+use gltf_json::accessor::Type;
+use gltf_json::mesh::{LINE_STRIP, POINTS, TRIANGLE_FAN, TRIANGLE_STRIP, TRIANGLES};
 
 use super::super::ReadOptions;
 use super::super::mirror::is_mirrored;

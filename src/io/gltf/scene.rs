@@ -1,7 +1,7 @@
 //! From the tree of nodes to a list of meshes with their transforms.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, DVec4};
-use gltf::json::accessor::Type;
+use gltf_json::accessor::Type;
 
 use super::Reader;
 use super::document::{Instancing, NodeFields};

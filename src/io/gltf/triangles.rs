@@ -1,6 +1,6 @@
 //! The triangles of a primitive.
 
-use gltf::json::mesh::{TRIANGLE_STRIP, TRIANGLES};
+use gltf_json::mesh::{TRIANGLE_STRIP, TRIANGLES};
 
 use super::primitive::Builder;
 

@@ -1,6 +1,6 @@
 //! Attributes as a file holds them: which numbers, and what stands where a corner has no value.
 
-use gltf::json::accessor::ComponentType;
+use gltf_json::accessor::ComponentType;
 
 use crate::Mesh;
 use crate::mesh::{Attribute, AttributeKind};

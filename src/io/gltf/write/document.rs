@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DVec3;
-use gltf::json::accessor::ComponentType;
+use gltf_json::accessor::ComponentType;
 use serde_json::{Map, Value, json};
 
 use super::super::super::WriteOptions;
