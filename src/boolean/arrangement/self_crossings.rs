@@ -9,6 +9,7 @@
 use std::borrow::Cow;
 
 use super::apart::{are_plainly_apart, common_corners};
+use super::neighbours::Neighbours;
 use super::penetration;
 use super::self_pairs::{self_pairs, tree_of};
 use crate::boolean::complex::ids::VertexId;
@@ -81,8 +82,10 @@ fn known_or_found<'a>(
         return Ok((Cow::Owned(many), None));
     }
     let (mesh, largest) = (solid.mesh(), bounds.largest());
-    let (pairs, tree) =
-        self_pairs(mesh, frame, largest, runner, |neighbours, pair| neighbours.may_meet(pair))?;
+    // (Of neighbours of any lifetime, which the method itself is not.)
+    #[allow(clippy::redundant_closure_for_method_calls, reason = "lifetimes")]
+    let may_meet = |neighbours: &Neighbours<'_>, pair: [u32; 2]| neighbours.may_meet(pair);
+    let (pairs, tree) = self_pairs(mesh, frame, largest, runner, may_meet)?;
     let is_short = pairs.len() <= mesh.triangles.len();
     let pairs = if is_short { Cow::Borrowed(solid.remember_near_pairs(pairs)) } else { Cow::Owned(pairs) };
     Ok((pairs, tree))

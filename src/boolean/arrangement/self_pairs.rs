@@ -96,7 +96,7 @@ pub(super) fn self_pairs(
     for (fan, tree) in fans.iter().zip(&trees) {
         if !neighbours.is_plain(fan.hub) {
             let arcs = BoxTree::new(&fan.triangles, |t| box_of_arc(mesh, fan.hub, t));
-            pairs.extend(self_overlapping_pairs(&arcs, runner, &wanted)?);
+            pairs.extend(self_overlapping_pairs(&arcs, runner, wanted)?);
         }
         pairs.extend(visit_pairs(tree, &free, runner, keep)?);
     }
