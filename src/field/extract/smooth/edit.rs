@@ -80,10 +80,14 @@ fn flip(net: &mut Net, a: u32, b: u32, limits: Limits) -> Option<[u32; 2]> {
 
 /// Collapses edges, short ones first, as long as the surface stays within the limits.
 pub(super) fn collapse_all(net: &mut Net, limits: Limits) {
+    // Vertices whose triangles have changed since edges there were last looked at.
+    let mut changed = vec![true; net.vertices.len()];
     for _ in 0..COLLAPSE_ROUNDS {
         let length = |[a, b]: [u32; 2]| net.place(a).distance_squared(net.place(b)).to_bits();
-        let mut edges: Vec<(u64, [u32; 2])> = net.edges().map(|edge| (length(edge), edge)).collect();
+        let looked_at = net.edges().filter(|edge| edge.iter().any(|&end| changed[end as usize]));
+        let mut edges: Vec<(u64, [u32; 2])> = looked_at.map(|edge| (length(edge), edge)).collect();
         edges.sort_unstable();
+        changed.fill(false);
         let mut touched = vec![false; net.vertices.len()];
         let mut collapses = 0;
         for (_, [a, b]) in edges {
@@ -102,6 +106,8 @@ pub(super) fn collapse_all(net: &mut Net, limits: Limits) {
             let (from, to, beside) = ways[chosen];
             net.collapse(from, to, beside);
             touched[to as usize] = true;
+            changed[to as usize] = true;
+            net.neighbours(to).for_each(|vertex| changed[vertex as usize] = true);
             collapses += 1;
         }
         if collapses * 100 <= net.present().count() {

@@ -15,6 +15,7 @@
 //!
 //! Creases stay: their vertices do not move, and are left out only where the crease is as good as straight without them.
 
+mod care;
 mod check;
 mod cost;
 mod edit;
@@ -26,28 +27,26 @@ mod sharpen;
 
 use glam::DVec3;
 
+use care::Care;
 use check::Fit;
 use edit::Limits;
 pub(super) use nearby::Nearby;
 use net::{Kind, Net};
 
-use crate::boolean::crossing_pairs;
-use crate::{Control, Error, Mesh, Solid};
+use crate::{Control, Error, Mesh};
 
 /// Of the tolerance: how far the surface may bulge out of an edge that a flip or a collapse makes. The middle of a triangle is up to
 /// four thirds as far from the surface as the middles of its edges, and the estimate from the normals of two ends is no bound.
 const SAG: f64 = 0.4;
 /// Degrees that the normals of triangles may be off after a collapse.
-const COLLAPSED_ANGLE: f64 = 4.0;
+const COLLAPSED_ANGLE: f64 = 3.0;
 /// Degrees off above which triangles are divided.
-const DIVIDED_ANGLE: f64 = 6.0;
+const DIVIDED_ANGLE: f64 = 5.0;
 /// Times that triangles are divided: each halves an edge.
 const DIVISIONS: usize = 4;
 /// Times that everything is tried, each with more vertices frozen than before.
 const ATTEMPTS: usize = 6;
 
-/// Of the size of a triangle at fault: how far around it care is taken.
-const NEARBY: f64 = 1.5;
 /// Bytes held for each vertex of the cells' surface: the vertex twice, its star, and two triangles with the ways they face.
 const BYTES: usize = 500;
 
@@ -84,11 +83,11 @@ pub(super) fn smoothed(
         improve(&mut net, nearby, tolerance, floor, control)?;
         let (smooth, free) = finished(&net);
         let fits = check::fits(&corners_of(&smooth), nearby, control)?;
-        let faults = faults(&smooth, &free, &fits, tolerance, control)?;
+        let faults = care::faults(&smooth, &free, &fits, tolerance, control)?;
         if faults.is_empty() {
             return Ok(measured(smooth, &fits));
         }
-        take_care(&mesh, &faults, f64::from(1u32 << (attempt / 2)), &mut care);
+        care::take_care(&mesh, &faults, f64::from(1u32 << (attempt / 2)), &mut care);
     }
     rough(mesh, nearby, control)
 }
@@ -188,52 +187,4 @@ fn finished(net: &Net) -> (Mesh, Vec<bool>) {
     }
     let triangles = net.present().map(|(_, corners)| corners.map(|corner| number[corner as usize])).collect();
     (Mesh::new(positions, triangles), free)
-}
-
-/// Where the smoothed surface is not what it has to be: places, and how far around them vertices are to stay.
-fn faults(
-    mesh: &Mesh,
-    free: &[bool],
-    fits: &[Fit],
-    tolerance: f64,
-    control: &Control,
-) -> Result<Vec<(DVec3, f64)>, Error> {
-    let place = |vertex: u32| DVec3::from_array(mesh.positions[vertex as usize]);
-    let around = |triangle: usize| {
-        let [a, b, c] = mesh.triangles[triangle].map(place);
-        let middle = (a + b + c) / 3.0;
-        (middle, [a, b, c].iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max))
-    };
-    let changed = |triangle: usize| mesh.triangles[triangle].iter().any(|&corner| free[corner as usize]);
-    let mut faults: Vec<(DVec3, f64)> = (0..fits.len())
-        .filter(|&triangle| fits[triangle].deviation > tolerance && changed(triangle))
-        .map(around)
-        .collect();
-    if let Ok(solid) = Solid::try_from(mesh.clone()) {
-        for pair in crossing_pairs(&solid, control)? {
-            let pair = pair.map(|triangle| triangle as usize);
-            if pair.iter().any(|&triangle| changed(triangle)) {
-                faults.extend(pair.map(around));
-            }
-        }
-    }
-    Ok(faults)
-}
-
-/// How careful smoothing is with a vertex of the cells' surface.
-#[derive(Clone, Copy, PartialEq)]
-enum Care {
-    None,
-    Calm,
-    Frozen,
-}
-
-/// Takes more care of the vertices that are `times` as near to a fault as it is large.
-fn take_care(mesh: &Mesh, faults: &[(DVec3, f64)], times: f64, care: &mut [Care]) {
-    for (position, care) in mesh.positions.iter().zip(care) {
-        let place = DVec3::from_array(*position);
-        if faults.iter().any(|(middle, radius)| middle.distance(place) <= NEARBY * times * radius) {
-            *care = if *care == Care::None { Care::Calm } else { Care::Frozen };
-        }
-    }
 }

@@ -79,10 +79,13 @@ fn on_crease(a: &Vertex, b: &Vertex, nearby: &Nearby<'_>, scratch: &mut Scratch)
             let look = nearby.look(at.lerp(end.place, near), scratch)?;
             *side = (at.lerp(end.place, near) + look.outward * look.depth, look.outward);
         }
+        if sides[0].1.angle_between(sides[1].1) < KEPT * angle {
+            return None;
+        }
     }
     let jump = sides[0].1.angle_between(sides[1].1);
     let normals: SmallVec<[DVec3; 1]> = smallvec![sides[0].1, sides[1].1];
-    let is_crease = jump > LEAST_JUMP.to_radians() && jump > KEPT * angle;
+    let is_crease = jump > LEAST_JUMP.to_radians();
     let calm = a.calm && b.calm;
     is_crease.then_some(Vertex { place: at, normals, kind: Kind::Crease, calm })
 }
