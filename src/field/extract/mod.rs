@@ -10,12 +10,15 @@
 //! that meet there instead of from fitted planes. Cubes that hold several pieces, or whose faces are cut by several
 //! lines, at the finest level, are divided into tetrahedra instead, where neither can happen.
 //!
+//! The surface of the cubes is then made smooth (`smooth`): vertices on the zero set, facets that face the way of the gradient, round triangles
+//! and far fewer of them.
+//!
 //! # What is promised
 //! - **Closed and 2-manifold, always**: every face of a cube has one line, seen alike from both sides; every cube
 //!   fills its loop with a disc. Should bounds have been wrong and a cube held to be empty have a cut face, it is looked
 //!   at again.
 //! - **No self-crossings**, up to the rounding of coordinates: each filling stays in its cube, and fillings in one cube do
-//!   not cross.
+//!   not cross; what smoothing changes is tested exactly, and left undone where it crosses.
 //! - Deterministic: the same bytes for any number of threads.
 //!
 //! What is *not* promised: parts of the solid thinner than [`Extraction::resolution`] may be missed or joined, and the

@@ -45,7 +45,7 @@ const DIVIDED_ANGLE: f64 = 5.0;
 /// Times that triangles are divided: each halves an edge.
 const DIVISIONS: usize = 4;
 /// Times that everything is tried, each with more vertices frozen than before.
-const ATTEMPTS: usize = 6;
+const ATTEMPTS: usize = 4;
 
 /// Bytes held for each vertex of the cells' surface: the vertex twice, its star, and two triangles with the ways they face.
 const BYTES: usize = 500;
@@ -87,7 +87,7 @@ pub(super) fn smoothed(
         if faults.is_empty() {
             return Ok(measured(smooth, &fits));
         }
-        care::take_care(&mesh, &faults, f64::from(1u32 << (attempt / 2)), &mut care);
+        care::take_care(&mesh, &faults, f64::from(1u32 << attempt), &mut care);
     }
     rough(mesh, nearby, control)
 }
