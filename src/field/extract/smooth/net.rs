@@ -147,6 +147,13 @@ impl Net {
         self.stars[vertex as usize].iter().map(move |&triangle| self.after(triangle, vertex))
     }
 
+    /// Whether one of the triangles has to stay as it is.
+    pub(super) fn is_frozen(&self, triangles: [u32; 2]) -> bool {
+        triangles
+            .iter()
+            .any(|&triangle| self.corners(triangle).iter().any(|&corner| self.is(corner, Kind::Frozen)))
+    }
+
     /// Whether the surface has a crease along the edge of two triangles: both ends have another normal on either side.
     pub(super) fn is_crease(&self, a: u32, b: u32, beside: [u32; 2]) -> bool {
         let [left, right] = beside.map(|triangle| self.side(triangle));

@@ -124,6 +124,9 @@ pub(super) fn split(
     let mut count = 0;
     for (&[a, b], foot) in edges.iter().zip(middles.into_iter().flatten()) {
         let (Some(foot), Some(beside)) = (foot, net.beside(a, b)) else { continue };
+        if net.is_frozen(beside) {
+            continue;
+        }
         let length = net.place(a).distance(net.place(b));
         if foot.place.distance((net.place(a) + net.place(b)) * 0.5) > 0.4 * length {
             continue;

@@ -25,6 +25,9 @@ const KEPT: f64 = 0.5;
 /// an end.)
 const ASIDE: f64 = 1.5;
 
+/// Of the tolerance: how far from the surface the place found may be.
+const OFF: f64 = 0.1;
+
 /// Splits the edges that bridge a crease.
 pub(super) fn sharpen(net: &mut Net, nearby: &Nearby<'_>, control: &Control) -> Result<(), Error> {
     let bridges: Vec<[u32; 2]> =
@@ -36,7 +39,9 @@ pub(super) fn sharpen(net: &mut Net, nearby: &Nearby<'_>, control: &Control) -> 
     })?;
     let first = net.vertices.len() as u32;
     for (&[a, b], vertex) in bridges.iter().zip(found.into_iter().flatten()) {
-        if let (Some(vertex), Some(beside)) = (vertex, net.beside(a, b)) {
+        if let (Some(vertex), Some(beside)) = (vertex, net.beside(a, b))
+            && !net.is_frozen(beside)
+        {
             net.split(a, b, beside, vertex);
         }
     }
@@ -85,7 +90,8 @@ fn on_crease(a: &Vertex, b: &Vertex, nearby: &Nearby<'_>, scratch: &mut Scratch)
     }
     let jump = sides[0].1.angle_between(sides[1].1);
     let normals: SmallVec<[DVec3; 1]> = smallvec![sides[0].1, sides[1].1];
-    let is_crease = jump > LEAST_JUMP.to_radians();
+    let off = nearby.look(at, scratch).map_or(f64::INFINITY, |look| look.depth.abs());
+    let is_crease = off <= OFF * nearby.reach() && jump > LEAST_JUMP.to_radians();
     let calm = a.calm && b.calm;
     is_crease.then_some(Vertex { place: at, normals, kind: Kind::Crease, calm })
 }
