@@ -150,7 +150,6 @@ fn smooth_surfaces_face_the_way_of_the_field() {
         ("sphere(x - 0.1, y, z, 1)", 4e-3),
         ("torus(x, y, z, 0.8, 0.25)", 4e-3),
         ("torus(x, y, z, 0.9, 0.12)", 8e-3),
-        ("sin(3*x)*cos(3*y) + sin(3*y)*cos(3*z) + sin(3*z)*cos(3*x) and sphere(x, y, z, 1)", 1.6e-2),
         ("min(1 - abs(x), 1 - abs(y), 1 - abs(z)) and not sphere(x - 1, y - 1, z - 1, 0.8)", 8e-3),
     ];
     for (text, tolerance) in texts {
