@@ -15,6 +15,7 @@ mod across;
 pub(crate) mod at_hand;
 pub(crate) mod barycentric;
 mod double_double;
+mod facing;
 mod filter;
 mod integer;
 mod lattice;
@@ -30,6 +31,7 @@ mod seen;
 pub(crate) mod unrounded;
 
 pub(crate) use across::unit_across;
+pub(crate) use facing::facing;
 pub(crate) use filter::{FILTER_RANGE, PlaneFilter, orient3d_filter};
 pub use orient::{Sign, collinear, orient2d, orient3d};
 pub use perturbed::orient3d_perturbed;

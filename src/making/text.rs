@@ -249,7 +249,8 @@ impl Outline {
         if outline.points > Self::MOST {
             return invalid(format!("the letter {} has more than {} points", letter(), Self::MOST));
         }
-        if !is_whole && !(outline.loops.is_empty() && is_blank(character)) {
+        let may_be_empty = outline.loops.is_empty() && is_blank(character);
+        if !is_whole && !may_be_empty {
             return invalid(format!(
                 "the font has no outline of the character {}, or one that is damaged; take another font",
                 letter()

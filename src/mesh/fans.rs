@@ -9,22 +9,32 @@ use crate::parallel::map;
 
 /// For each vertex whether its triangles are plainly side by side: seen along some direction all of them run counter-clockwise, and
 /// once around the vertex. Then any two have nothing in common but the vertex, and the edge if they share one, nor do they after the
-/// smallest of moves. Of a closed mesh; all false where a coordinate is too large for that to be told. O(n).
+/// smallest of moves. Of a closed mesh. `known` has those of which that is known, `around` the triangles that have any of the others;
+/// all others are false where a coordinate is too large for it to be told. O(n).
 ///
 /// (Each triangle is seen as a sector, and the sectors together cover each direction as often as they go round. A sector has no
 /// second point over the vertex, since it is not seen as a line.)
-pub(crate) fn plain_fans(mesh: &Mesh, largest: f64) -> Vec<bool> {
-    let vertices = mesh.positions.len();
+pub(crate) fn plain_fans(mesh: &Mesh, largest: f64, mut known: Vec<bool>, around: &[u32]) -> Vec<bool> {
     if largest > FILTER_RANGE {
-        return vec![false; vertices];
+        return known;
     }
-    map(shares(vertices), |range| of_range(mesh, range)).concat()
-}
-
-fn of_range(mesh: &Mesh, range: Range<usize>) -> Vec<bool> {
-    let first = range.start as u32;
-    let lists = LinkLists::of(&mesh.triangles, range);
-    (first..).zip(lists.each()).map(|(vertex, link)| is_plain(&mesh.positions, vertex, link)).collect()
+    let mut others: Vec<u32> = Vec::new();
+    let mut number = vec![u32::MAX; known.len()];
+    for (vertex, _) in (0u32..).zip(&known).filter(|(_, is_known)| !**is_known) {
+        number[vertex as usize] = others.len() as u32;
+        others.push(vertex);
+    }
+    let of_range = |range: Range<usize>| -> Vec<bool> {
+        let first = range.start as u32;
+        let triangles = around.iter().map(|&triangle| mesh.triangles[triangle as usize]);
+        let place = |vertex: u32| number[vertex as usize].wrapping_sub(first) as usize;
+        let lists = LinkLists::of(triangles, range.len(), place);
+        let vertices = others[range].iter().zip(lists.each());
+        vertices.map(|(&vertex, link)| is_plain(&mesh.positions, vertex, link)).collect()
+    };
+    let plain = map(shares(others.len()), of_range).concat();
+    others.iter().zip(plain).for_each(|(&vertex, plain)| known[vertex as usize] = plain);
+    known
 }
 
 /// Whether the fan with the given link is plainly side by side.
@@ -77,14 +87,29 @@ mod tests {
     use super::*;
     use crate::primitives;
 
+    fn all_plain_fans(mesh: &Mesh, largest: f64) -> Vec<bool> {
+        let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
+        plain_fans(mesh, largest, vec![false; mesh.positions.len()], &all)
+    }
+
+    #[test]
+    fn some_are_as_all_are() {
+        let ball = primitives::icosphere(1.0, 3).unwrap();
+        let known: Vec<bool> = (0..ball.positions.len()).map(|v| v % 3 == 0).collect();
+        let has_other = |corners: &[u32; 3]| corners.iter().any(|&v| !known[v as usize]);
+        let around: Vec<u32> =
+            (0..).zip(&ball.triangles).filter(|(_, t)| has_other(t)).map(|(t, _)| t).collect();
+        assert_eq!(plain_fans(&ball, 1.0, known, &around), all_plain_fans(&ball, 1.0));
+    }
+
     #[test]
     fn convex_and_hollow_corners_are_plain() {
         let cube = primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
-        assert_eq!(plain_fans(&cube, 1.0), [true; 8]);
-        assert_eq!(plain_fans(&cube.reversed(), 1.0), [true; 8]);
+        assert_eq!(all_plain_fans(&cube, 1.0), [true; 8]);
+        assert_eq!(all_plain_fans(&cube.reversed(), 1.0), [true; 8]);
         let ball = primitives::icosphere(1.0, 4).unwrap();
-        assert!(plain_fans(&ball, 1.0).iter().all(|&plain| plain));
-        assert!(plain_fans(&ball, f64::MAX).iter().all(|&plain| !plain));
+        assert!(all_plain_fans(&ball, 1.0).iter().all(|&plain| plain));
+        assert!(all_plain_fans(&ball, f64::MAX).iter().all(|&plain| !plain));
     }
 
     #[test]
@@ -100,7 +125,7 @@ mod tests {
             let at = |k: u32| 2 + k % steps as u32;
             let triangles =
                 (0..steps as u32).flat_map(|k| [[0, at(k), at(k + 1)], [1, at(k + 1), at(k)]]).collect();
-            let plain = plain_fans(&Mesh::new(positions, triangles), 2.0);
+            let plain = all_plain_fans(&Mesh::new(positions, triangles), 2.0);
             assert_eq!(plain[..2], [rounds == 1; 2], "{rounds}");
         }
     }

@@ -127,24 +127,10 @@ impl Counts {
 
     /// Files the edges of the links under their vertices.
     fn file(self, triangles: &[[u32; 3]]) -> LinkLists {
-        let Self { first, counts: mut ends, .. } = self;
-        let count = ends.len() - 1;
+        let Self { first, counts, .. } = self;
+        let count = counts.len() - 1;
         let place = |vertex: u32| (vertex.wrapping_sub(first) as usize).min(count);
-        // Each start runs to the end of its list; what is filed under no vertex is written over, again and again.
-        let mut total = 0;
-        for end in &mut ends {
-            total += std::mem::replace(end, total);
-        }
-        let mut edges = vec![0u64; ends[count] as usize + 1];
-        for &[a, b, c] in triangles {
-            for (vertex, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
-                let place = place(vertex);
-                let end = &mut ends[place];
-                edges[*end as usize] = u64::from(to) << 32 | u64::from(from);
-                *end += u32::from(place != count);
-            }
-        }
-        LinkLists { ends, edges }
+        LinkLists::filed(counts, triangles.iter().copied(), place)
     }
 }
 
@@ -157,9 +143,40 @@ pub(super) struct LinkLists {
 }
 
 impl LinkLists {
-    /// Of the vertices in a range; all that the triangles name must be there.
-    pub(super) fn of(triangles: &[[u32; 3]], range: Range<usize>) -> Self {
-        Counts::of(triangles, range).file(triangles)
+    /// Of some vertices, which `place` numbers from 0 to `count`; it gives `count` or more for all others.
+    pub(super) fn of(
+        triangles: impl Iterator<Item = [u32; 3]> + Clone,
+        count: usize,
+        place: impl Fn(u32) -> usize,
+    ) -> Self {
+        let place = |vertex| place(vertex).min(count);
+        let mut counts = vec![0u32; count + 1];
+        triangles.clone().flatten().for_each(|v| counts[place(v)] += 1);
+        Self::filed(counts, triangles, place)
+    }
+
+    /// The same given how many there are of each; others share the last place.
+    fn filed(
+        mut ends: Vec<u32>,
+        triangles: impl Iterator<Item = [u32; 3]>,
+        place: impl Fn(u32) -> usize,
+    ) -> Self {
+        let count = ends.len() - 1;
+        // Each start runs to the end of its list; what is filed under no vertex is written over, again and again.
+        let mut total = 0;
+        for end in &mut ends {
+            total += std::mem::replace(end, total);
+        }
+        let mut edges = vec![0u64; ends[count] as usize + 1];
+        for [a, b, c] in triangles {
+            for (vertex, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
+                let place = place(vertex);
+                let end = &mut ends[place];
+                edges[*end as usize] = u64::from(to) << 32 | u64::from(from);
+                *end += u32::from(place != count);
+            }
+        }
+        Self { ends, edges }
     }
 
     /// The edges of the link of each vertex.

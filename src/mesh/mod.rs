@@ -21,6 +21,7 @@ mod fans;
 mod from_polygons;
 mod gate;
 mod groups;
+mod handover;
 mod inertia;
 mod links;
 mod manifold;

@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use super::edges::EdgeTable;
+use super::handover::Handover;
 use super::measure::{area, signed_volume};
 use super::patches::Patches;
 use super::topology::{self, Shape};
@@ -64,6 +65,8 @@ pub struct Solid {
     pub(super) self_crossings: OnceLock<SelfCrossings>,
     /// Pairs of triangles that may cross or lie on each other, where these are no more than triangles.
     pub(super) near_pairs: OnceLock<Vec<[u32; 2]>>,
+    /// The same where there are more, left by whoever looked for them.
+    pub(super) many_near_pairs: Handover<Vec<[u32; 2]>>,
     /// Whether an operation made it so that it crosses itself no deeper than rounding.
     pub(super) made_clean: bool,
     /// Shells that face the wrong way.
@@ -180,6 +183,11 @@ impl Solid {
     /// The pairs of triangles that may cross or lie on each other, the lower one first, if somebody has looked for them.
     pub(crate) fn known_near_pairs(&self) -> Option<&[[u32; 2]]> {
         self.near_pairs.get().map(Vec::as_slice)
+    }
+
+    /// The same where there are more than triangles: to be left for who comes next, and to be taken.
+    pub(crate) fn many_near_pairs(&self) -> &Handover<Vec<[u32; 2]>> {
+        &self.many_near_pairs
     }
 
     pub(crate) fn remember_near_pairs(&self, pairs: Vec<[u32; 2]>) -> &[[u32; 2]] {

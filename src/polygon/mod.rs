@@ -11,6 +11,7 @@ mod ears;
 mod face;
 mod holes;
 mod loops;
+mod once;
 mod region;
 mod winding;
 
@@ -18,6 +19,7 @@ use delaunay::Bridges;
 
 pub(crate) use delaunay::{Conflict, Overlay, fill_region};
 pub(crate) use face::{FaceTriangulator, Tiling};
+pub(crate) use once::winds_once;
 pub(crate) use region::{Region, fill_wound, polygons, polygons_of_loops};
 pub(crate) use winding::{Edge, Found, by_winding, cross_properly};
 

@@ -4,6 +4,7 @@ use crate::control::{Control, Limit};
 use crate::parallel::Runner;
 
 use super::box_tree::BoxTree;
+use super::branches::Branches;
 use super::marks::Marks;
 use super::pack::{LANES, for_each_bit};
 
@@ -45,7 +46,7 @@ pub(crate) fn visit_pairs<T: Send>(
     runner: Runner<'_>,
     visit: impl Fn(&[[u32; 2]], &mut Vec<T>) + Sync,
 ) -> Result<Vec<T>, Limit> {
-    Walk { a, b, within: false, marks: None, control: runner.control }.run(runner, visit)
+    Walk { a, b, within: false, apart: None, control: runner.control }.run(runner, visit)
 }
 
 /// All pairs of different items whose boxes meet and that `wanted` accepts, each once with the smaller item first, in an
@@ -58,26 +59,30 @@ pub(crate) fn self_overlapping_pairs(
     self_pairs(tree, None, runner, wanted)
 }
 
-/// The same without the pairs of items that have a mark in common; `marks_of` has three marks of every item. They are compared four
-/// by four, as boxes are, so that neighbours in a mesh, which all meet, cost next to nothing.
+/// The same without pairs within some branches, and without pairs of items that have a mark in common; `marks_of` has three marks of
+/// every item, given its place in the tree too. They are compared four by four, as boxes are, so that neighbours in a mesh, which
+/// all meet, cost next to nothing.
 pub(crate) fn self_overlapping_pairs_apart(
     tree: &BoxTree,
-    marks_of: impl Fn(u32) -> [u32; 3],
+    branches: &Branches,
+    marks_of: impl Fn(usize, u32) -> [u32; 3],
     runner: Runner<'_>,
     wanted: impl Fn([u32; 2]) -> bool + Sync,
 ) -> Result<Vec<[u32; 2]>, Limit> {
-    let packs = tree.items().chunks(LANES);
-    let marks: Vec<Marks> = packs.map(|items| Marks::new(items.iter().map(|&item| marks_of(item)))).collect();
-    self_pairs(tree, Some(&marks), runner, wanted)
+    let of_pack = |(pack, items): (usize, &[u32])| {
+        Marks::new((LANES * pack..).zip(items).map(|(place, &item)| marks_of(place, item)))
+    };
+    let marks: Vec<Marks> = tree.items().chunks(LANES).enumerate().map(of_pack).collect();
+    self_pairs(tree, Some((branches, &marks)), runner, wanted)
 }
 
 fn self_pairs(
     tree: &BoxTree,
-    marks: Option<&[Marks]>,
+    apart: Option<(&Branches, &[Marks])>,
     runner: Runner<'_>,
     wanted: impl Fn([u32; 2]) -> bool + Sync,
 ) -> Result<Vec<[u32; 2]>, Limit> {
-    let walk = Walk { a: tree, b: tree, within: true, marks, control: runner.control };
+    let walk = Walk { a: tree, b: tree, within: true, apart, control: runner.control };
     walk.run(runner, |pairs, found| {
         found.extend(pairs.iter().map(|&[i, j]| [i.min(j), i.max(j)]).filter(|&pair| wanted(pair)));
     })
@@ -89,8 +94,9 @@ struct Walk<'a> {
     b: &'a BoxTree,
     /// The trees are one: of two different packs one order is enough.
     within: bool,
-    /// Of the items of each pack of the lowest level; items with one in common are no pair.
-    marks: Option<&'a [Marks]>,
+    /// Branches without pairs in them; and the marks of the items of each pack of the lowest level: items of different packs with one
+    /// in common are no pair.
+    apart: Option<(&'a Branches, &'a [Marks])>,
     control: &'a Control,
 }
 
@@ -151,11 +157,17 @@ impl Walk<'_> {
     #[inline(always)]
     fn open(&self, level: usize, pair: Packs, mut found: impl FnMut(Packs)) {
         let [x, y] = pair;
+        if let Some((branches, _)) = self.apart
+            && x == y
+            && branches.contains(level, x)
+        {
+            return;
+        }
         let mut meeting = self.a.level(level)[x as usize].meeting_pack(&self.b.level(level)[y as usize]);
         if self.within && x == y {
             meeting &= if level == 0 { DIFFERENT_LANES } else { ORDERED_LANES };
         }
-        if let (Some(marks), 0) = (self.marks, level)
+        if let (Some((_, marks)), 0) = (self.apart, level)
             && meeting != 0
         {
             meeting &= !marks[x as usize].shared(&marks[y as usize]);

@@ -12,9 +12,15 @@ use smallvec::{SmallVec, smallvec};
 use super::pack::{LANES, Pack, for_each_bit};
 use super::read_ahead::read_ahead;
 use super::{morton, radix};
+use crate::parallel::build;
 
 /// Items whose boxes are read ahead; a multiple of [`LANES`], and few enough to stay in the first-level cache.
 const AT_ONCE: usize = 64;
+
+/// Items that one thread takes at least.
+const PIECE: usize = 1 << 14;
+/// The box of no points.
+const NOTHING: Aabb = Aabb { min: Vec3A::INFINITY, max: Vec3A::NEG_INFINITY };
 
 /// A balanced tree over the boxes of items: every pack of a level holds the boxes of four packs of the level below.
 #[derive(Debug)]
@@ -53,23 +59,41 @@ impl BoxTree {
 
     /// The tree of the given boxes; items are places in their list.
     pub(crate) fn of_boxes(unsorted: &[Aabb]) -> Self {
-        // 1. Items by the Morton codes of their centres (twice the centres, which is as good).
-        let mut centres = Aabb { min: Vec3A::splat(f32::INFINITY), max: Vec3A::splat(f32::NEG_INFINITY) };
+        let mut centres = NOTHING;
         for aabb in unsorted {
             let centre = aabb.min + aabb.max;
             centres.min = centres.min.min(centre);
             centres.max = centres.max.max(centre);
         }
+        Self::of(unsorted.len(), &centres, |item| unsorted[item as usize])
+    }
+
+    /// The tree of the boxes of triangles. On several threads where that pays.
+    pub(crate) fn of_triangles(points: &[Vec3A], triangles: &[[u32; 3]]) -> Self {
+        let mut all = NOTHING;
+        for &point in points {
+            all.min = all.min.min(point);
+            all.max = all.max.max(point);
+        }
+        let centres = Aabb { min: all.min + all.min, max: all.max + all.max };
+        Self::of(triangles.len(), &centres, |item| {
+            let [a, b, c] = triangles[item as usize].map(|v| points[v as usize]);
+            Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
+        })
+    }
+
+    /// The tree of `count` boxes, twice the centres of which are in `centres`.
+    fn of(count: usize, centres: &Aabb, box_of: impl Fn(u32) -> Aabb + Sync) -> Self {
+        // 1. Items by the Morton codes of their centres (twice the centres, which is as good).
         let extent = (centres.max - centres.min).max_element();
         let scale = if extent > 0.0 { morton::LAST as f32 / extent } else { 0.0 };
-        let mut order: Vec<u64> = unsorted
-            .iter()
-            .enumerate()
-            .map(|(i, aabb)| {
+        let mut order = build(count, PIECE, |first, run: &mut [u64]| {
+            for (item, key) in (first as u32..).zip(run) {
+                let aabb = box_of(item);
                 let [x, y, z] = ((aabb.min + aabb.max - centres.min) * scale).to_array();
-                u64::from(morton::code([z as u32, y as u32, x as u32])) << 32 | i as u64
-            })
-            .collect();
+                *key = u64::from(morton::code([z as u32, y as u32, x as u32])) << 32 | u64::from(item);
+            }
+        });
         radix::sort(&mut order, &mut Vec::new(), |&key| (key >> 32) as u32, morton::BITS);
         let items: Vec<u32> = order.iter().map(|&key| key as u32).collect();
         drop(order);
@@ -78,9 +102,9 @@ impl BoxTree {
         let mut packs = Vec::with_capacity(items.len().div_ceil(LANES - 1) + 1);
         let mut boxes = Vec::with_capacity(items.len().div_ceil(LANES));
         for part in items.chunks(AT_ONCE) {
-            read_ahead(part.iter().map(|&item| unsorted[item as usize].min.x.to_bits()));
+            read_ahead(part.iter().map(|&item| box_of(item).min.x.to_bits()));
             for group in part.chunks(LANES) {
-                let boxes_of_items = group.iter().map(|&item| unsorted[item as usize]);
+                let boxes_of_items = group.iter().map(|&item| box_of(item));
                 packs.push(Pack::new(boxes_of_items.clone()));
                 boxes.push(union(boxes_of_items));
             }
@@ -120,7 +144,7 @@ impl BoxTree {
 
     /// The items in the order of the lanes of the lowest level.
     #[inline]
-    pub(super) fn items(&self) -> &[u32] {
+    pub(crate) fn items(&self) -> &[u32] {
         &self.items
     }
 

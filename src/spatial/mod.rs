@@ -12,6 +12,7 @@
 
 mod box_pairs;
 mod box_tree;
+mod branches;
 mod build;
 mod closest;
 mod crossing;
@@ -42,6 +43,7 @@ pub use triangle_tree::TriangleTree;
 
 pub(crate) use box_pairs::{self_overlapping_pairs, self_overlapping_pairs_apart, visit_pairs};
 pub(crate) use box_tree::BoxTree;
+pub(crate) use branches::{Branch, Branches};
 pub(crate) use build::binary_tree;
 pub(crate) use films::{Film, lost_films};
 pub(crate) use frame::Frame;

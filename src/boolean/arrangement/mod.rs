@@ -15,6 +15,7 @@ pub(super) mod curve;
 pub(super) mod cut_edges;
 pub(super) mod cut_faces;
 pub(super) mod face_walk;
+mod height_fields;
 pub(super) mod identify;
 pub(super) mod location;
 mod neighbours;

@@ -19,9 +19,11 @@ pub(super) struct Neighbours<'a> {
 }
 
 impl<'a> Neighbours<'a> {
-    /// Of a mesh without coordinates larger than `largest`. O(n).
-    pub(super) fn new(mesh: &'a Mesh, largest: f64) -> Self {
-        Self { mesh, plain: plain_fans(mesh, largest), has_filter: largest <= FILTER_RANGE }
+    /// Of a mesh without coordinates larger than `largest`, given which vertices are known to have plain fans, and the triangles that
+    /// have others. O(n).
+    pub(super) fn new(mesh: &'a Mesh, largest: f64, known: Vec<bool>, around: &[u32]) -> Self {
+        let plain = plain_fans(mesh, largest, known, around);
+        Self { mesh, plain, has_filter: largest <= FILTER_RANGE }
     }
 
     /// Whether the triangles round a vertex have nothing in common but it and the edges they share.
@@ -33,18 +35,13 @@ impl<'a> Neighbours<'a> {
     /// one in common have nothing else in common.
     #[inline]
     pub(super) fn marks(&self, triangle: u32) -> [u32; 3] {
-        // No vertex has so large a number, and there are no more triangles than so many.
-        const OWN: u32 = 1 << 31;
-        let vertices = self.mesh.triangles[triangle as usize];
-        std::array::from_fn(|k| {
-            let own = OWN | (3 * triangle.min(MOST_TRIANGLES) + k as u32);
-            if self.plain[vertices[k] as usize] { vertices[k] } else { own }
-        })
+        let (vertices, own) = (self.mesh.triangles[triangle as usize], own_marks(triangle));
+        std::array::from_fn(|k| if self.plain[vertices[k] as usize] { vertices[k] } else { own[k] })
     }
 
     /// Whether there are few enough triangles for [`marks`](Self::marks).
-    pub(super) fn has_marks(&self) -> bool {
-        self.mesh.triangles.len() <= MOST_TRIANGLES as usize
+    pub(super) fn has_marks(mesh: &Mesh) -> bool {
+        mesh.triangles.len() <= MOST_TRIANGLES as usize
     }
 
     /// Whether two triangles may cross or lie on each other; false only where it is certain that they have nothing in common but
@@ -83,6 +80,14 @@ impl<'a> Neighbours<'a> {
         let [a, b] = [a, b].map(|corners| corners.map(|v| self.mesh.positions[v as usize]));
         planes::lie_on_each_other(&a, &b)
     }
+}
+
+/// Three numbers of a triangle that nothing else has.
+#[inline]
+pub(super) fn own_marks(triangle: u32) -> [u32; 3] {
+    // No vertex has so large a number, and there are no more triangles than so many.
+    const OWN: u32 = 1 << 31;
+    std::array::from_fn(|k| OWN | (3 * triangle.min(MOST_TRIANGLES) + k as u32))
 }
 
 /// Whether points certainly lie strictly on one side of the plane through others.

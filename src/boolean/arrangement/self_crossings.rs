@@ -8,13 +8,9 @@
 
 use std::borrow::Cow;
 
-use glam::Vec3A;
-use obvhs::aabb::Aabb;
-
 use super::apart::{are_plainly_apart, common_corners};
-use super::neighbours::Neighbours;
 use super::penetration;
-use super::self_pairs::self_pairs;
+use super::self_pairs::{self_pairs, tree_of};
 use crate::boolean::complex::ids::VertexId;
 use crate::boolean::complex::planes;
 use crate::boolean::complex::predicates::Predicates;
@@ -24,7 +20,7 @@ use crate::exact::at_hand::{largest_coordinate, size_at_hand};
 use crate::mesh::{Bounds, SelfCrossing, SelfCrossings};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame};
-use crate::{Control, Error, Mesh, Solid};
+use crate::{Control, Error, Solid};
 
 /// Units in the last place of the coordinates at hand that a rounding-level crossing may be deep. Each of two rounded
 /// surfaces is off by less than one in every direction.
@@ -99,13 +95,15 @@ fn known_or_found<'a>(
     if let Some(known) = solid.known_near_pairs() {
         return Ok((Cow::Borrowed(known), None));
     }
+    if let Some(many) = solid.many_near_pairs().take() {
+        return Ok((Cow::Owned(many), None));
+    }
     let (mesh, largest) = (solid.mesh(), bounds.largest());
-    let (tree, neighbours) = runner.both(|| tree_of(mesh, frame), || Neighbours::new(mesh, largest));
-    let may_meet = |pair: [u32; 2]| neighbours.may_meet(pair);
-    let pairs = self_pairs(mesh, &tree, frame, runner, &neighbours, may_meet)?;
+    let (pairs, tree) =
+        self_pairs(mesh, frame, largest, runner, |neighbours, pair| neighbours.may_meet(pair))?;
     let is_short = pairs.len() <= mesh.triangles.len();
     let pairs = if is_short { Cow::Borrowed(solid.remember_near_pairs(pairs)) } else { Cow::Owned(pairs) };
-    Ok((pairs, Some(tree)))
+    Ok((pairs, tree))
 }
 
 /// Whether a solid crosses itself nowhere deeper than a few roundings, nor lies on itself. Stops at the first place that tells
@@ -175,6 +173,12 @@ fn find(
         }
     }
     result.places.sort_by(|x, y| y.depth.total_cmp(&x.depth).then(x.triangles.cmp(&y.triangles)));
+    // 3. What crosses itself is resolved next, perhaps, and that begins with the same pairs.
+    if let Cow::Owned(many) = pairs
+        && !result.is_nearly_simple()
+    {
+        solid.many_near_pairs().leave(many);
+    }
     Ok(result)
 }
 
@@ -210,17 +214,6 @@ struct Surface<'a> {
     part: f64,
     /// The largest coordinate.
     largest: f64,
-}
-
-/// The boxes of all triangles.
-fn tree_of(mesh: &Mesh, frame: &Frame) -> BoxTree {
-    // Each vertex once, not with each of its six triangles.
-    let points: Vec<Vec3A> = mesh.positions.iter().map(|position| frame.point(position)).collect();
-    let box_of = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|v| points[v as usize]);
-        Aabb { min: a.min(b).min(c), max: a.max(b).max(c) }
-    };
-    BoxTree::of_boxes(&mesh.triangles.iter().map(box_of).collect::<Vec<_>>())
 }
 
 impl<'a> Surface<'a> {

@@ -11,7 +11,8 @@
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 
-use super::neighbours::Neighbours;
+use super::height_fields::HeightFields;
+use super::neighbours::{Neighbours, own_marks};
 use crate::boolean::candidates::capsule_tree::{self, CapsuleTree};
 use crate::boolean::candidates::has_needles;
 use crate::boolean::candidates::refined_boxes::Corners;
@@ -33,46 +34,64 @@ const SAMPLE: usize = 256;
 /// No hub.
 const NONE: u32 = u32::MAX;
 
+/// The boxes of all triangles.
+pub(super) fn tree_of(mesh: &Mesh, frame: &Frame) -> BoxTree {
+    let points: Vec<Vec3A> = mesh.positions.iter().map(|position| frame.point(position)).collect();
+    BoxTree::of_triangles(&points, &mesh.triangles)
+}
+
 /// All pairs of triangles that may cross and that `wanted` accepts, each once with the smaller one first, in an order that depends
-/// on the mesh alone. `tree` has the boxes of all triangles in `frame`.
+/// on the mesh alone; and the boxes of all triangles in `frame`, if they were made. No coordinate is larger than `largest`.
 ///
 /// # Errors
 /// Only limits.
 pub(super) fn self_pairs(
     mesh: &Mesh,
-    tree: &BoxTree,
     frame: &Frame,
+    largest: f64,
     runner: Runner<'_>,
-    neighbours: &Neighbours<'_>,
-    wanted: impl Fn([u32; 2]) -> bool + Sync,
-) -> Result<Vec<[u32; 2]>, Error> {
+    wanted: impl Fn(&Neighbours<'_>, [u32; 2]) -> bool + Sync,
+) -> Result<(Vec<[u32; 2]>, Option<BoxTree>), Error> {
     let corners =
         |t: u32| -> Corners { mesh.triangles[t as usize].map(|v| frame.point(&mesh.positions[v as usize])) };
     let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
+    let (fans, free) = fans_of_hubs(mesh);
+    let tree = if fans.is_empty() { tree_of(mesh, frame) } else { BoxTree::new(&free, box_of) };
+    // 1. What is known of neighbours.
+    let is_crowded =
+        free.len() >= CAPSULES_FROM && has_needles(&free, corners) && are_crowded(&tree, &free, box_of);
+    let fields = if is_crowded || !Neighbours::has_marks(mesh) {
+        HeightFields::none(mesh, &tree)
+    } else {
+        let in_fans: Vec<u32> = fans.iter().flat_map(|fan| &fan.triangles).copied().collect();
+        HeightFields::new(mesh, &tree, &in_fans, runner)?
+    };
+    let (branches, is_rim) = (fields.branches, fields.is_rim);
+    let neighbours = Neighbours::new(mesh, largest, fields.inner, &fields.rim);
+    let wanted = |pair: [u32; 2]| wanted(&neighbours, pair);
+    // 2. What is in no fan.
+    let mut pairs = if is_crowded {
+        let _memory = runner.control.reserve((free.len() * CapsuleTree::BYTES_PER_ITEM) as u64)?;
+        let capsules = CapsuleTree::new(&free, corners);
+        // Both ways round, and every triangle with itself.
+        capsule_tree::visit_pairs(&capsules, &capsules, runner, |met, found| {
+            found.extend(met.iter().copied().filter(|&[s, t]| s < t && wanted([s, t])));
+        })?
+    } else if Neighbours::has_marks(mesh) {
+        let marks = |place: usize, t: u32| if is_rim[place] { neighbours.marks(t) } else { own_marks(t) };
+        self_overlapping_pairs_apart(&tree, &branches, marks, runner, wanted)?
+    } else {
+        self_overlapping_pairs(&tree, runner, wanted)?
+    };
+    if fans.is_empty() {
+        return Ok((pairs, Some(tree)));
+    }
+    // 3. Within each fan, and between it and what is in none.
+    let free = tree;
     let keep = |met: &[[u32; 2]], found: &mut Vec<[u32; 2]>| {
         let ordered = met.iter().map(|&[s, t]| [s.min(t), s.max(t)]);
         found.extend(ordered.filter(|&pair| wanted(pair)));
     };
-    let (fans, free) = fans_of_hubs(mesh);
-    // 1. What is in no fan.
-    let mut pairs =
-        if free.len() >= CAPSULES_FROM && has_needles(&free, corners) && are_crowded(tree, &free, box_of) {
-            let _memory = runner.control.reserve((free.len() * CapsuleTree::BYTES_PER_ITEM) as u64)?;
-            let capsules = CapsuleTree::new(&free, corners);
-            // Both ways round, and every triangle with itself.
-            capsule_tree::visit_pairs(&capsules, &capsules, runner, |met, found| {
-                found.extend(met.iter().copied().filter(|&[s, t]| s < t && wanted([s, t])));
-            })?
-        } else if fans.is_empty() {
-            pairs_of_boxes(tree, neighbours, runner, &wanted)?
-        } else {
-            pairs_of_boxes(&BoxTree::new(&free, box_of), neighbours, runner, &wanted)?
-        };
-    if fans.is_empty() {
-        return Ok(pairs);
-    }
-    // 2. Within each fan, and between it and what is in none.
-    let free = BoxTree::new(&free, box_of);
     let trees: Vec<BoxTree> = fans.iter().map(|fan| BoxTree::new(&fan.triangles, box_of)).collect();
     for (fan, tree) in fans.iter().zip(&trees) {
         if !neighbours.is_plain(fan.hub) {
@@ -81,7 +100,7 @@ pub(super) fn self_pairs(
         }
         pairs.extend(visit_pairs(tree, &free, runner, keep)?);
     }
-    // 3. Between fans.
+    // 4. Between fans.
     let numbers: Vec<u32> = (0..fans.len() as u32).collect();
     let round = BoxTree::new(&numbers, |k| {
         let mut boxes = fans[k as usize].triangles.iter().map(|&t| box_of(t));
@@ -91,7 +110,7 @@ pub(super) fn self_pairs(
     for [x, y] in self_overlapping_pairs(&round, runner, |_| true)? {
         pairs.extend(visit_pairs(&trees[x as usize], &trees[y as usize], runner, keep)?);
     }
-    Ok(pairs)
+    Ok((pairs, None))
 }
 
 /// Whether the boxes of the triangles meet very many others.
@@ -106,20 +125,6 @@ fn are_crowded(tree: &BoxTree, triangles: &[u32], box_of: impl Fn(u32) -> Aabb) 
         }
     }
     false
-}
-
-/// Pairs of triangles whose boxes meet, but for neighbours that are plainly side by side.
-fn pairs_of_boxes(
-    tree: &BoxTree,
-    neighbours: &Neighbours<'_>,
-    runner: Runner<'_>,
-    wanted: impl Fn([u32; 2]) -> bool + Sync,
-) -> Result<Vec<[u32; 2]>, Error> {
-    Ok(if neighbours.has_marks() {
-        self_overlapping_pairs_apart(tree, |t| neighbours.marks(t), runner, wanted)?
-    } else {
-        self_overlapping_pairs(tree, runner, wanted)?
-    })
 }
 
 /// The triangles around a hub, less those that belong to another hub.
@@ -204,12 +209,9 @@ mod tests {
     fn pairs_of(mesh: &Mesh, wanted: impl Fn([u32; 2]) -> bool + Sync) -> Vec<[u32; 2]> {
         let bounds = crate::mesh::Bounds::of(&mesh.positions).unwrap();
         let frame = Frame::of(bounds.low, bounds.high);
-        let all: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
-        let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
-        let tree = BoxTree::new(&all, box_of);
         let control = Control::new();
-        let neighbours = Neighbours::new(mesh, bounds.largest());
-        self_pairs(mesh, &tree, &frame, Runner::new(&control, false), &neighbours, wanted).unwrap()
+        let runner = Runner::new(&control, false);
+        self_pairs(mesh, &frame, bounds.largest(), runner, |_, pair| wanted(pair)).unwrap().0
     }
 
     /// A ring: between two circles, above and below.
