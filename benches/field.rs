@@ -1,11 +1,14 @@
 //! Fields, timed: `cargo bench --bench field -- MODEL.off|MODEL.ply [POINTS.npy [OUT]]` for signed distances of a million
-//! points (or the given ones) and a grid of 256 points a side; `cargo bench --bench field -- extract` for extractions.
+//! points (or the given ones) and a grid of 256 points a side; `cargo bench --bench field -- extract` for extractions, `-- smooth [MESH DISTANCE]...` for
+//! surfaces as the cells give them beside smooth ones, of formulas, a model file, and offsets by parts of the diagonal.
 //!
 //! Prints one line of `key value` pairs per measurement, for `benches/libigl_distance.py` to set beside libigl's.
 #![allow(clippy::print_stdout, reason = "a benchmark reports on standard output")]
 
 #[path = "../tests/common/files.rs"]
 mod files;
+#[path = "field/smooth.rs"]
+mod smooth;
 
 use std::time::Instant;
 
@@ -20,6 +23,9 @@ fn main() {
     };
     if model == "extract" {
         return extractions();
+    }
+    if model == "smooth" {
+        return smooth::rows(&arguments[1..]);
     }
     let mesh = files::read(model);
     let points = arguments.get(1).map_or_else(|| random_points(&mesh, 1_000_000), |path| files::points(path));

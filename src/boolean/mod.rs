@@ -40,6 +40,8 @@ mod snapping;
 mod solidify;
 mod tidy;
 
+#[cfg(feature = "field")]
+pub(crate) use arrangement::self_crossings::crossing_pairs;
 pub use complex::operation::{Contact, Operation, UnknownName};
 pub use complex::origin::Origin;
 pub use expression::Expression;

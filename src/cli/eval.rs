@@ -75,8 +75,8 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     session.console.say(&format!("{name}: {} ({}){arrow}", parts.join("; "), words::time(seconds)));
     if let Some(extracted) = found.as_ref().and_then(|found| found.extraction) {
         session.console.detail(&format!(
-            "extracted over {} cells; largest deviation found {:.3e}, tolerance {:.3e}",
-            extracted.cells, extracted.deviation, extracted.tolerance
+            "extracted over {} cells; largest deviation found {:.3e}, tolerance {:.3e}; normals within {:.1} degrees (95 of 100)",
+            extracted.cells, extracted.deviation, extracted.tolerance, extracted.normal_deviation
         ));
     }
     Ok(Exit::Fine)
@@ -179,6 +179,7 @@ fn extraction(found: &Evaluated) -> Value {
         json!({
             "tolerance": report.tolerance,
             "deviation": report.deviation,
+            "normal_deviation": report.normal_deviation,
             "cells": report.cells,
             "divided_cells": report.divided_cells,
         })

@@ -179,6 +179,7 @@ fn from_distance(
     let seconds = session.took("run", start);
     session.note("tolerance", made.tolerance);
     session.note("deviation", made.deviation);
+    session.note("normal_deviation", made.normal_deviation);
     made::deliver(&made.solid, results, &targets, Some(operand.format), seconds, session)?;
     let (deviation, tolerance) = (words::short(made.deviation), words::short(made.tolerance));
     session.console.say(&format!("within {deviation} of the true {verb} (tolerance {tolerance})"));

@@ -107,3 +107,126 @@ fn random_trees_of_primitives_are_manifold() {
         assert!(genus >= 0);
     }
 }
+
+/// How the facets of a surface face: for every triangle the degrees between its normal and the gradient at its middle, reversed, in
+/// order; those with a corner where the gradient jumps are left out.
+fn turns(field: &Expression, found: &Extracted) -> Vec<f64> {
+    let outward = |p: glam::DVec3| -glam::DVec3::from_array(field.gradient(p.to_array()).1).normalize();
+    let mut turns: Vec<f64> = found
+        .mesh
+        .triangles
+        .iter()
+        .filter_map(|t| {
+            let [a, b, c] = t.map(|k| glam::DVec3::from_array(found.mesh.positions[k as usize]));
+            let middle = (a + b + c) / 3.0;
+            let way = outward(middle);
+            let smooth = [a, b, c].iter().all(|corner| outward(corner.lerp(middle, 0.02)).dot(way) > 0.9);
+            smooth.then(|| (b - a).cross(c - a).normalize().angle_between(way).to_degrees())
+        })
+        .collect();
+    turns.sort_by(f64::total_cmp);
+    turns
+}
+
+/// The smallest angle of every triangle in degrees, in order.
+fn least_angles(found: &Extracted) -> Vec<f64> {
+    let mut angles: Vec<f64> = found
+        .mesh
+        .triangles
+        .iter()
+        .map(|t| {
+            let p = t.map(|k| glam::DVec3::from_array(found.mesh.positions[k as usize]));
+            let at = |k: usize| (p[(k + 1) % 3] - p[k]).angle_between(p[(k + 2) % 3] - p[k]).to_degrees();
+            (0..3).map(at).fold(180.0, f64::min)
+        })
+        .collect();
+    angles.sort_by(f64::total_cmp);
+    angles
+}
+
+#[test]
+fn smooth_surfaces_face_the_way_of_the_field() {
+    let texts = [
+        ("sphere(x - 0.1, y, z, 1)", 4e-3),
+        ("torus(x, y, z, 0.8, 0.25)", 4e-3),
+        ("torus(x, y, z, 0.9, 0.12)", 8e-3),
+        ("min(1 - abs(x), 1 - abs(y), 1 - abs(z)) and not sphere(x - 1, y - 1, z - 1, 0.8)", 8e-3),
+    ];
+    for (text, tolerance) in texts {
+        let field = field(text);
+        let extraction = Extraction::new([-1.2; 3], [1.2; 3], tolerance);
+        let rough = extraction.clone().smooth(false).run(&field).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let found = extraction.run(&field).unwrap_or_else(|e| panic!("{text}: {e}"));
+        report(text, &found);
+        assert_eq!(manifold(&found.mesh), manifold(&rough.mesh), "{text}");
+        assert!((volume(&found.mesh) - volume(&rough.mesh)).abs() < 16.0 * tolerance, "{text}");
+        let solid = trisect::Solid::try_from(found.mesh.clone()).expect("closed");
+        let crossings = solid.self_crossings(&trisect::Control::new()).expect("no limits");
+        assert!(crossings.is_clean(), "{text}: {crossings:?}");
+        assert!(found.deviation <= tolerance, "{text}: {}", found.deviation);
+        assert!(4 * found.mesh.triangles.len() < 3 * rough.mesh.triangles.len(), "{text}");
+        let usual = |sorted: &[f64]| sorted[(sorted.len() - 1) * 95 / 100];
+        let turns = turns(&field, &found);
+        println!(
+            "  {} of {} triangles, normals {:.2}",
+            turns.len(),
+            found.mesh.triangles.len(),
+            usual(&turns)
+        );
+        assert!(
+            usual(&turns) <= 5.0 && found.normal_deviation <= 5.0,
+            "{text}: {} {}",
+            usual(&turns),
+            found.normal_deviation
+        );
+        let angles = least_angles(&found);
+        assert!(angles[angles.len() / 20] > 8.0, "{text}: {}", angles[angles.len() / 20]);
+    }
+}
+
+#[test]
+fn smooth_surfaces_are_on_the_zero_set_and_none_of_their_facets_is_turned() {
+    for text in ["sphere(x - 0.1, y, z, 1)", "torus(x, y, z, 0.8, 0.25)"] {
+        let field = field(text);
+        let found = extract(text, 1.2, 4e-3);
+        for p in &found.mesh.positions {
+            let (value, gradient) = field.gradient(*p);
+            let off = value.abs() / gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
+            assert!(off < 2e-15, "{text}: {p:?} is off by {off:e}");
+        }
+        let turns = turns(&field, &found);
+        assert!(turns.len() == found.mesh.triangles.len() && turns[turns.len() - 1] < 10.0, "{text}");
+    }
+}
+
+#[test]
+fn smoothing_leaves_plane_faces_and_their_edges_exact() {
+    // A box needs no more than twelve triangles.
+    let found = extract("min(1 - abs(x), 0.7 - abs(y), 0.5 - abs(z))", 1.1, 1e-2);
+    assert_eq!(manifold(&found.mesh), (1, 0));
+    assert!(found.mesh.triangles.len() < 30, "{}", found.mesh.triangles.len());
+    assert!((volume(&found.mesh) - 2.8).abs() < 1e-12 && found.normal_deviation < 1e-5);
+    // The edge of a bored plate is where the cylinder and the plane meet.
+    let found = extract("min(1 - abs(x), 1 - abs(y), 0.3 - abs(z)) and not (0.25 - x^2 - y^2)", 1.2, 5e-3);
+    assert_eq!(manifold(&found.mesh), (1, 1));
+    let rim = found.mesh.positions.iter().filter(|p| {
+        ((p[0] * p[0] + p[1] * p[1]).sqrt() - 0.5).abs() < 1e-9 && (p[2].abs() - 0.3).abs() < 1e-9
+    });
+    assert!(rim.count() > 40);
+    assert!(found.deviation <= 5e-3 && found.normal_deviation <= 5.0, "{}", found.normal_deviation);
+}
+
+#[test]
+fn smooth_surfaces_are_the_same_on_any_number_of_threads() {
+    let field = field("torus(x, y, z, 0.8, 0.25) or min(0.5 - abs(x), 0.4 - abs(y), 0.6 - abs(z))");
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| Extraction::new([-1.2; 3], [1.2; 3], 8e-3).run(&field).expect("extracted"))
+    };
+    let (one, four) = (on(1), on(4));
+    assert_eq!(one.mesh.triangles, four.mesh.triangles);
+    let bits =
+        |found: &Extracted| found.mesh.positions.iter().flatten().map(|x| x.to_bits()).collect::<Vec<u64>>();
+    assert_eq!(bits(&one), bits(&four));
+    assert_eq!(one.normal_deviation.to_bits(), four.normal_deviation.to_bits());
+}

@@ -49,8 +49,26 @@ impl Solid {
             return Ok(known);
         }
         let found = find(self, Runner::new(control, true), |_| true)?;
-        Ok(self.remember_self_crossings(found))
+        Ok(self.remember_self_crossings(shortened(found)))
     }
+}
+
+/// All pairs of triangles of a solid that really cross, not the deepest few alone.
+///
+/// # Errors
+/// Only limits.
+#[cfg(feature = "field")]
+pub(crate) fn crossing_pairs(solid: &Solid, control: &Control) -> Result<Vec<[u32; 2]>, Error> {
+    let found = find(solid, Runner::new(control, true), |_| true)?;
+    let pairs = found.places.iter().map(|crossing| crossing.triangles).collect();
+    solid.remember_self_crossings(shortened(found));
+    Ok(pairs)
+}
+
+/// With the deepest few places alone.
+fn shortened(mut found: SelfCrossings) -> SelfCrossings {
+    found.places.truncate(PLACES);
+    found
 }
 
 /// The pairs of triangles of a solid that may cross or lie on each other, the lower one first. Computed once and remembered, unless
@@ -103,7 +121,7 @@ pub(in crate::boolean) fn is_nearly_simple(solid: &Solid, control: &Control) -> 
     let found = find(solid, Runner::new(control, true), SelfCrossings::is_nearly_simple)?;
     let is_simple = found.is_nearly_simple();
     if is_simple {
-        solid.remember_self_crossings(found);
+        solid.remember_self_crossings(shortened(found));
     }
     Ok(is_simple)
 }
@@ -113,7 +131,8 @@ const PAIRS_AT_ONCE: usize = 1024;
 /// Pairs that are examined before it is asked for the first time whether to go on; then four times as many, and so on.
 const PAIRS_AT_FIRST: usize = 256;
 
-/// Finds all crossings of a surface with itself, or some: as long as `go_on` accepts what was found so far.
+/// Finds all crossings of a surface with itself, or some: as long as `go_on` accepts what was found so far. The places are all of them,
+/// the deepest first.
 fn find(
     solid: &Solid,
     runner: Runner<'_>,
@@ -157,7 +176,6 @@ fn find(
         }
     }
     result.places.sort_by(|x, y| y.depth.total_cmp(&x.depth).then(x.triangles.cmp(&y.triangles)));
-    result.places.truncate(PLACES);
     // 3. What crosses itself is resolved next, perhaps, and that begins with the same pairs.
     if let Cow::Owned(many) = pairs
         && !result.is_nearly_simple()

@@ -78,6 +78,13 @@ impl Lattice {
         )
     }
 
+    /// The finest cell that holds a place; nothing outside the lattice.
+    pub(super) fn unit_at(&self, place: DVec3) -> Option<[u32; 3]> {
+        let at = (place - self.origin) / self.step;
+        let within = at.cmpge(DVec3::ZERO).all() && at.cmplt(DVec3::splat(f64::from(self.count))).all();
+        within.then(|| at.to_array().map(|x| x as u32))
+    }
+
     /// The lowest and the highest corner of a cube.
     pub(super) fn corners(&self, cube: Cube) -> (DVec3, DVec3) {
         (self.place(cube.corner), self.place(cube.corner.map(|x| x + cube.size)))

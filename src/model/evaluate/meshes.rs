@@ -265,12 +265,13 @@ impl State<'_> {
         let Some([low, high]) = bounds else { return Ok(Solid::empty()) };
         let diagonal = DVec3::from_array(low).distance(DVec3::from_array(high));
         let tolerance = self.tolerance(node, diagonal);
-        let Extracted { mesh, cells, divided_cells, deviation, .. } = Extraction::new(low, high, tolerance)
-            .clip(self.model.nodes[node].clip)
-            .control(control.clone())
-            .run(&field)
-            .map_err(|error| error.in_node(label))?;
-        self.last = Some(ExtractionReport { tolerance, deviation, cells, divided_cells });
+        let Extracted { mesh, cells, divided_cells, deviation, normal_deviation, .. } =
+            Extraction::new(low, high, tolerance)
+                .clip(self.model.nodes[node].clip)
+                .control(control.clone())
+                .run(&field)
+                .map_err(|error| error.in_node(label))?;
+        self.last = Some(ExtractionReport { tolerance, deviation, normal_deviation, cells, divided_cells });
         Solid::try_from(mesh).map_err(|error| Error::from(error).in_node(label))
     }
 }

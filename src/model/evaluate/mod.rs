@@ -66,6 +66,8 @@ pub struct ExtractionReport {
     pub tolerance: f64,
     /// The largest deviation found.
     pub deviation: f64,
+    /// Degrees that the normals of 95 of a hundred triangles are within of the gradient.
+    pub normal_deviation: f64,
     /// Cubes that the surface was sought in.
     pub cells: usize,
     /// Cubes with several pieces of surface at the finest level.
