@@ -10,6 +10,7 @@
 //! `self_crossings` asks the same predicates of one surface against itself.
 
 pub(super) mod apart;
+mod beside;
 pub(super) mod crossings;
 pub(super) mod curve;
 pub(super) mod cut_edges;

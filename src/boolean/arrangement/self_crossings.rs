@@ -12,10 +12,8 @@ use super::apart::{are_plainly_apart, common_corners};
 use super::neighbours::Neighbours;
 use super::penetration;
 use super::self_pairs::{self_pairs, tree_of};
-use crate::boolean::complex::ids::VertexId;
 use crate::boolean::complex::planes;
 use crate::boolean::complex::predicates::Predicates;
-use crate::boolean::complex::rays::{Ray, coordinate_past, signed_crossing};
 use crate::boolean::complex::{Complex, Corner, Operand};
 use crate::exact::at_hand::{largest_coordinate, size_at_hand};
 use crate::mesh::{Bounds, SelfCrossing, SelfCrossings};
@@ -29,8 +27,6 @@ const TOLERATED_ULPS: f64 = 8.0;
 /// A crossing up to so many times deeper than what is tolerated is shallow. (Chains of twenty operations on real models have
 /// left crossings of 5.7e-15 at coordinates of size one, three times the tolerance.)
 const SHALLOW: f64 = 64.0;
-/// Distance of the sample points from a shallow crossing, in tolerances.
-const SAMPLE_DISTANCES: [f64; 2] = [64.0, 4096.0];
 /// The deepest crossings that are kept with their places: enough to look at, and to print.
 const PLACES: usize = 5;
 
@@ -206,13 +202,13 @@ struct Crossing {
 }
 
 /// A surface to be tested against itself.
-struct Surface<'a> {
-    complex: &'a Complex<'a>,
-    predicates: Predicates<'a>,
-    tree: BoxTree,
-    frame: Frame,
-    low: [f64; 3],
-    high: [f64; 3],
+pub(super) struct Surface<'a> {
+    pub(super) complex: &'a Complex<'a>,
+    pub(super) predicates: Predicates<'a>,
+    pub(super) tree: BoxTree,
+    pub(super) frame: Frame,
+    pub(super) low: [f64; 3],
+    pub(super) high: [f64; 3],
     /// What is tolerated at coordinates of size one.
     part: f64,
     /// The largest coordinate.
@@ -271,7 +267,7 @@ impl<'a> Surface<'a> {
         let rounding = penetration::rounding(&positions(a), &positions(b));
         let tolerance = rounding.map_or(tolerance, |moved| tolerance.max(TOLERATED_ULPS * moved));
         // A body whose corner just pierces the wall of another from inside crosses it by no more than rounding, but is in it.
-        let is_wrong = depth <= SHALLOW * tolerance && self.leaves_wrong_winding(&place, a, b, tolerance);
+        let is_wrong = depth <= SHALLOW * tolerance && self.leaves_wrong_winding(&segment, a, b, tolerance);
         let real = depth > tolerance || is_wrong;
         let shallow = real && !is_wrong && depth > 0.0 && depth <= SHALLOW * tolerance;
         Some(Crossing { crossing: SelfCrossing { triangles: pair, place, depth }, real, shallow })
@@ -316,72 +312,13 @@ impl<'a> Surface<'a> {
         }
         None
     }
-
-    /// Whether some point beside a shallow crossing, clear of the surface, has a winding number other than 0 and 1.
-    fn leaves_wrong_winding(
-        &self,
-        place: &[f64; 3],
-        a: &[Corner; 3],
-        b: &[Corner; 3],
-        tolerance: f64,
-    ) -> bool {
-        let (Some(n), Some(m)) = (unit_normal(a), unit_normal(b)) else { return false };
-        // One point in each of the four quadrants between the planes; beside both of them where they are nearly parallel.
-        let mut directions: Vec<[f64; 3]> = Vec::with_capacity(6);
-        for (s, t) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
-            let sum: [f64; 3] = std::array::from_fn(|k| s * n[k] + t * m[k]);
-            let length = norm(&sum);
-            if length > 0.1 {
-                directions.push(sum.map(|x| x / length));
-            }
-        }
-        SAMPLE_DISTANCES.iter().any(|&factor| {
-            directions.iter().any(|direction| {
-                let reach = factor * tolerance;
-                let sample = std::array::from_fn(|k| place[k] + reach * direction[k]);
-                !(0..=1).contains(&self.winding(&sample)) && self.is_clear(&sample, tolerance)
-            })
-        })
-    }
-
-    /// The winding number around a point, by a ray in +x.
-    fn winding(&self, point: &[f64; 3]) -> i32 {
-        let first_free = self.complex.vertex_count();
-        let corner = |i: u32, position| Corner { id: VertexId::new(first_free + i), position };
-        let end_x = coordinate_past(self.low[0].min(point[0]), self.high[0].max(point[0]));
-        let ray = Ray { start: corner(0, *point), end: corner(1, [end_x, point[1], point[2]]) };
-        let query = self.frame.triangle([&ray.start.position, &ray.start.position, &ray.end.position]);
-        let mut sum = 0;
-        self.tree.meeting(&query, |t| {
-            sum += signed_crossing(&self.predicates, &self.complex.corners_of_triangle(0, t), &ray);
-        });
-        sum
-    }
-
-    /// Whether no triangle's box is within twice the tolerance.
-    fn is_clear(&self, point: &[f64; 3], tolerance: f64) -> bool {
-        let reach = 2.0 * tolerance;
-        let (low, high) = (point.map(|x| x - reach), point.map(|x| x + reach));
-        let mut clear = true;
-        self.tree.meeting(&self.frame.triangle([&low, &high, &high]), |t| {
-            let corners = self.complex.corners_of_triangle(0, t);
-            let near = unit_normal(&corners)
-                .is_none_or(|normal| height(&normal, &corners[0].position, point).abs() < reach);
-            let boxed = (0..3).all(|k| {
-                let [a, b, c] = corners.map(|corner| corner.position[k]);
-                a.min(b).min(c) <= high[k] && low[k] <= a.max(b).max(c)
-            });
-            clear &= !(near && boxed);
-        });
-        clear
-    }
 }
 
-fn height(normal: &[f64; 3], origin: &[f64; 3], point: &[f64; 3]) -> f64 {
+pub(super) fn height(normal: &[f64; 3], origin: &[f64; 3], point: &[f64; 3]) -> f64 {
     (0..3).map(|k| normal[k] * (point[k] - origin[k])).sum()
 }
 
-fn norm(v: &[f64; 3]) -> f64 {
+pub(super) fn norm(v: &[f64; 3]) -> f64 {
     let size = v.iter().fold(0.0f64, |size, x| size.max(x.abs()));
     if size == 0.0 { 0.0 } else { size * v.iter().map(|x| (x / size).powi(2)).sum::<f64>().sqrt() }
 }
@@ -390,11 +327,11 @@ fn distance(p: &[f64; 3], q: &[f64; 3]) -> f64 {
     norm(&std::array::from_fn(|k| q[k] - p[k]))
 }
 
-fn unit_normal(t: &[Corner; 3]) -> Option<[f64; 3]> {
+pub(super) fn unit_normal(t: &[Corner; 3]) -> Option<[f64; 3]> {
     penetration::unit_normal(&positions(t))
 }
 
-fn positions(t: &[Corner; 3]) -> [[f64; 3]; 3] {
+pub(super) fn positions(t: &[Corner; 3]) -> [[f64; 3]; 3] {
     t.each_ref().map(|corner| corner.position)
 }
 
