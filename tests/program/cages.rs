@@ -207,16 +207,16 @@ fn cages_are_operands_of_every_verb() {
     folder.run("measure cube.json --subdivide=0.1").exits(0);
     let report = folder.run("union cube.obj --subdivide --json -o made.obj").exits(0).json();
     assert!(report.to_string().contains("subdivide auto"), "{report}");
-    for (line, word) in [
-        ("union bad.obj --subdivide -o x.off", "names vertex 99"),
-        ("union two.off --subdivide -o x.off", "`convert` makes an OBJ"),
-        ("union box:1 --subdivide -o x.off", "`convert` makes an OBJ"),
-        ("union one.obj --subdivide --subdivide -o x.off", "twice"),
-        ("union open.obj --subdivide -o x.off", "not closed"),
-        ("union one.obj --pattern linear:2:9,0,0 --subdivide -o x.off", "before --pattern"),
-        ("subdivide one.obj --subdivide -o x.off", "every input is a cage"),
+    for (line, code, word) in [
+        ("union bad.obj --subdivide -o x.off", 3, "names vertex 99"),
+        ("union two.off --subdivide -o x.off", 1, "`convert` makes an OBJ"),
+        ("union box:1 --subdivide -o x.off", 1, "`convert` makes an OBJ"),
+        ("union one.obj --subdivide --subdivide -o x.off", 1, "twice"),
+        ("union open.obj --subdivide -o x.off", 3, "not closed"),
+        ("union one.obj --pattern linear:2:9,0,0 --subdivide -o x.off", 1, "before --pattern"),
+        ("subdivide one.obj --subdivide -o x.off", 1, "every input is a cage"),
     ] {
-        let ran = folder.run(line).exits(3);
+        let ran = folder.run(line).exits(code);
         assert!(ran.err.contains(word), "{line}: {ran:?}");
     }
     let ran = folder.run("union one.obj --subdivide=fine -o x.off").exits(1);

@@ -370,3 +370,37 @@ fn a_wall_beside_which_many_end_is_a_strip() -> Result<(), trisect::Error> {
     }
     Ok(())
 }
+
+/// Two bodies in one file of which one is half or wholly in the other, though no two faces cross: they only touch, in edges or a corner
+/// that lie in a face. Turned, so that they are off by rounding.
+#[test]
+fn bodies_of_one_file_that_overlap_behind_contacts_are_resolved() {
+    const SEED: u64 = 8_590_059_212;
+    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+    // An octahedron with the square of its middle in the top of the box; one with a corner in it, from inside; and one that is
+    // outside and touches it with a corner.
+    let [half, whole, outside] = [0.0, -0.4, 0.4];
+    let box_ = primitives::cuboid([-2.0, -2.0, -3.0], [2.0, 2.0, 0.0]).expect("a box");
+    let octahedron = |height: f64| {
+        let ring = [[0.4, 0.3], [-0.3, 0.4], [-0.4, -0.3], [0.3, -0.4]].map(|[x, y]| [x, y, height]);
+        let positions =
+            ring.into_iter().chain([[0.0, 0.0, height + 0.4], [0.0, 0.0, height - 0.4]]).collect();
+        let triangles = (0..4).flat_map(|k| [[k, (k + 1) % 4, 4], [(k + 1) % 4, k, 5]]).collect();
+        Mesh::new(positions, triangles)
+    };
+    // Its square has an area of 0.5.
+    let volume = 2.0 * 0.5 * 0.4 / 3.0;
+    for round in 0..60 {
+        let (height, more) = [(half, volume / 2.0), (whole, 0.0), (outside, volume)][round % 3];
+        let axis = std::array::from_fn(|_| random.random_range(-1.0..1.0));
+        let (angle, shift) =
+            (random.random_range(0.0..360.0), std::array::from_fn(|_| random.random_range(-1.0..1.0)));
+        let both = Mesh::merged(&[box_.clone(), octahedron(height)]).expect("few");
+        let both = solid(both.rotated(axis, angle).expect("an axis").translated(shift));
+        let found = BooleanOptions::new().resolve(&both).expect("no limits").into_solid().volume();
+        assert!((found - 48.0 - more).abs() < 1e-12, "round {round}, seed {SEED}: {found}");
+        let far = common::cube([9.0; 3], 1.0);
+        let union = run(Union, &[&both, &far]).into_solid().volume();
+        assert!((union - 49.0 - more).abs() < 1e-12, "round {round}, seed {SEED}: {union}");
+    }
+}

@@ -45,10 +45,8 @@ const DIVIDED_ANGLE: f64 = 5.0;
 /// Times that triangles are divided: each halves an edge.
 const DIVISIONS: usize = 4;
 /// Times that everything is tried, at most, each with more vertices frozen than before.
-const ATTEMPTS: usize = 6;
+const ATTEMPTS: usize = 3;
 
-/// Attempts after which many more faults than before end it: vertices are frozen from the third on.
-const PATIENCE: usize = 3;
 /// Bytes held for each vertex of the cells' surface: the vertex twice, its star, and two triangles with the ways they face.
 const BYTES: usize = 500;
 
@@ -72,7 +70,6 @@ pub(super) fn smoothed(
     let _account = control.reserve((mesh.positions.len() * BYTES) as u64)?;
     let known = features::net(&mesh, nearby, control)?;
     let mut care = vec![Care::None; mesh.positions.len()];
-    let mut last = usize::MAX;
     for attempt in 0..ATTEMPTS {
         let mut net = known.clone();
         for ((vertex, position), care) in net.vertices.iter_mut().zip(&mesh.positions).zip(&care) {
@@ -90,10 +87,6 @@ pub(super) fn smoothed(
         if faults.is_empty() {
             return Ok(measured(smooth, &fits));
         }
-        if attempt >= PATIENCE && faults.len() > 2 * last + 8 {
-            break;
-        }
-        last = faults.len();
         care::take_care(&mesh, &faults, f64::from(1u32 << attempt.min(2)), &mut care);
     }
     rough(mesh, nearby, control)
