@@ -212,8 +212,8 @@ fn cages_are_operands_of_every_verb() {
         ("union two.off --subdivide -o x.off", 1, "`convert` makes an OBJ"),
         ("union box:1 --subdivide -o x.off", 1, "`convert` makes an OBJ"),
         ("union one.obj --subdivide --subdivide -o x.off", 1, "twice"),
-        ("union open.obj --subdivide -o x.off", 3, "not closed"),
-        ("union one.obj --pattern linear:2:9,0,0 --subdivide -o x.off", 1, "before --pattern"),
+        ("union open.obj --subdivide -o x.off", 3, "not a closed surface"),
+        ("union one.obj --pattern linear:2:9,0,0 --subdivide -o x.off", 1, "by --pattern"),
         ("subdivide one.obj --subdivide -o x.off", 1, "every input is a cage"),
     ] {
         let ran = folder.run(line).exits(code);

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::penetration::unit_normal;
-use super::self_crossings::{Surface, height, positions};
+use super::self_crossings::{Surface, height, norm, positions};
 use crate::boolean::complex::Corner;
 use crate::boolean::complex::ids::VertexId;
 use crate::boolean::complex::rays::{Ray, coordinate_past, signed_crossing};
@@ -21,29 +21,33 @@ const BESIDE: [f64; 4] = [0.25, -0.25, 1.0 / 64.0, -1.0 / 64.0];
 
 impl Surface<'_> {
     /// Whether some point beside a shallow crossing, clear of the surface, has a winding number other than 0 and 1. `segment` is what
-    /// the two triangles have in common, roughly: around it there is one point in each wedge between the faces that go through it, however
-    /// narrow. (A body with a square of its edges in a face of another has half of itself in it, between that face and its own, which
-    /// only touch.) Where they have no more than a point in common, there are points beside each face besides. (A body in another may
-    /// touch it from inside with a corner.)
+    /// the two triangles have in common, roughly.
     pub(super) fn leaves_wrong_winding(
         &self,
         segment: &[[f64; 3]; 2],
         a: &[Corner; 3],
         b: &[Corner; 3],
         tolerance: f64,
+        look: Look,
     ) -> bool {
         let [Some(n), Some(m)] = [a, b].map(|t| unit_normal(&positions(t))) else { return false };
         let [from, to] = segment;
         let place = std::array::from_fn(|k| 0.5 * from[k] + 0.5 * to[k]);
         let along: [f64; 3] = std::array::from_fn(|k| 0.5 * to[k] - 0.5 * from[k]);
         let is_point = along.iter().all(|x| x.abs() <= SAMPLE_DISTANCES[1] * tolerance);
-        let axis = if is_point { cross(n, m) } else { along };
-        let Some(plane) = across(axis).or_else(|| across(n)) else { return false };
-        let faces = self.faces_at(&place, tolerance);
-        let mut directions = wedges(faces.iter().map(|face| face.normal).chain([n, m]), plane);
-        if is_point {
-            directions.extend(faces.iter().flat_map(|face| face.beside(&place)));
-        }
+        let directions = match look {
+            Look::Quadrants => quadrants(n, m),
+            Look::Everywhere => {
+                let axis = if is_point { cross(n, m) } else { along };
+                let Some(plane) = across(axis).or_else(|| across(n)) else { return false };
+                let faces = self.faces_at(&place, tolerance);
+                let mut directions = wedges(faces.iter().map(|face| face.normal).chain([n, m]), plane);
+                if is_point {
+                    directions.extend(faces.iter().flat_map(|face| face.beside(&place)));
+                }
+                directions
+            }
+        };
         SAMPLE_DISTANCES.iter().any(|&factor| {
             directions.iter().any(|direction| {
                 let sample = std::array::from_fn(|k| place[k] + factor * tolerance * direction[k]);
@@ -98,6 +102,24 @@ impl Surface<'_> {
         });
         clear
     }
+}
+
+/// Where it is looked beside a crossing.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Look {
+    /// In each quadrant between the planes of the two triangles.
+    Quadrants,
+    /// In each wedge between the faces around what the two have in common, however narrow. (A body with a square of its edges in a face
+    /// of another has half of itself in it, between that face and its own, which only touch.) Where that is no more than a point, beside each face
+    /// as well. (A body in another may touch it from inside with a corner.)
+    Everywhere,
+}
+
+/// A point in each of the four quadrants between two planes; beside both of them where they are nearly parallel.
+fn quadrants(n: [f64; 3], m: [f64; 3]) -> Vec<[f64; 3]> {
+    let signs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+    let sums = signs.map(|(s, t)| -> [f64; 3] { std::array::from_fn(|k| s * n[k] + t * m[k]) });
+    sums.into_iter().filter(|sum| norm(sum) > 0.1).filter_map(unit).collect()
 }
 
 /// A triangle at a place.

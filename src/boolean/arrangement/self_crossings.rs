@@ -9,6 +9,7 @@
 use std::borrow::Cow;
 
 use super::apart::{are_plainly_apart, common_corners};
+use super::beside::Look;
 use super::neighbours::Neighbours;
 use super::penetration;
 use super::self_pairs::{self_pairs, tree_of};
@@ -150,7 +151,7 @@ fn find(
     let complex = Complex::alone(operand, largest);
     let tree = tree.unwrap_or_else(|| tree_of(mesh, &frame));
     let surface = Surface::new(&complex, tree, frame, &bounds, part);
-    let (mut rest, mut next) = (&*pairs, PAIRS_AT_FIRST);
+    let (mut rest, mut next, mut doubtful) = (&*pairs, PAIRS_AT_FIRST, Vec::new());
     while !rest.is_empty() && go_on(&result) {
         let (pairs, after) = rest.split_at(next.min(rest.len()));
         (rest, next) = (after, 4 * next);
@@ -162,6 +163,9 @@ fn find(
                 result.touching += 1;
                 continue;
             };
+            if !found.real || found.shallow {
+                doubtful.push(found.crossing.triangles);
+            }
             if found.real {
                 result.count += 1;
                 result.shallow += usize::from(found.shallow);
@@ -171,8 +175,23 @@ fn find(
             }
         }
     }
+    // 3. Bodies may overlap though all of their faces only touch. Where nothing else tells, it is looked everywhere.
+    if result.is_nearly_simple() && !doubtful.is_empty() {
+        let overlapping = runner.pieces(doubtful.len(), PAIRS_AT_ONCE, |range| {
+            let found = doubtful[range].iter().filter_map(|&pair| surface.overlap_beside(pair));
+            found.collect::<Vec<SelfCrossing>>()
+        })?;
+        for found in overlapping.into_iter().flatten() {
+            if result.places.iter().any(|known| known.triangles == found.triangles) {
+                result.shallow -= 1;
+            } else {
+                (result.count, result.tolerated) = (result.count + 1, result.tolerated - 1);
+                result.places.push(found);
+            }
+        }
+    }
     result.places.sort_by(|x, y| y.depth.total_cmp(&x.depth).then(x.triangles.cmp(&y.triangles)));
-    // 3. What crosses itself is resolved next, perhaps, and that begins with the same pairs.
+    // 4. What crosses itself is resolved next, perhaps, and that begins with the same pairs.
     if let Cow::Owned(many) = pairs
         && !result.is_nearly_simple()
     {
@@ -235,10 +254,17 @@ impl<'a> Surface<'a> {
         if are_plainly_apart(&self.predicates, &a, &b) {
             return None;
         }
-        if let Some(crossing) = self.examine_closely(pair, &a, &b) {
+        if let Some(crossing) = self.examine_closely(pair, &a, &b, Look::Quadrants) {
             return Some(Found::Crossing(crossing));
         }
         self.lie_on_each_other(pair).then_some(Found::Touching)
+    }
+
+    /// The crossing of a pair that crosses by no more than some roundings, if the surface overlaps beside it all the same.
+    fn overlap_beside(&self, pair: [u32; 2]) -> Option<SelfCrossing> {
+        let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t));
+        let found = self.examine_closely(pair, &a, &b, Look::Everywhere)?;
+        (found.real && !found.shallow).then_some(found.crossing)
     }
 
     /// Whether two triangles lie in one plane and overlap.
@@ -247,7 +273,13 @@ impl<'a> Surface<'a> {
         planes::lie_on_each_other(&a, &b)
     }
 
-    fn examine_closely(&self, pair: [u32; 2], a: &[Corner; 3], b: &[Corner; 3]) -> Option<Crossing> {
+    fn examine_closely(
+        &self,
+        pair: [u32; 2],
+        a: &[Corner; 3],
+        b: &[Corner; 3],
+        look: Look,
+    ) -> Option<Crossing> {
         let segment = match common_corners(a, b).as_slice() {
             [] => self.crossing(a, b)?,
             &[corners] => self.crossing_at_common_corner(a, b, corners)?,
@@ -267,7 +299,8 @@ impl<'a> Surface<'a> {
         let rounding = penetration::rounding(&positions(a), &positions(b));
         let tolerance = rounding.map_or(tolerance, |moved| tolerance.max(TOLERATED_ULPS * moved));
         // A body whose corner just pierces the wall of another from inside crosses it by no more than rounding, but is in it.
-        let is_wrong = depth <= SHALLOW * tolerance && self.leaves_wrong_winding(&segment, a, b, tolerance);
+        let is_wrong =
+            depth <= SHALLOW * tolerance && self.leaves_wrong_winding(&segment, a, b, tolerance, look);
         let real = depth > tolerance || is_wrong;
         let shallow = real && !is_wrong && depth > 0.0 && depth <= SHALLOW * tolerance;
         Some(Crossing { crossing: SelfCrossing { triangles: pair, place, depth }, real, shallow })
@@ -361,7 +394,7 @@ pub(super) fn count_by_all_pairs(solid: &Solid) -> (usize, usize) {
     };
     let examine = |pair: [u32; 2]| {
         let [a, b] = pair.map(|t| surface.complex.corners_of_triangle(0, t));
-        surface.examine_closely(pair, &a, &b)
+        surface.examine_closely(pair, &a, &b, Look::Quadrants)
     };
     let found: Vec<Crossing> = pairs.filter(|&pair| common(pair) != 2).filter_map(examine).collect();
     let real = found.iter().filter(|found| found.real).count();
