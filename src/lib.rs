@@ -95,7 +95,6 @@ mod polygon;
 pub mod primitives;
 #[cfg(feature = "render")]
 pub mod render;
-mod sorting;
 pub mod spatial;
 #[cfg(feature = "subdivision")]
 pub mod subdivision;

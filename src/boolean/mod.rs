@@ -18,7 +18,8 @@
 //! - `snapping`: before all that, and only where it is asked for, what is nearer than a distance is made the same;
 //! - `pair`: all steps for two operands; `many`: which pairs are combined in which order;
 //! - `general`: the same for any number of surfaces that may cross and touch themselves, and any `expression` of them, in one
-//!   arrangement.
+//!   arrangement;
+//! - `parting`: solids parted by planes and surfaces; `solidify`: solids of what encloses something only roughly.
 //!
 //! **Guaranteed** for any closed operands: the result is closed; it is the exact boolean with every new coordinate correctly
 //! rounded; operands that touch resolve as regularised set operations do; the same input gives the same bits on any number of
@@ -33,8 +34,7 @@ mod expression;
 mod general;
 mod many;
 mod pair;
-mod partition;
-mod plane;
+mod parting;
 mod result;
 mod snapping;
 mod solidify;
@@ -51,8 +51,7 @@ pub use general::embed::{Embedding, Grid};
 pub use many::options::BooleanOptions;
 pub use many::policy::Embed;
 pub use many::trim::{TrimSide, Trimmed};
-pub use partition::{Cell, Imprinted};
-pub use plane::{PlaneCut, Section, SectionSide, Sections};
+pub use parting::{Cell, Imprinted, PlaneCut, Section, SectionSide, Sections};
 pub use result::attributes::CornerOrigin;
 pub use result::certificate::{Certificate, OperandState};
 pub use result::cut_faces::CutFaces;

@@ -7,7 +7,6 @@ use rustc_hash::FxHashMap;
 use super::outline::{NOWHERE, Outline};
 use super::{Format, FormatError, Loaded, ReadOptions, file, gltf, read};
 use crate::mesh::Attribute;
-use crate::sorting;
 use crate::{Error, Mesh};
 
 /// This many names are told where one is not found.
@@ -148,7 +147,7 @@ impl Parts {
         }
         // 3. In the order of the file.
         let mut entries: Vec<u32> = triangles.keys().copied().collect();
-        sorting::sort(&mut entries);
+        entries.sort_unstable();
         let part = |entry: u32| Part {
             name: self.outline.entries[entry as usize].name.clone(),
             mesh: cut_out(&self.whole.mesh, &triangles[&entry]),

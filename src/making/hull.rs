@@ -9,7 +9,6 @@
 use rustc_hash::FxHashMap;
 
 use crate::exact::{Sign, collinear, orient3d};
-use crate::sorting;
 use crate::spatial::{Closest, TriangleTree};
 use crate::{Error, Mesh, Solid};
 
@@ -62,7 +61,7 @@ pub fn convex_hull(points: &[[f64; 3]]) -> Result<Mesh, Error> {
         let first = (0..3).min_by_key(|&k| triangle[k]).unwrap_or_default();
         triangle.rotate_left(first);
     }
-    sorting::sort(&mut triangles);
+    triangles.sort_unstable();
     Ok(Mesh::new(chosen, triangles))
 }
 

@@ -6,7 +6,6 @@
 
 use super::{Mesh, cross};
 use crate::parallel::map_chunks;
-use crate::sorting;
 
 /// Triangles summed up at once: sums of the same pieces are the same bits for any number of threads.
 const CHUNK: usize = 4096;
@@ -104,7 +103,7 @@ impl MassProperties {
             }
         }
         let mut found = [0, 1, 2].map(|k| (matrix[k][k], [axes[0][k], axes[1][k], axes[2][k]]));
-        sorting::sort_by(&mut found, |a, b| a.0.total_cmp(&b.0));
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
         found
     }
 }

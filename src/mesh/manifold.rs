@@ -8,7 +8,6 @@ use rustc_hash::FxHashMap;
 
 use crate::exact::{Sign, collinear, orient2d, orient3d};
 use crate::mesh::Buckets;
-use crate::sorting;
 
 /// A side of a triangle: three times the triangle's index plus the corner it starts at.
 type HalfEdge = u32;
@@ -170,9 +169,7 @@ fn pair_by_angle(
         _ => y.is_flat.cmp(&x.is_flat),
     };
     // At equal angles wedges close before others open: what touches stays apart.
-    sorting::sort_by(&mut spokes, |x, y| {
-        by_angle(x, y).then(x.opens.cmp(&y.opens)).then(x.half_edge.cmp(&y.half_edge))
-    });
+    spokes.sort_by(|x, y| by_angle(x, y).then(x.opens.cmp(&y.opens)).then(x.half_edge.cmp(&y.half_edge)));
     // 3. Start where the nesting is lowest, so that no wedge closes before it has opened.
     let (mut depth, mut lowest_depth, mut start) = (0i32, 0, 0);
     for (i, spoke) in spokes.iter().enumerate() {

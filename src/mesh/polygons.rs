@@ -1,7 +1,5 @@
 //! Which polygons of a file triangles are parts of, so that those that nothing touched are polygons again where files have some.
 
-use crate::sorting;
-
 /// The polygons that the triangles of a mesh are parts of; nothing where all faces of its file were triangles.
 ///
 /// A polygon is whole where all its triangles are there; only then is it written as a polygon.
@@ -173,7 +171,7 @@ fn outline(mesh: &super::Mesh, triangles: &[u32], is_one: &impl Fn(u32, u32) -> 
             edges.push((vertex(from), vertex(to), from));
         }
     }
-    sorting::sort(&mut edges);
+    edges.sort_unstable();
     let passed = |from: u32, to: u32| {
         let at = edges.partition_point(|edge| (edge.0, edge.1) < (from, to));
         edges.get(at).is_some_and(|edge| (edge.0, edge.1) == (from, to))

@@ -1,7 +1,6 @@
 //! Which loop is a hole of which, and joining holes to their outlines.
 
 use crate::exact::{Sign, orient2d};
-use crate::sorting;
 
 /// An outline and the holes in it.
 #[derive(Debug)]
@@ -141,9 +140,7 @@ pub(super) fn bridge(points: &[[f64; 2]], polygon: &Polygon) -> Option<Vec<u32>>
     // The rightmost hole first: what is to the right of a hole is then already joined.
     let mut holes: Vec<(&[u32], usize)> =
         polygon.holes.iter().map(|hole| (hole.as_slice(), rightmost(hole))).collect();
-    sorting::sort_by(&mut holes, |(h, i), (g, j)| {
-        points[g[*j] as usize][0].total_cmp(&points[h[*i] as usize][0])
-    });
+    holes.sort_by(|(h, i), (g, j)| points[g[*j] as usize][0].total_cmp(&points[h[*i] as usize][0]));
     for k in 0..holes.len() {
         let (hole, start) = holes[k];
         let (at, from) = std::iter::once(start)
@@ -171,7 +168,7 @@ fn sight_line(
         (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)
     };
     let mut order: Vec<usize> = (0..joined.len()).collect();
-    sorting::sort_by(&mut order, |i, j| distance(i).total_cmp(&distance(j)).then(i.cmp(j)));
+    order.sort_by(|i, j| distance(i).total_cmp(&distance(j)).then(i.cmp(j)));
     let n = hole.len();
     order.into_iter().find(|&at| {
         let target = joined[at];

@@ -6,7 +6,6 @@ use super::delaunay::triangulate_between;
 use crate::exact::at_hand::{ROUNDING_ULPS, largest_beside, size_at_hand};
 use crate::exact::{Sign, orient2d};
 use crate::polygon::counted::{CountedEdge, CountedTriangle};
-use crate::sorting;
 
 /// A directed edge that counts a number of times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -161,7 +160,7 @@ fn split_at_vertices(
     // Along each axis; a list of either axis holds all that can lie on an edge.
     let sorted = [0, 1].map(|k| {
         let mut sorted = vertices.clone();
-        sorting::sort_by(&mut sorted, |&x, &y| at(k, x).total_cmp(&at(k, y)));
+        sorted.sort_by(|&x, &y| at(k, x).total_cmp(&at(k, y)));
         sorted
     });
     let mut split = Vec::with_capacity(edges.len());
@@ -195,7 +194,7 @@ fn split_at_vertices(
             .filter(|&x| x != u && x != v && along(u) < along(x) && along(x) < along(v))
             .filter(|&x| is_on(x))
             .collect();
-        sorting::sort_by(&mut on, |&x, &y| along(x).total_cmp(&along(y)).then(x.cmp(&y)));
+        on.sort_by(|&x, &y| along(x).total_cmp(&along(y)).then(x.cmp(&y)));
         split_edge(edge, &on, &mut split, slivers);
     }
     split
@@ -214,7 +213,7 @@ fn split_at_crossings(
         (p.min(q), p.max(q))
     };
     let mut order: Vec<usize> = (0..edges.len()).collect();
-    sorting::sort_by(&mut order, |&i, &j| range(points, i, 0).0.total_cmp(&range(points, j, 0).0));
+    order.sort_by(|&i, &j| range(points, i, 0).0.total_cmp(&range(points, j, 0).0));
     let mut on: FxHashMap<usize, Vec<u32>> = FxHashMap::default();
     for (place, &i) in order.iter().enumerate() {
         let ((_, end), (low, high)) = (range(points, i, 0), range(points, i, 1));
@@ -245,7 +244,7 @@ fn split_at_crossings(
         let [p, q] = [at(points, i, 0), at(points, i, 1)];
         let k = usize::from((q[1] - p[1]).abs() > (q[0] - p[0]).abs());
         let along = |x: u32| if q[k] > p[k] { points[x as usize][k] } else { -points[x as usize][k] };
-        sorting::sort_by(&mut on, |&x, &y| along(x).total_cmp(&along(y)).then(x.cmp(&y)));
+        on.sort_by(|&x, &y| along(x).total_cmp(&along(y)).then(x.cmp(&y)));
         on.dedup();
         split_edge(edge, &on, &mut split, slivers);
     }

@@ -2,7 +2,6 @@
 
 use crate::exact::{Sign, orient2d};
 use crate::polygon;
-use crate::sorting;
 
 /// The rings of a polygon: the outer one counter-clockwise, then the holes, clockwise. They neither cross nor touch
 /// themselves or each other, and the holes lie in the outer ring and not in each other.
@@ -138,7 +137,7 @@ fn check_apart(rings: &[Vec<[f64; 2]>]) -> Result<(), String> {
             sides.push(Side { ring, step, from, to });
         }
     }
-    sorting::sort_by(&mut sides, |a, b| a.range(0)[0].total_cmp(&b.range(0)[0]));
+    sides.sort_by(|a, b| a.range(0)[0].total_cmp(&b.range(0)[0]));
     let mut active: Vec<Side> = Vec::new();
     for side in sides {
         active.retain(|other| other.range(0)[1] >= side.range(0)[0]);

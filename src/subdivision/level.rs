@@ -6,6 +6,7 @@ use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use super::error::CageError;
+use super::halves::{Halves, first_of_vertices};
 use super::rules::{REGULAR_GAMMA, Rules};
 use super::tags::{Corner, Crease, Sector, Tags};
 
@@ -105,31 +106,11 @@ impl Level {
 
     /// A level without tags but its borders. Indices are in range, corners of a face different.
     fn of_faces(rules: Rules, vertex_count: usize, faces: Vec<[u32; 3]>) -> Result<Self, CageError> {
-        let halves = 3 * faces.len();
-        let mut twins = vec![NONE; halves];
-        let mut edge_of = vec![NONE; halves];
-        let mut edges = Vec::with_capacity(halves / 2 + 1);
-        let mut known: FxHashMap<(u32, u32), u32> = FxHashMap::default();
-        known.reserve(halves);
-        for (f, corners) in faces.iter().enumerate() {
-            for k in 0..3 {
-                let (u, v) = (corners[k], corners[(k + 1) % 3]);
-                let h = (3 * f + k) as u32;
-                if let Some(&other) = known.get(&(u, v)) {
-                    return Err(CageError::EdgeNotManifold { edge: [u, v], faces: [other as usize / 3, f] });
-                }
-                known.insert((u, v), h);
-                if let Some(&twin) = known.get(&(v, u)) {
-                    (twins[h as usize], twins[twin as usize]) = (twin, h);
-                    edge_of[h as usize] = edge_of[twin as usize];
-                } else {
-                    edge_of[h as usize] = edges.len() as u32;
-                    edges.push(h);
-                }
-            }
-        }
-        let sharpness =
-            edges.iter().map(|&h| if twins[h as usize] == NONE { f64::INFINITY } else { 0.0 }).collect();
+        let ends =
+            |h: u32| [faces[h as usize / 3][h as usize % 3], faces[h as usize / 3][next(h) as usize % 3]];
+        let halves = Halves::paired(3 * faces.len(), ends, |h| h as usize / 3)?;
+        let sharpness = halves.sharpness();
+        let Halves { twins, edge_of, edges } = halves;
         let mut level = Self {
             rules,
             faces,
@@ -149,14 +130,7 @@ impl Level {
 
     /// Finds for each vertex the half-edge its ring begins with: the lowest, or that at a border.
     pub(crate) fn find_first(&mut self) {
-        self.first = vec![NONE; self.vertex_count];
-        for h in (0..self.twins.len() as u32).rev() {
-            let v = self.from(h) as usize;
-            let current = self.first[v];
-            if current == NONE || self.twins[current as usize] != NONE || self.twins[h as usize] == NONE {
-                self.first[v] = h;
-            }
-        }
+        self.first = first_of_vertices(self.vertex_count, &self.twins, |h| self.from(h));
     }
 
     /// Notes which vertices have something sharp; to be called when tags are known.

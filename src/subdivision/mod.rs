@@ -25,6 +25,7 @@ mod evaluate;
 mod freeform;
 #[cfg(feature = "formats")]
 mod gltf;
+mod halves;
 #[cfg(feature = "formats")]
 pub(crate) mod json;
 mod level;

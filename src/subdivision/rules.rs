@@ -76,25 +76,20 @@ pub(crate) const REGULAR_GAMMA: f64 = 0.375;
 /// limit (eigenvalue 1), then two for the tangent plane. Each holds the centre and then the k neighbours.
 pub(crate) fn dart_eigenvectors(rules: Rules, k: usize) -> [Vec<f64>; 3] {
     let n = k + 1;
-    // Rows of the ring's own refinement.
+    // What the points of the next ring weigh is shared out to those that they are made of.
     let beta = rules.beta(k);
-    let mut matrix = vec![vec![0.0; n]; n];
-    matrix[0][0] = 1.0 - k as f64 * beta;
-    for i in 0..k {
-        matrix[0][1 + i] = beta;
-        let row = &mut matrix[1 + i];
-        if i == 0 {
-            row[0] = 0.5;
-            row[1] = 0.5;
-        } else {
-            row[0] = 0.375;
-            row[1 + i] += 0.375;
-            row[1 + (i + 1) % k] += 0.125;
-            row[1 + (i + k - 1) % k] += 0.125;
-        }
-    }
     let step = |vector: &[f64]| -> Vec<f64> {
-        (0..n).map(|column| (0..n).map(|row| vector[row] * matrix[row][column]).sum()).collect()
+        let mut next = vec![beta * vector[0]; n];
+        next[0] = (1.0 - k as f64 * beta) * vector[0] + 0.5 * vector[1];
+        next[1] += 0.5 * vector[1];
+        for i in 1..k {
+            let weight = vector[1 + i];
+            next[0] += 0.375 * weight;
+            next[1 + i] += 0.375 * weight;
+            next[1 + (i + 1) % k] += 0.125 * weight;
+            next[1 + (i + k - 1) % k] += 0.125 * weight;
+        }
+        next
     };
     // 1. Eigenvalue 1: rows sum to 1, so iteration converges to the one fixed combination, scaled to sum 1.
     let mut limit = vec![1.0 / n as f64; n];

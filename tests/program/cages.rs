@@ -180,6 +180,15 @@ fn quads_are_fitted_for_booleans_of_cages() {
 }
 
 #[test]
+fn a_result_without_a_mesh_has_no_place_for_a_cage() {
+    let folder = folder();
+    let line = "freeform intersection one.obj two.obj --translate 90,0,0 -o none.glb";
+    let ran = folder.run(line).exits(0);
+    assert!(ran.err.contains("no mesh that could have `trisect_cage`"), "{ran:?}");
+    folder.run("subdivide none.glb -o x.obj").exits(2).says("no mesh of it has a cage");
+}
+
+#[test]
 fn cages_are_operands_of_every_verb() {
     let folder = folder();
     folder.write("cube.obj", cube(true));

@@ -2,6 +2,8 @@
 
 use std::f64::consts::TAU;
 
+use glam::DVec3;
+
 use super::penetration::unit_normal;
 use super::self_crossings::{Surface, height, norm, positions};
 use crate::boolean::complex::Corner;
@@ -164,15 +166,11 @@ fn wedges(normals: impl Iterator<Item = [f64; 3]>, [x, y]: [[f64; 3]; 2]) -> Vec
 
 /// Two directions at right angles to a vector and to each other; `None` if it has no direction.
 fn across(vector: [f64; 3]) -> Option<[[f64; 3]; 2]> {
-    let z = unit(vector)?;
-    // (The axis that it runs along least is far from it.)
-    let least = (1..3).fold(0, |least, k| if z[k].abs() < z[least].abs() { k } else { least });
-    let mut axis = [0.0; 3];
-    axis[least] = 1.0;
-    let x = unit(cross(z, axis))?;
-    Some([x, cross(z, x)])
+    let (x, y) = DVec3::from_array(unit(vector)?).any_orthonormal_pair();
+    Some([x.to_array(), y.to_array()])
 }
 
+/// A vector of any size made one long.
 fn unit(vector: [f64; 3]) -> Option<[f64; 3]> {
     let size = vector.iter().fold(0.0f64, |size, x| size.max(x.abs()));
     if !(size > 0.0 && size.is_finite()) {

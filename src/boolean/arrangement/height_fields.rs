@@ -65,9 +65,8 @@ impl HeightFields {
         others: &[u32],
         runner: Runner<'_>,
     ) -> Result<Self, Limit> {
-        let mut all = Self::none(mesh, tree);
         if tree.items().len() < WORTHWHILE {
-            return Ok(all);
+            return Ok(Self::none(mesh, tree));
         }
         // 1. What may be one: triangles that are seen from the front along one axis.
         let masks = build(mesh.triangles.len(), AT_ONCE, |first, run: &mut [u8]| {
@@ -79,13 +78,13 @@ impl HeightFields {
         let found = tree.branches_alike(LEAST, |item| masks[item as usize]);
         drop(masks);
         if found.is_empty() {
-            return Ok(all);
+            return Ok(Self::none(mesh, tree));
         }
         // 2. Round by round: those that are none are looked at part by part.
         let labels = std::iter::repeat_with(|| AtomicU32::new(NONE)).take(mesh.positions.len()).collect();
         let search = Search { mesh, tree, labels };
-        let (mut rim, mut is_field, mut pieces) = (Vec::new(), Vec::new(), pieces(tree, &found));
-        let mut others_left = others;
+        let (mut branches, mut rim, mut is_field) = (Branches::none(tree), Vec::new(), Vec::new());
+        let (mut pieces, mut others_left) = (pieces(tree, &found), others);
         while !pieces.is_empty() {
             let first = is_field.len() as u32;
             search.label(&pieces, std::mem::take(&mut others_left), first, runner)?;
@@ -96,7 +95,7 @@ impl HeightFields {
                 is_field.push(matches!(found, Found::Field(_)));
                 match found {
                     Found::Field(places) => {
-                        piece.branch.into_iter().for_each(|(branch, _)| all.branches.insert(branch));
+                        piece.branch.into_iter().for_each(|(branch, _)| branches.insert(branch));
                         rim.extend(places);
                     }
                     Found::Parts(parts) => pieces.extend(parts),
@@ -105,14 +104,12 @@ impl HeightFields {
             }
         }
         // 3. What was found.
-        all.is_rim.fill(false);
-        rim.iter().for_each(|&place| all.is_rim[place as usize] = true);
-        all.rim =
-            rim.iter().map(|&place| tree.items()[place as usize]).chain(others.iter().copied()).collect();
-        for (inner, label) in all.inner.iter_mut().zip(search.labels) {
-            *inner = is_field.get(label.into_inner() as usize).is_some_and(|&is_field| is_field);
-        }
-        Ok(all)
+        let mut is_rim = vec![false; tree.items().len()];
+        rim.iter().for_each(|&place| is_rim[place as usize] = true);
+        let of_tree = rim.iter().map(|&place| tree.items()[place as usize]);
+        let rim = of_tree.chain(others.iter().copied()).collect();
+        let is_inner = |label: AtomicU32| is_field.get(label.into_inner() as usize) == Some(&true);
+        Ok(Self { branches, inner: search.labels.into_iter().map(is_inner).collect(), rim, is_rim })
     }
 }
 

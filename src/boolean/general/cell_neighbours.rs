@@ -13,7 +13,6 @@ use crate::boolean::complex::rays::{Ray, coordinate_past, signed_crossing};
 use crate::exact::{Sign, order};
 use crate::mesh::{Bounds, UnionFind, cross};
 use crate::parallel::Runner;
-use crate::sorting;
 
 /// Cut faces that one thread looks at before the limits are checked.
 const FACES_AT_ONCE: usize = 256;
@@ -122,7 +121,7 @@ impl Search<'_> {
                 met.push(Met { face, x: along_x(&surfaces.positions(face), y, z), leaves: sign > 0 });
             }
         });
-        sorting::sort_by(&mut met, |f, g| self.compare(&ray, f, g));
+        met.sort_by(|f, g| self.compare(&ray, f, g));
         // 2. What lies between those of different bodies, and around all.
         let body_of = |face: FaceId| self.bodies.of_face[face.index()];
         let mut views = Vec::new();

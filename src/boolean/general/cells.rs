@@ -26,7 +26,6 @@ use crate::boolean::complex::ids::{FaceId, LabelId, PointId, SegmentId};
 use crate::boolean::complex::predicates::Predicates;
 use crate::mesh::{Bounds, UnionFind};
 use crate::parallel::Runner;
-use crate::sorting;
 
 /// What cells are made of.
 #[derive(Clone, Copy)]
@@ -292,7 +291,7 @@ impl<'a> Sectors<'a> {
             rays.push(Ray { id, piece, is_first, partner, inside_left: from_tail == is_first, end });
         }
         // 2. By angle: a ray comes before another if it ends on the side of the other's partner that the first side lies on.
-        sorting::sort_by(&mut rays, |x, y| {
+        rays.sort_by(|x, y| {
             let inside = crossings.is_inside(surfaces, edges, predicates, x.end, y.partner);
             if x.id == y.id {
                 std::cmp::Ordering::Equal

@@ -11,7 +11,6 @@ use crate::boolean::complex::predicates::{Perturbed, Predicates};
 use crate::exact::{Sign, order};
 use crate::mesh::Buckets;
 use crate::parallel::Runner;
-use crate::sorting;
 
 /// Where two faces cross, along `n_f x n_g` (the normals of `faces[0]` and `faces[1]`) from tail to head: on the first face
 /// the inner side of the second lies to the left.
@@ -114,7 +113,7 @@ impl Crossings {
         // Segments come by their first face, then by their second: those with a lower partner first.
         let mut of_face = Buckets::new(surfaces.face_count() as usize, by_face);
         for (face, list) in surfaces.faces().zip(of_face.each_mut()) {
-            sorting::sort_by_key(list, |segment| segments[segment.index()].partner(face));
+            list.sort_unstable_by_key(|segment| segments[segment.index()].partner(face));
         }
         Ok(Self { nodes, segments, of_face, touching, contacts, vertex_count })
     }

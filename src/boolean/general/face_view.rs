@@ -6,7 +6,6 @@ use super::cells::{Beside, Ground};
 use crate::boolean::complex::ids::{FaceId, PointId};
 use crate::exact::Projection;
 use crate::mesh::UnionFind;
-use crate::sorting;
 
 /// Outside and inside the face.
 pub(crate) type Both = [u32; 2];
@@ -107,7 +106,7 @@ impl FaceView {
                 found.push(Crossing { x, piece: index, is_upward: from_y < to_y });
             }
         }
-        sorting::sort_by(found, |p, q| p.x.total_cmp(&q.x));
+        found.sort_by(|p, q| p.x.total_cmp(&q.x));
     }
 
     /// What lies before a crossing, where x is less; nothing beyond the border.
@@ -139,7 +138,7 @@ impl FaceView {
         for part in 1..self.parts as u32 {
             let height = |piece: &Piece| (piece.to[1] - piece.from[1]).abs();
             let mut own: Vec<&Piece> = self.pieces.iter().filter(|piece| piece.part == part).collect();
-            sorting::sort_by(&mut own, |p, q| height(q).total_cmp(&height(p)));
+            own.sort_by(|p, q| height(q).total_cmp(&height(p)));
             let tried = own.iter().take(TRIED);
             let joined = tried.flat_map(|piece| {
                 self.crossings_at(0.5 * (piece.from[1] + piece.to[1]), &mut found);

@@ -3,7 +3,6 @@
 use rustc_hash::FxHashMap;
 
 use crate::boolean::complex::ids::LabelId;
-use crate::sorting;
 
 /// The winding numbers that are not 0, by operand.
 pub(crate) type Label = Box<[(u32, i32)]>;
@@ -32,7 +31,7 @@ impl Labels {
 
     /// The number of a label given by its entries, in any order.
     pub(crate) fn intern(&mut self, mut entries: Vec<(u32, i32)>) -> LabelId {
-        sorting::sort(&mut entries);
+        entries.sort_unstable();
         entries.retain(|&(_, winding)| winding != 0);
         let label = entries.into_boxed_slice();
         let next = LabelId::new(self.labels.len() as u32);

@@ -16,7 +16,6 @@ use crate::boolean::complex::predicates::{Perturbed, Predicates};
 use crate::exact::{Sign, planes, position};
 use crate::mesh::Buckets;
 use crate::parallel::Runner;
-use crate::sorting;
 
 /// Lines whose points one thread puts in order before the limits are checked.
 const LINES_AT_ONCE: usize = 1024;
@@ -96,12 +95,12 @@ impl Lines {
         let sorter =
             Sorter { surfaces, edges, crossings, predicates: Predicates::new(surfaces), lines: &lines };
         let on_edges = sorter.sort(&lines.on_edges, runner, |edge, nodes: &mut [NodeId]| {
-            sorting::sort_by(nodes, |x, y| sorter.compare_nodes(*x, *y));
+            nodes.sort_by(|x, y| sorter.compare_nodes(*x, *y));
             debug_assert!(nodes.iter().all(|&node| crossings.node(node).edge.index() == edge));
         })?;
         let on_segments = sorter.sort(&lines.on_segments, runner, |segment, points: &mut [TripleId]| {
             let segment = SegmentId::new(segment as u32);
-            sorting::sort_by(points, |x, y| sorter.compare_triples(segment, *x, *y));
+            points.sort_by(|x, y| sorter.compare_triples(segment, *x, *y));
         })?;
         lines.contacts = sorter.predicates.into_contacts();
         for (key, nodes) in on_edges.into_iter().flatten() {

@@ -16,7 +16,6 @@ use crate::exact::Sign;
 use crate::exact::perturbed::{self, PerturbedPoint, jitter};
 use crate::mesh::{Bounds, Buckets};
 use crate::parallel::Runner;
-use crate::sorting;
 
 /// The label on the outer side of a face at one end of an edge of it.
 #[derive(Clone, Debug)]
@@ -43,7 +42,7 @@ pub(crate) fn sort_radially(surfaces: &Surfaces, edges: &mut Edges) -> u64 {
         let first = opposite(&sides[0]);
         // More than half a turn after the first face.
         let is_late = |x: &Corner| x.id != first.id && predicates.is_positive(&low, &high, &first, x);
-        sorting::sort_by(&mut sides[1..], |x, y| {
+        sides[1..].sort_by(|x, y| {
             let (x, y) = (opposite(x), opposite(y));
             if x.id == y.id {
                 return std::cmp::Ordering::Equal;
@@ -222,7 +221,7 @@ fn coordinate_above(z: f64) -> f64 {
 
 /// Entries of the same operand added up.
 fn add_up(mut entries: Vec<(u32, i32)>) -> Vec<(u32, i32)> {
-    sorting::sort(&mut entries);
+    entries.sort_unstable();
     let groups = entries.chunk_by(|x, y| x.0 == y.0);
     groups.map(|group| (group[0].0, group.iter().map(|entry| entry.1).sum())).collect()
 }

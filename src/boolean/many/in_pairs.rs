@@ -19,7 +19,6 @@ use crate::boolean::result::origins::Origins;
 use crate::boolean::result::outcome::Outcome;
 use crate::mesh::FaceGroups;
 use crate::parallel::Runner;
-use crate::sorting;
 use crate::{Error, Mesh, Solid};
 
 /// From this many triangles on, threads are worth waking.
@@ -86,7 +85,7 @@ pub(super) fn run(
         }
         Operation::Intersection => {
             // Smallest first; the order of equal ones is that of the arguments.
-            sorting::sort_by_key(&mut partials, |partial| partial.solid.mesh().triangles.len());
+            partials.sort_by_key(|partial| partial.solid.mesh().triangles.len());
             engine.fold(Operation::Intersection, partials)?
         }
         Operation::SymmetricDifference => engine.fold(Operation::SymmetricDifference, partials)?,

@@ -1,8 +1,6 @@
 //! In which order many operands are united: halves of space by halves of space, so that neighbours meet early, and what is
 //! united keeps a simple shape.
 
-use crate::sorting;
-
 /// Rounds of pairs to merge; the pairs of a round have nothing in common. The second of a pair is merged into the place of
 /// the first.
 ///
@@ -30,7 +28,7 @@ fn halve(centres: &[[f64; 3]], part: &mut [usize], rounds: &mut Vec<Vec<[usize; 
     };
     let extents = [0, 1, 2].map(extent);
     let axis = (1..3).fold(0, |best, axis| if extents[axis] > extents[best] { axis } else { best });
-    sorting::sort_by(part, |&i, &j| centres[i][axis].total_cmp(&centres[j][axis]).then(i.cmp(&j)));
+    part.sort_unstable_by(|&i, &j| centres[i][axis].total_cmp(&centres[j][axis]).then(i.cmp(&j)));
     let (first, second) = part.split_at_mut(cut_between_layers(part, |i| centres[i][axis]));
     let ((x, round_x), (y, round_y)) = (halve(centres, first, rounds), halve(centres, second, rounds));
     let round = round_x.max(round_y);

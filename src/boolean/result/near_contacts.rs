@@ -12,7 +12,6 @@ use crate::exact::at_hand::largest_coordinate;
 use crate::exact::{Projection, Sign, orient2d, orient3d};
 use crate::mesh::Bounds;
 use crate::parallel::{Runner, map};
-use crate::sorting;
 use crate::spatial::{BoxTree, Frame, visit_pairs};
 use crate::{Control, Mesh};
 
@@ -60,11 +59,11 @@ impl NearContacts {
         let Some(region) = Region::of(mesh, &operands) else { return Self::default() };
         let mut found = region.pairs().unwrap_or_default();
         // One for each corner, the nearest.
-        sorting::sort_by(&mut found, |x, y| {
+        found.sort_by(|x, y| {
             x.0.cmp(&y.0).then(x.1.distance.total_cmp(&y.1.distance)).then(x.1.triangles.cmp(&y.1.triangles))
         });
         found.dedup_by_key(|entry| entry.0);
-        sorting::sort_by(&mut found, |x, y| x.1.distance.total_cmp(&y.1.distance).then(x.0.cmp(&y.0)));
+        found.sort_by(|x, y| x.1.distance.total_cmp(&y.1.distance).then(x.0.cmp(&y.0)));
         let places = found.iter().take(PLACES).map(|entry| entry.1).collect();
         Self { count: found.len(), places }
     }

@@ -9,7 +9,6 @@ use rustc_hash::FxHashMap;
 use super::surfaces::Surfaces;
 use crate::exact::Projection;
 use crate::mesh::UnionFind;
-use crate::sorting;
 
 /// How far faces may be from one plane, in distances to snap by: each of two was off by one, and each corner has moved by one.
 const OFF_PLANE: f64 = 4.0;
@@ -38,7 +37,7 @@ pub(super) fn find(
         by_root.entry(sets.root(t)).or_default().push(t);
     }
     let mut sets: Vec<Vec<u32>> = by_root.into_values().collect();
-    sorting::sort(&mut sets);
+    sets.sort_unstable();
     // 2. Of each set what is in the plane of its largest face.
     for set in &mut sets {
         let size = |&t: &u32| Plane::of(&surfaces.corners(t as usize)).area;

@@ -12,7 +12,6 @@ use crate::exact::{Projection, Sign, orient2d};
 use crate::mesh::fan_around_splits;
 use crate::parallel::Runner;
 use crate::polygon::Overlay;
-use crate::sorting;
 
 /// What was split.
 #[derive(Debug, Default)]
@@ -66,7 +65,7 @@ pub(super) fn split(
 fn add_passing(surfaces: &mut Surfaces, found: &mut Found, distance: f64) -> Result<(), Error> {
     check_numbers(surfaces.positions.len() + found.passing.len())?;
     // Every pair of edges once, in order: faces on both sides of an edge have found it.
-    sorting::sort_by_key(&mut found.passing, |passing| passing.edges);
+    found.passing.sort_by_key(|passing| passing.edges);
     found.passing.dedup_by(|x, y| x.edges == y.edges);
     if found.passing.is_empty() {
         return Ok(());
@@ -97,9 +96,9 @@ fn add_passing(surfaces: &mut Surfaces, found: &mut Found, distance: f64) -> Res
 fn move_vertices(surfaces: &mut Surfaces, found: &Found) {
     let mut moved = FxHashSet::default();
     let mut edges: Vec<&OnEdge> = found.on_edges.iter().collect();
-    sorting::sort_by_key(&mut edges, |on| (on.vertex, on.edge));
+    edges.sort_by_key(|on| (on.vertex, on.edge));
     let mut faces: Vec<_> = found.in_faces.iter().collect();
-    sorting::sort_by_key(&mut faces, |inside| (inside.vertex, inside.triangle));
+    faces.sort_by_key(|inside| (inside.vertex, inside.triangle));
     let places = edges.into_iter().map(|on| (on.vertex, on.place));
     for (vertex, place) in places.chain(faces.into_iter().map(|inside| (inside.vertex, inside.place))) {
         if moved.insert(vertex) {
@@ -119,7 +118,7 @@ fn chains(surfaces: &Surfaces, found: &Found) -> Chains {
     }
     on.into_iter()
         .map(|(edge, mut on)| {
-            sorting::sort_by(&mut on, |x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+            on.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
             let mut chain = vec![edge[0]];
             chain.extend(on.into_iter().map(|(_, v)| v));
             chain.push(edge[1]);

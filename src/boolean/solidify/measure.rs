@@ -13,7 +13,6 @@ use crate::boolean::general::cells::{Beside, CellCount};
 use crate::boolean::general::strips::visit_strips;
 use crate::mesh::scale;
 use crate::parallel::Runner;
-use crate::sorting;
 use crate::spatial::{FastWinding, TriangleTree};
 
 /// Faces, or samples, that one thread looks at before the limits are checked.
@@ -51,7 +50,7 @@ pub(in crate::boolean) fn mean_winding(
     })?;
     samples.retain(|sample| sample.cell != 0 && sample.weight > 0.0 && sample.weight.is_finite());
     // (Stable: in the order of the faces.)
-    sorting::sort_by_key(&mut samples, |sample| sample.cell);
+    samples.sort_by_key(|sample| sample.cell);
     let chosen: Vec<Sample> = samples.chunk_by(|x, y| x.cell == y.cell).flat_map(evenly).copied().collect();
     // 2. The winding numbers there.
     let factor = scale::factor(general.surfaces.largest_coordinate());

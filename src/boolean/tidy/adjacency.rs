@@ -4,7 +4,6 @@ use rustc_hash::FxHashMap;
 
 use super::face::{Face, LocalFace, LocalPoint, sides};
 use crate::mesh::Buckets;
-use crate::sorting;
 
 /// No triangle.
 const NONE: LocalFace = LocalFace(u32::MAX);
@@ -37,7 +36,7 @@ impl Adjacency {
         let by_start = alive.flat_map(|(index, face)| face.sides().map(|(from, to)| (from.0, (to, index))));
         let mut edges = Buckets::new(points, by_start);
         for edges in edges.each_mut() {
-            sorting::sort(edges);
+            edges.sort_unstable();
             // At the border an edge may occur more than once; the last one counts, and the first is what is found.
             for i in (1..edges.len()).rev() {
                 if edges[i].0 == edges[i - 1].0 {

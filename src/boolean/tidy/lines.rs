@@ -14,7 +14,6 @@ use super::split_faces::split_faces;
 use super::splits::Splits;
 use crate::exact::collinear;
 use crate::mesh::{BitSet, UnionFind};
-use crate::sorting;
 
 /// Rounds at most: points that become one, and faces that are split, may leave further triangles without area. A round
 /// removes all there are, so the bound is for time alone; the chain step takes what is left.
@@ -71,12 +70,12 @@ impl Lines {
                 patch[flats[place]].corners.map(|point| (line, point))
             })
             .collect();
-        sorting::sort(&mut members);
+        members.sort_unstable();
         members.dedup();
         let mut lines = Self { points: Vec::new(), through: FxHashMap::default(), coincident: Vec::new() };
         for group in members.chunk_by(|x, y| x.0 == y.0) {
             let mut points: Vec<LocalPoint> = group.iter().map(|entry| entry.1).collect();
-            sorting::sort_by(&mut points, |&u, &v| compare_on_line(patch, u, v));
+            points.sort_unstable_by(|&u, &v| compare_on_line(patch, u, v));
             lines.coincident.extend(pairs_at_one_place(patch, &points));
             for &point in &points {
                 lines.through.entry(point).or_default().push(lines.points.len() as u32);
@@ -137,13 +136,13 @@ fn group_by_line(patch: &Patch<'_>, flats: &[LocalFace]) -> UnionFind {
     let ends: Vec<[LocalPoint; 2]> = (0..flats.len())
         .map(|place| {
             let mut sorted = corners(place);
-            sorting::sort_by(&mut sorted, |&u, &v| compare_on_line(patch, u, v));
+            sorted.sort_unstable_by(|&u, &v| compare_on_line(patch, u, v));
             [sorted[0], sorted[2]]
         })
         .collect();
     let mut at_points: Vec<(LocalPoint, usize)> =
         (0..flats.len()).flat_map(|place| corners(place).map(|point| (point, place))).collect();
-    sorting::sort(&mut at_points);
+    at_points.sort_unstable();
     let mut line_of = UnionFind::new(flats.len());
     for group in at_points.chunk_by(|x, y| x.0 == y.0) {
         // One triangle of each line through this point.

@@ -14,7 +14,6 @@ use crate::boolean::complex::origin::Origin;
 use crate::boolean::cut::piece::Piece;
 use crate::exact::{Sign, orient2d};
 use crate::mesh::{BitSet, Buckets};
-use crate::sorting;
 
 /// What the clean-up made of the pieces.
 pub(crate) struct Tidied {
@@ -234,7 +233,7 @@ impl<'a> Patch<'a> {
             }),
         );
         for bucket in by_lowest.each_mut().filter(|bucket| bucket.len() > 1) {
-            sorting::sort(bucket);
+            bucket.sort_unstable();
             for group in bucket.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)) {
                 let odd = group.partition_point(|entry| !entry.2);
                 let pairs = odd.min(group.len() - odd);
@@ -333,7 +332,7 @@ impl<'a> Patch<'a> {
                 new.push(Piece { corners, origin: face.origin, flat: face.flat });
             }
         }
-        sorting::sort_by_key(&mut new, |triangle| (triangle.origin.operand, triangle.origin.triangle));
+        new.sort_by_key(|triangle| (triangle.origin.operand, triangle.origin.triangle));
         let copies = self.positions[self.numbers.len()..].to_vec();
         Tidied { new, replaced, copies, stopped: self.stopped }
     }

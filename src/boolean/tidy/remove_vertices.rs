@@ -9,7 +9,6 @@ use super::patch::Patch;
 use crate::boolean::complex::origin::Origin;
 use crate::exact::collinear;
 use crate::polygon::{Shape, Triangulator};
-use crate::sorting;
 use crate::{Control, Error};
 
 /// Vertices tried between checks of the limits: bounds how long a cancelled operation goes on.
@@ -144,7 +143,7 @@ fn makes_double_edge(patch: &Patch<'_>, ring: &[LocalPoint], new: &[([LocalPoint
     let is_freed = |edge: (LocalPoint, LocalPoint)| (0..n).any(|i| (ring[i], ring[(i + 1) % n]) == edge);
     let mut edges: Vec<(LocalPoint, LocalPoint)> =
         new.iter().flat_map(|&(corners, _)| sides(corners)).collect();
-    sorting::sort(&mut edges);
+    edges.sort_unstable();
     edges.windows(2).any(|pair| pair[0] == pair[1])
         || edges.iter().any(|&(from, to)| patch.has_edge(from, to) && !is_freed((from, to)))
 }

@@ -3,7 +3,6 @@
 
 use super::face::{Face, LocalPoint};
 use super::patch::Patch;
-use crate::sorting;
 
 /// Collapses edges no longer than rounding at points made by the operation.
 pub(super) fn collapse(patch: &mut Patch<'_>) {
@@ -15,7 +14,7 @@ pub(super) fn collapse(patch: &mut Patch<'_>) {
             }
         }
     }
-    sorting::sort(&mut queue);
+    queue.sort_unstable();
     queue.dedup();
     // The later point goes first: between two new points the one with the lower number stays.
     while let Some((u, v)) = queue.pop() {

@@ -3,7 +3,6 @@
 use super::face::LocalPoint;
 use super::patch::Patch;
 use crate::mesh::SparseUnionFind;
-use crate::sorting;
 
 /// Makes one point of each pair, the lower one.
 pub(super) fn snap_pairs(patch: &mut Patch<'_>, pairs: &[(LocalPoint, LocalPoint)]) {
@@ -17,7 +16,7 @@ pub(super) fn snap_pairs(patch: &mut Patch<'_>, pairs: &[(LocalPoint, LocalPoint
 /// Makes one point of those complete points that are at the same place.
 pub(super) fn snap_coincident(patch: &mut Patch<'_>) {
     let mut points = complete_points(patch);
-    sorting::sort_by_key(&mut points, |&point| (patch.position(point).map(|x| (x + 0.0).to_bits()), point));
+    points.sort_unstable_by_key(|&point| (patch.position(point).map(|x| (x + 0.0).to_bits()), point));
     let coincident = pairs_at_one_place(patch, &points);
     if !coincident.is_empty() {
         snap_pairs(patch, &coincident);

@@ -9,7 +9,6 @@ use super::patch::Patch;
 use super::splits::Splits;
 use crate::mesh::{BitSet, Buckets, UnionFind};
 use crate::polygon::Triangulator;
-use crate::sorting;
 
 /// Splits the sides of all faces that are to be split. Diagonals are left alone, whatever else runs along them: they bound two
 /// triangles of one face and so do not matter to others. With `merge`, faces on both sides of a coplanar edge are
@@ -39,7 +38,7 @@ fn strips(patch: &Patch<'_>, faces: &[LocalFace], splits: &Splits) -> Buckets<Lo
         }
     }
     // 2. The borders between two of the faces.
-    sorting::sort(&mut sides);
+    sides.sort_unstable();
     let between = sides.chunk_by(|x, y| x.0 == y.0).filter_map(|group| match *group {
         [(edge, false, one), (_, true, other)] => Some((edge, one, other)),
         _ => None,

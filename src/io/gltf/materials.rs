@@ -16,7 +16,6 @@ use super::document::{Named, PlainMaterial};
 use super::json::{for_each_source, for_each_texture};
 use super::plain::plain_object;
 use crate::mesh::{Image, Material, MaterialLanguage, MaterialText, Texture, TextureUse, Wrap};
-use crate::sorting;
 use crate::{Error, mesh};
 
 /// Longer texts of one material, texture or picture are not kept, bytes: as a tree they take up to thirty times as much.
@@ -99,7 +98,7 @@ impl<'a> Materials<'a> {
         // 1. The textures it names, each at a place of its own list.
         let mut named: Vec<u64> = Vec::new();
         for_each_texture(&mut json, &mut |_, place| named.push(*place));
-        sorting::sort(&mut named);
+        named.sort_unstable();
         named.dedup();
         let mut textures = Vec::new();
         let mut places = HashMap::new();

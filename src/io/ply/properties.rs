@@ -6,7 +6,6 @@ use super::super::notes::Notes;
 use super::body::{Body, Channel};
 use super::header::Type;
 use crate::mesh::Attribute;
-use crate::sorting;
 
 /// Names that programs give to the two texture coordinates of a vertex.
 pub(super) const TEXTURE: [[&str; 2]; 4] =
@@ -89,7 +88,7 @@ fn several(channels: &mut Vec<Channel>, names: &[&str]) -> Option<Vec<Channel>> 
     let mut places = places?;
     let mut found: Vec<Option<Channel>> = (0..names.len()).map(|_| None).collect();
     let order = places.clone();
-    sorting::sort(&mut places);
+    places.sort_unstable();
     for place in places.into_iter().rev() {
         let at = order.iter().position(|&wanted| wanted == place)?;
         found[at] = Some(channels.remove(place));

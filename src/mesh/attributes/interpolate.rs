@@ -4,7 +4,6 @@ use smallvec::SmallVec;
 
 use super::{Attribute, AttributeKind};
 use crate::exact::barycentric::Place;
-use crate::sorting;
 
 /// The value at a place of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +37,7 @@ impl<'a> Interpolator<'a> {
                 Some((number.parse().ok()?, [joints, weights]))
             })
             .collect();
-        sorting::sort_by_key(&mut skin, |&(number, _)| number);
+        skin.sort_by_key(|&(number, _)| number);
         Self { attributes, skin: skin.into_iter().map(|(_, pair)| pair).collect() }
     }
 
@@ -121,7 +120,7 @@ impl<'a> Interpolator<'a> {
             }
         }
         // 3. The heaviest, of equal ones the first joints.
-        sorting::sort_by(&mut of_joint, |x, y| y.1.total_cmp(&x.1).then(x.0.total_cmp(&y.0)));
+        of_joint.sort_by(|x, y| y.1.total_cmp(&x.1).then(x.0.total_cmp(&y.0)));
         let components = self.skin[set][0].components;
         of_joint.truncate(components * self.skin.len());
         let sum: f64 = of_joint.iter().map(|entry| entry.1).sum();

@@ -16,7 +16,6 @@ use super::super::orient::reversed;
 use super::super::{Bounds, UnionFind, measure};
 use super::Surface;
 use crate::exact::{Sign, collinear, orient3d};
-use crate::sorting;
 
 /// So many triangles that bound something there must be for each one that hangs on nothing. Where such are more, they may be
 /// a body whose triangles all lie apart, and leaving it out would be a guess.
@@ -166,7 +165,7 @@ fn join_sides(surface: &Surface<'_>, edge: Edge<'_>, sides: &mut UnionFind) -> b
             return false;
         }
         let reference = spokes[0].1;
-        sorting::sort_by(&mut spokes, |x, y| axis.compare(&reference, &x.1, &y.1).then(x.0.cmp(&y.0)));
+        spokes.sort_by(|x, y| axis.compare(&reference, &x.1, &y.1).then(x.0.cmp(&y.0)));
         let equal =
             |pair: &[(u32, [f64; 3])]| axis.compare(&reference, &pair[0].1, &pair[1].1) == Ordering::Equal;
         if spokes.windows(2).any(equal) {

@@ -4,7 +4,6 @@
 //! that have the smallest area in sum (Barequet and Sharir 1995), all triangulations of it considered; a long one ear by ear. No
 //! vertex is added, and no edge that the surface has already is used for a diagonal if there is another way.
 
-use crate::sorting;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::super::places::Spots;
@@ -156,7 +155,7 @@ fn loops(edges: &[(u32, u32)]) -> Vec<Vec<u32>> {
     let mut starts: Vec<u32> = next.keys().copied().collect();
     starts.sort_unstable();
     // (Taken from the end: the lowest first.)
-    next.values_mut().for_each(|ends| sorting::sort_by(ends, |x, y| y.cmp(x)));
+    next.values_mut().for_each(|ends| ends.sort_unstable_by(|x, y| y.cmp(x)));
     let mut loops = Vec::new();
     for start in starts {
         let mut path = vec![start];

@@ -3,7 +3,6 @@
 //! After Liepa 2003: triangles are split at their middles while these are further from the corners than edges around are long, edges
 //! between them flipped to the better diagonal, and the new vertices placed where the sum of all squared bends is least.
 
-use crate::sorting;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::rounding::apart;
@@ -199,7 +198,7 @@ fn rows(filling: &[[u32; 3]], around: &Around) -> Vec<(u32, Vec<u32>)> {
         }
     }
     let mut rows: Vec<(u32, Vec<u32>)> = neighbours.into_iter().collect();
-    sorting::sort_by_key(&mut rows, |row| row.0);
+    rows.sort_unstable_by_key(|row| row.0);
     for (at, others) in &mut rows {
         others.extend(around.neighbours.get(at).into_iter().flatten());
         others.sort_unstable();

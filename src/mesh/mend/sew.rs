@@ -1,6 +1,5 @@
 //! Open edges made to cancel: vertices joined and edges split, where that closes the surface.
 
-use crate::sorting;
 use rustc_hash::FxHashMap;
 
 use super::super::UnionFind;
@@ -173,7 +172,7 @@ impl<'a> Plan<'a> {
 fn sums(edges: Vec<(u32, u32, i64)>) -> Vec<(u32, u32, i64)> {
     let upward = |(a, b, count): (u32, u32, i64)| if a < b { (a, b, count) } else { (b, a, -count) };
     let mut edges: Vec<_> = edges.into_iter().filter(|(a, b, _)| a != b).map(upward).collect();
-    sorting::sort(&mut edges);
+    edges.sort_unstable();
     let sum = |equal: &[(u32, u32, i64)]| (equal[0].0, equal[0].1, equal.iter().map(|edge| edge.2).sum());
     edges.chunk_by(|x, y| (x.0, x.1) == (y.0, y.1)).map(sum).filter(|&(_, _, net)| net != 0).collect()
 }
@@ -235,7 +234,7 @@ fn report(
 ) {
     let sorted = |found: FxHashMap<u32, u32>| {
         let mut found: Vec<(u32, u32)> = found.into_iter().collect();
-        sorting::sort(&mut found);
+        found.sort_unstable();
         found
     };
     let spots = Spots { mesh: surface.mesh };

@@ -15,7 +15,6 @@ use super::sew::{Sewing, Splits};
 use super::{Surface, fill, sew};
 use crate::exact::collinear;
 use crate::mesh::Welding;
-use crate::sorting;
 
 /// A soup made ready.
 pub(crate) struct Soup {
@@ -223,7 +222,7 @@ fn is_same_way(x: [u32; 3], y: [u32; 3]) -> bool {
 }
 
 fn unordered(mut corners: [u32; 3]) -> [u32; 3] {
-    sorting::sort(&mut corners);
+    corners.sort_unstable();
     corners
 }
 
@@ -316,7 +315,7 @@ fn flattest_first(
             Some((if agrees { -along } else { along }, a, b, agrees))
         })
         .collect();
-    sorting::sort_by(&mut edges, |x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
+    edges.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
     // 2. In this order they say who agrees with whom.
     let mut sets = WeightedUnionFind::new(triangles.len());
     for (_, a, b, agrees) in edges {

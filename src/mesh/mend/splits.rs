@@ -2,7 +2,6 @@
 
 use super::points::PointTree;
 use super::rounding::{Reaches, apart};
-use crate::sorting;
 
 /// Boxes and points that may be looked at for each edge on average, before the search is given up: some ten times what
 /// the densest meshes met so far need. Only a soup made for it comes near.
@@ -34,7 +33,7 @@ pub(super) fn on_edges(
             }
         });
         looks = looks.checked_sub(looked_at)?;
-        sorting::sort_by(&mut on, |x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+        on.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
         found.push(on.into_iter().map(|(_, point)| point).collect());
     }
     Some(found)

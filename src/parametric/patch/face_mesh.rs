@@ -16,7 +16,6 @@ use super::surface::{Patch, PatchSide};
 use crate::parametric::curve::discretise::Refinement;
 use crate::parametric::error::GeometryError;
 use crate::parametric::numeric::vector::{self, Point};
-use crate::sorting;
 use crate::{Control, Error};
 
 /// Vertex of the triangulation: its place in the scaled parameter plane and the number of its node.
@@ -310,7 +309,7 @@ impl FaceMesh {
                 order.push((bend, node));
             }
         }
-        sorting::sort_by(&mut order, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         for (count, (_, node)) in order.into_iter().enumerate() {
             if count % 256 == 0 {
                 control.check()?;

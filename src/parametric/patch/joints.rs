@@ -7,7 +7,6 @@ use crate::parametric::curve::nurbs_tools::rescaled_to_unit;
 use crate::parametric::curve::param_curve::Curve;
 use crate::parametric::error::{GeometryError, Result};
 use crate::parametric::numeric::vector::{self, Point};
-use crate::sorting;
 
 /// A boundary of a patch that meets no boundary of another (or of its own).
 #[derive(Clone, Debug, PartialEq)]
@@ -137,7 +136,7 @@ fn match_boundaries(
     // end in x is within the tolerance.
     let least = |b: &Boundary| b.ends[0][0].min(b.ends[1][0]);
     let mut by_place: Vec<(f64, usize)> = boundaries.iter().map(least).zip(0..).collect();
-    sorting::sort_by(&mut by_place, |a, b| a.0.total_cmp(&b.0));
+    by_place.sort_by(|a, b| a.0.total_cmp(&b.0));
     let near_by = |x: f64| {
         let from = by_place.partition_point(|(key, _)| *key < x - tolerance);
         by_place[from..].iter().take_while(move |(key, _)| *key <= x + tolerance).map(|(_, index)| *index)
@@ -150,7 +149,7 @@ fn match_boundaries(
             .filter(|&j| j > i && edge_of[j].is_none())
             .filter_map(|j| find_course(first, &boundaries[j], tolerance).map(|course| (j, course)))
             .collect();
-        sorting::sort_by_key(&mut mates, |mate| mate.0);
+        mates.sort_by_key(|mate| mate.0);
         if mates.len() > 1 {
             let patches = [i].into_iter().chain(mates.iter().map(|m| m.0)).map(|b| owner[boundaries[b].face]);
             return Err(GeometryError::BoundaryShared {

@@ -4,6 +4,7 @@ use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use crate::subdivision::error::CageError;
+use crate::subdivision::halves::{Halves, first_of_vertices};
 use crate::subdivision::level::{Kind, NONE};
 use crate::subdivision::tags::{Corner, Crease, Tags};
 
@@ -57,52 +58,34 @@ impl PolygonLevel {
             face_of.extend(std::iter::repeat_n(f as u32, face.len()));
             starts.push(face_of.len() as u32);
         }
-        let halves = corners.len();
+        // The half-edge after h in its face.
+        let next = |h: u32| {
+            let f = face_of[h as usize] as usize;
+            if h + 1 == starts[f + 1] { starts[f] } else { h + 1 }
+        };
+        let ends = |h: u32| [h, next(h)].map(|h| corners[h as usize]);
+        let halves = Halves::paired(corners.len(), ends, |h| face_of[h as usize] as usize)?;
+        let sharpness = halves.sharpness();
+        let Halves { twins, edge_of, edges } = halves;
         let mut level = Self {
             vertex_count,
             corners,
             starts,
             face_of,
-            twins: vec![NONE; halves],
-            edge_of: vec![NONE; halves],
-            edges: Vec::with_capacity(halves / 2 + 1),
-            sharpness: Vec::new(),
+            twins,
+            edge_of,
+            edges,
+            sharpness,
             first: Vec::new(),
             sharp_corners: FxHashMap::default(),
         };
-        let mut known: FxHashMap<(u32, u32), u32> = FxHashMap::default();
-        for h in 0..halves as u32 {
-            let (u, v) = (level.from(h), level.to(h));
-            if let Some(&other) = known.get(&(u, v)) {
-                let faces = [level.face_of[other as usize] as usize, level.face_of[h as usize] as usize];
-                return Err(CageError::EdgeNotManifold { edge: [u, v], faces });
-            }
-            known.insert((u, v), h);
-            if let Some(&twin) = known.get(&(v, u)) {
-                (level.twins[h as usize], level.twins[twin as usize]) = (twin, h);
-                level.edge_of[h as usize] = level.edge_of[twin as usize];
-            } else {
-                level.edge_of[h as usize] = level.edges.len() as u32;
-                level.edges.push(h);
-            }
-        }
-        let is_border = |&h: &u32| level.twins[h as usize] == NONE;
-        level.sharpness =
-            level.edges.iter().map(|h| if is_border(h) { f64::INFINITY } else { 0.0 }).collect();
         level.find_first();
         Ok(level)
     }
 
     /// Finds for each vertex the half-edge its spokes begin with: the lowest, or that at a border.
     pub(crate) fn find_first(&mut self) {
-        self.first = vec![NONE; self.vertex_count];
-        for h in (0..self.twins.len() as u32).rev() {
-            let v = self.from(h) as usize;
-            let current = self.first[v];
-            if current == NONE || self.twins[current as usize] != NONE || self.twins[h as usize] == NONE {
-                self.first[v] = h;
-            }
-        }
+        self.first = first_of_vertices(self.vertex_count, &self.twins, |h| self.from(h));
     }
 
     /// Refuses vertices with several fans of faces.

@@ -106,39 +106,31 @@ fn is_finite(sharpness: f64) -> bool {
 }
 
 /// The weights of a dart's limit with k faces around it: the centre, the k neighbours, the crease's end first, and the k
-/// vertices across the faces after them. The left eigenvector of its ring's refinement to the eigenvalue 1.
+/// vertices across the faces after them. The left eigenvector of its ring's refinement to the eigenvalue 1. O(k).
 pub(crate) fn dart_weights(k: usize) -> Vec<f64> {
-    let n = 2 * k + 1;
     let count = k as f64;
-    let mut matrix = vec![vec![0.0; n]; n];
-    let face = |i: usize| [0, 1 + i, 1 + k + i, 1 + (i + 1) % k];
-    for i in 0..k {
-        for column in face(i) {
-            matrix[1 + k + i][column] += 0.25;
-        }
-    }
-    for i in 0..k {
-        let (ahead, behind) = (matrix[1 + k + i].clone(), matrix[1 + k + (i + k - 1) % k].clone());
-        let row = &mut matrix[1 + i];
-        if i == 0 {
-            (row[0], row[1]) = (0.5, 0.5);
-            continue;
-        }
-        (row[0], row[1 + i]) = (0.25, 0.25);
-        (0..n).for_each(|column| row[column] += 0.25 * (ahead[column] + behind[column]));
-    }
-    matrix[0][0] = (count - 2.0) / count;
-    for i in 0..k {
-        matrix[0][1 + i] += 1.0 / (count * count);
-        let across = matrix[1 + k + i].clone();
-        (0..n).for_each(|column| matrix[0][column] += across[column] / (count * count));
-    }
-    let mut vector = vec![1.0 / n as f64; n];
+    let mut weights = vec![1.0 / (2 * k + 1) as f64; 2 * k + 1];
     for _ in 0..STEPS {
-        let next: Vec<f64> =
-            (0..n).map(|column| (0..n).map(|row| vector[row] * matrix[row][column]).sum()).collect();
+        // What the points of the next ring weigh is shared out to those that they are made of.
+        let mut next = vec![0.0; 2 * k + 1];
+        let own = weights[0] / (count * count);
+        let mut faces: Vec<f64> = weights[1 + k..].iter().map(|weight| weight + own).collect();
+        next[0] = weights[0] * (count - 2.0) / count + 0.5 * weights[1];
+        next[1] = own + 0.5 * weights[1];
+        for i in 1..k {
+            let quarter = 0.25 * weights[1 + i];
+            next[0] += quarter;
+            next[1 + i] = own + quarter;
+            faces[i] += quarter;
+            faces[i - 1] += quarter;
+        }
+        for (i, face) in faces.into_iter().enumerate() {
+            for place in [0, 1 + i, 1 + k + i, 1 + (i + 1) % k] {
+                next[place] += 0.25 * face;
+            }
+        }
         let sum: f64 = next.iter().sum();
-        vector = next.into_iter().map(|value| value / sum).collect();
+        weights = next.into_iter().map(|weight| weight / sum).collect();
     }
-    vector
+    weights
 }

@@ -164,3 +164,10 @@ fn borders_are_curves() {
     let twice = PolygonCage::new(vec![[0.0; 3]; 4], &[vec![0, 1, 2, 1]], Tags::default());
     assert!(twice.is_err_and(|error| error.to_string().contains("twice")));
 }
+
+#[test]
+fn darts_of_many_faces_take_no_table() {
+    let weights = limit::dart_weights(20_000);
+    assert_eq!(weights.len(), 40_001);
+    assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-9 && weights.iter().all(|&weight| weight >= 0.0));
+}

@@ -28,23 +28,22 @@ pub(super) struct Fault {
 }
 
 /// The triangles of a smoothed surface that are farther off than the tolerance, or cross others. Triangles without `free` corners are as
-/// the cells made them, and no faults.
+/// the cells made them, and no faults. `None` if the surface encloses nothing any more.
 pub(super) fn faults(
     mesh: &Mesh,
     free: &[bool],
     fits: &[Fit],
     tolerance: f64,
     control: &Control,
-) -> Result<Vec<Fault>, Error> {
+) -> Result<Option<Vec<Fault>>, Error> {
     let changed = |triangle: usize| mesh.triangles[triangle].iter().any(|&corner| free[corner as usize]);
     let off = |&triangle: &usize| fits[triangle].deviation > tolerance && changed(triangle);
     let mut found: Vec<usize> = (0..fits.len()).filter(off).collect();
-    if let Ok(solid) = Solid::try_from(mesh.clone()) {
-        for pair in crossing_pairs(&solid, control)? {
-            let pair = pair.map(|triangle| triangle as usize);
-            if pair.into_iter().any(changed) {
-                found.extend(pair);
-            }
+    let Ok(solid) = Solid::try_from(mesh.clone()) else { return Ok(None) };
+    for pair in crossing_pairs(&solid, control)? {
+        let pair = pair.map(|triangle| triangle as usize);
+        if pair.into_iter().any(changed) {
+            found.extend(pair);
         }
     }
     found.sort_unstable();
@@ -55,7 +54,7 @@ pub(super) fn faults(
         let radius = corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
         Fault { middle, radius }
     };
-    Ok(found.into_iter().map(fault).collect())
+    Ok(Some(found.into_iter().map(fault).collect()))
 }
 
 /// Takes more care of the vertices that are within `times` the size of a fault.

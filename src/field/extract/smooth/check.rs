@@ -13,9 +13,9 @@ const AT_ONCE: usize = 128;
 /// How a triangle follows the field, at its middle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fit {
-    /// Distance from the surface, to first order; infinite where the field has no gradient.
+    /// Distance from the surface, to first order; where the field has no gradient, infinite off the surface.
     pub(super) deviation: f64,
-    /// Radians between the normal of the triangle and the gradient, reversed.
+    /// Radians between the normal of the triangle and the gradient, reversed; 0 where there is none.
     pub(super) angle: f64,
 }
 
@@ -29,13 +29,14 @@ pub(super) fn fits(
         let mut scratch = Scratch::default();
         let fit = |[a, b, c]: &[DVec3; 3]| {
             let normal = (*b - *a).cross(*c - *a).normalize_or_zero();
-            nearby.look((*a + *b + *c) / 3.0, &mut scratch).map_or(
-                Fit { deviation: f64::INFINITY, angle: 0.0 },
-                |look| Fit {
+            let middle = (*a + *b + *c) / 3.0;
+            match nearby.look(middle, &mut scratch) {
+                Some(look) => Fit {
                     deviation: look.depth.abs(),
                     angle: normal.dot(look.outward).clamp(-1.0, 1.0).acos(),
                 },
-            )
+                None => Fit { deviation: nearby.deviation(middle, &mut scratch), angle: 0.0 },
+            }
         };
         Ok(triangles[range].iter().map(fit).collect::<Vec<Fit>>())
     })?;

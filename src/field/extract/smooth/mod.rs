@@ -83,7 +83,7 @@ pub(super) fn smoothed(
         improve(&mut net, nearby, tolerance, floor, control)?;
         let (smooth, free) = finished(&net);
         let fits = check::fits(&corners_of(&smooth), nearby, control)?;
-        let faults = care::faults(&smooth, &free, &fits, tolerance, control)?;
+        let Some(faults) = care::faults(&smooth, &free, &fits, tolerance, control)? else { break };
         if faults.is_empty() {
             return Ok(measured(smooth, &fits));
         }

@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 
 use super::super::lattice::{Cube, Lattice};
 use super::super::octree::Leaf;
+use super::super::solve::deviation;
 use crate::field::expression::{Scratch, Tape};
 
 /// In instructions: a whole tape no longer than this is run as quickly as a shorter one is found (a search takes about a fifth of a
@@ -78,6 +79,11 @@ impl<'a> Nearby<'a> {
         let slope = gradient.length();
         (slope > 0.0 && slope.is_finite() && value.is_finite())
             .then(|| Look { depth: value / slope, outward: gradient / -slope })
+    }
+
+    /// How far the surface is from `place`, as the cells measure it.
+    pub(super) fn deviation(&self, place: DVec3, scratch: &mut Scratch) -> f64 {
+        deviation(self.tape(place), place, scratch)
     }
 
     /// The point of the surface that `place` is moved to along the gradient. Nothing if it does not get there, or is led too far.

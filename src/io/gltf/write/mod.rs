@@ -54,7 +54,9 @@ pub(in crate::io) fn write(
             Format::Glb => write_glb_header(output, &document.to_string(), None)?,
             _ => write_all(output, document.to_string().as_bytes())?,
         }
-        return Ok(Written::default());
+        let lost = options.extra.as_ref();
+        let lost = lost.map(|(key, _)| format!("there is no mesh that could have `{key}` beside it"));
+        return Ok(Written { warnings: lost.into_iter().collect(), ..Written::default() });
     }
     // Seams of the mesh itself are joined first, where that is all that keeps the surface from being closed.
     let is_closed = options.manifold && is_two_manifold(mesh);
@@ -69,7 +71,10 @@ pub(in crate::io) fn write(
     let pictures = aside.as_ref().map(|aside| aside.pictures);
     let (layout, mut document) = document::document(mesh, pictures, manifold, &mut warnings);
     if let Some((key, value)) = &options.extra {
-        document["meshes"][0]["extras"] = json!({ *key: value });
+        let meshes = document.get_mut("meshes").and_then(|meshes| meshes.get_mut(0));
+        if let Some(mesh) = meshes.and_then(Value::as_object_mut) {
+            mesh.insert("extras".to_string(), json!({ *key: value }));
+        }
     }
     let bytes = layout.bytes();
     match aside {

@@ -4,7 +4,6 @@ use super::nodes::{CutFace, Nodes, Point};
 use super::split::{Half, ON, Split};
 use crate::exact::{Projection, Sign, orient2d};
 use crate::polygon::Triangulator;
-use crate::sorting;
 use rustc_hash::FxHashMap;
 
 /// A new triangle and the triangle of the solid that it is a part of; `None` for the plane.
@@ -166,7 +165,7 @@ impl Cutter<'_> {
 pub(super) fn without_opposites(mut edges: Vec<[Point; 2]>) -> Vec<[Point; 2]> {
     let ends = |&[u, v]: &[Point; 2]| (u.min(v), u.max(v));
     edges.retain(|[u, v]| u != v);
-    sorting::sort_by_key(&mut edges, |edge| (ends(edge), edge[0]));
+    edges.sort_unstable_by_key(|edge| (ends(edge), edge[0]));
     let mut left = Vec::with_capacity(edges.len());
     for group in edges.chunk_by(|x, y| ends(x) == ends(y)) {
         let forward = group.iter().filter(|edge| edge[0] < edge[1]).count();

@@ -12,7 +12,6 @@ use crate::exact::Plane;
 use crate::mesh::Buckets;
 use crate::parallel::Runner;
 use crate::polygon;
-use crate::sorting;
 use crate::{Error, Solid};
 
 /// What a section is where faces of the solid lie in the plane.
@@ -210,7 +209,7 @@ impl Sections {
         let found: Vec<Vec<Option<Section>>> = found.into_iter().collect::<Result<_, Error>>()?;
         let mut sections: Vec<(usize, Option<Section>)> =
             order.iter().copied().zip(found.into_iter().flatten()).collect();
-        sorting::sort_by_key(&mut sections, |(plane, _)| *plane);
+        sections.sort_by_key(|(plane, _)| *plane);
         Ok(sections.into_iter().map(|(_, section)| section).collect())
     }
 }
@@ -223,7 +222,7 @@ fn levels(planes: &[Plane]) -> Option<(usize, Vec<usize>)> {
         .map(|plane| plane.as_level().filter(|level| level.0 == axis).map(|level| level.1))
         .collect::<Option<_>>()?;
     let mut order: Vec<usize> = (0..planes.len()).collect();
-    sorting::sort_by(&mut order, |&i, &j| at[i].total_cmp(&at[j]));
+    order.sort_by(|&i, &j| at[i].total_cmp(&at[j]));
     // The same twice cannot be told apart by ranks.
     order.windows(2).all(|pair| at[pair[0]] != at[pair[1]]).then_some((axis, order))
 }
