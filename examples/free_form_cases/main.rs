@@ -192,6 +192,9 @@ fn cases(folder: &Path) -> Done {
     // 4. Densities.
     table.row("42 with 642", &native, all[0], [&coarse, &ball(3, 0.7, [0.8, 0.1, 0.2])?]);
     table.row("42 with 2562", &native, all[0], [&coarse, &ball(4, 0.7, [0.8, 0.1, 0.2])?]);
+    let dense = primitives::geodesic_sphere(0.7, 20)?.translated([0.8, 0.1, 0.2]);
+    let dense = ControlMesh::new(dense.positions, dense.triangles, Tags::default(), Rules::Loop)?;
+    table.row("42 with 4002", &native, all[0], [&coarse, &dense]);
     // 5. Sharp things beside the curve.
     sharp(&table, &native, &fine)?;
     // 6. A chain, each step on the result before.
