@@ -270,6 +270,9 @@ def classified(case, peer, differing, ours, theirs):
         return "same solid; volume and area differ by the rounding of new vertices"
     if "volume" in differing:
         return UNEXPLAINED + "volume"
+    if peer.triangles == 0 and case.area <= peer.tolerance ** 2:
+        # What contains no ball as large as its tolerance (12 times its square has the surface of one), manifold3d drops.
+        return "same solid; all of it within manifold3d's tolerance"
     # The same solid. What has no volume is no part of it.
     empty_shells = [v for v in theirs["bodies"] if abs(v) <= EQUAL * case.box_volume]
     if case.family in ("near", "single") or nearly_flush(case):
@@ -291,6 +294,10 @@ def classified(case, peer, differing, ours, theirs):
     if ours["parted"] is None:
         return OURS + "walls without thickness"
     if ours["parted"] != [ours["components"], ours["euler"]]:
+        if ours["mispaired"] == 0:
+            # Every edge between faces of a width joins those that bound one wedge of material: what is joined beyond that is joined
+            # through faces as thin as rounding, between points that are not exactly one.
+            return "same solid; joined through parts thinner than rounding"
         return OURS + "connected where material touches"
     if ours["parted"] == theirs["parted"]:
         return "same solid; manifold3d connected where material touches"

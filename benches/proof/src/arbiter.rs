@@ -79,10 +79,12 @@ fn describe(mesh: &Mesh, smallest_part: f64, verdict: &oracle::Verdict) -> Strin
     let agreeing = by_reach.iter().find(|parted| parted.topology == own).or(by_reach.first());
     let (parted, coarse) = (text(agreeing), text(by_reach.first()));
     let pinched = by_reach.iter().any(|parted| parted.pinched);
+    // With the smallest of the distances: what is flat then is as thin as rounding.
+    let mispaired = by_reach.last().map_or(0, |parted| parted.mispaired);
     let bodies: Vec<String> = bodies(mesh).iter().map(|body| format!("{:e}", volume(body))).collect();
     format!(
         "{{\"judged\":{},\"mistakes\":{},\"farthest\":{:e},\"closed\":{},\"manifold\":{},\"zero_area\":{},\"volume\":{:e},\
-         \"area\":{:e},\"components\":{},\"euler\":{},\"parted\":{parted},\"coarse\":{coarse},\"pinched\":{pinched},\"walls\":{},\"bodies\":[{}]}}",
+         \"area\":{:e},\"components\":{},\"euler\":{},\"parted\":{parted},\"coarse\":{coarse},\"pinched\":{pinched},\"mispaired\":{mispaired},\"walls\":{},\"bodies\":[{}]}}",
         verdict.judged,
         verdict.mistakes.len(),
         verdict.farthest(),

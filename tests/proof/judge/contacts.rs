@@ -22,6 +22,9 @@ pub(crate) struct Parted {
     pub(crate) topology: Topology,
     /// Somewhere an edge lies on the inner side of a face: material is pinched there too, and the faces are not parted.
     pub(crate) pinched: bool,
+    /// How many sides of triangles join faces that do not bound one wedge of material there. Neither flat triangles are asked nor sides
+    /// that are one only because vertices were joined: what goes through there is as thin as that.
+    pub(crate) mispaired: usize,
 }
 
 /// A face after its sides are split at the vertices that lie on them.
@@ -29,6 +32,10 @@ struct Face {
     corners: Vec<usize>,
     triangle: [usize; 3],
     normal: Point,
+    /// The triangle's number in the mesh.
+    number: usize,
+    /// For each corner the side of the triangle that it begins or is on.
+    sides: Vec<usize>,
 }
 
 /// Where a face meets an edge: the face, its side, and whether the side runs from the edge's first vertex to its second.
@@ -58,21 +65,26 @@ const NO_ANGLE: f64 = 1e-7;
 /// each share.
 const NEEDLE_ULPS: f64 = 2.0;
 
+/// A place on a side is computed to so many roundings of the side's length: the difference of its ends, the share, the product and the sum.
+const SIDE_ROUNDINGS: f64 = 4.0;
+
 /// The topology of `mesh` with its contacts parted. Vertices nearer than `reach` times the size of the mesh are one. Exact
 /// where features are larger and contacts closer than that; `None` if the surface is not closed after joining them, or if
 /// faces lie on one another.
 pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
     if mesh.triangles.is_empty() {
-        return Some(Parted { topology: Topology::default(), pinched: false });
+        return Some(Parted { topology: Topology::default(), pinched: false, mispaired: 0 });
     }
-    // About a vertex: far from the origin a place on a side is rounded, and would fall on vertices that are beside it.
-    let origin = mesh.positions[mesh.triangles[0][0] as usize];
+    // About a vertex where details are smallest: far from it a place on a side is rounded, and would fall on vertices that are beside it.
+    let origin = among_details(mesh);
     let positions: Vec<Point> = mesh.positions.iter().map(|p| minus(*p, origin)).collect();
     let [low, high] = extent(&positions);
     let near = reach * (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
     let (points, of) = joined(&positions, near);
+    let numbered = mesh.triangles.iter().enumerate();
     let faces: Vec<Face> =
-        mesh.triangles.iter().filter_map(|t| face(t.map(|v| of[v as usize]), &points, near)).collect();
+        numbered.filter_map(|(t, corners)| face(t, corners.map(|v| of[v as usize]), &points, near)).collect();
+    let joined = Joined::new(mesh, &faces);
     let mut edges: HashMap<(usize, usize), Vec<Side>> = HashMap::new();
     let mut first = Vec::new();
     let mut corners = 0;
@@ -98,10 +110,12 @@ pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
     let boxes = Boxes::new(faces.iter().map(|face| extent(&face.triangle.map(|v| points[v]))));
     let pinched = edges.iter().any(|(edge, sides)| is_pinched(*edge, sides, &faces, &boxes, &points, near));
     let (mut fans, mut bodies) = (Sets::new(corners), Sets::new(faces.len()));
-    let mut pairs = 0;
+    let (mut pairs, mut mispaired) = (0, 0);
     for sides in edges.values_mut() {
+        let is_one_edge = joined.are_at_one_place(&faces, sides);
         for (a, b) in wedges(sides)? {
             pairs += 1;
+            mispaired += usize::from(is_one_edge && joined.otherwise(&faces, a, b));
             bodies.join(a.face, b.face);
             let corner =
                 |of: &Side, next: usize| first[of.face] + (of.side + next) % faces[of.face].corners.len();
@@ -110,7 +124,63 @@ pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
         }
     }
     let euler = fans.count() as i64 - pairs + faces.len() as i64;
-    Some(Parted { topology: Topology { components: bodies.count(), euler }, pinched })
+    Some(Parted { topology: Topology { components: bodies.count(), euler }, pinched, mispaired })
+}
+
+/// How a mesh joins its triangles.
+struct Joined<'m> {
+    mesh: &'m Mesh,
+    /// The triangle on each side of each edge, by the ends as that triangle passes them.
+    passed: HashMap<(u32, u32), usize>,
+    is_flat: Vec<bool>,
+}
+
+impl<'m> Joined<'m> {
+    fn new(mesh: &'m Mesh, faces: &[Face]) -> Self {
+        let mut is_flat = vec![true; mesh.triangles.len()];
+        faces.iter().for_each(|face| is_flat[face.number] = false);
+        let sides = |(t, corners): (usize, &[u32; 3])| {
+            let corners = *corners;
+            (0..3).map(move |k| ((corners[k], corners[(k + 1) % 3]), t))
+        };
+        Self { mesh, passed: mesh.triangles.iter().enumerate().flat_map(sides).collect(), is_flat }
+    }
+
+    /// Whether the vertices at both ends of an edge are where the others there are, to the last bit.
+    fn are_at_one_place(&self, faces: &[Face], sides: &[Side]) -> bool {
+        let mut ends: [Option<Point>; 2] = [None; 2];
+        sides.iter().all(|side| {
+            let face = &faces[side.face];
+            [0, 1].into_iter().all(|step| {
+                let at = (side.side + step) % face.corners.len();
+                let before = (at + face.corners.len() - 1) % face.corners.len();
+                if face.sides[at] == face.sides[before] {
+                    // No vertex of its own, but one that lies on its side.
+                    return true;
+                }
+                let vertex = self.mesh.triangles[face.number][face.sides[at]];
+                let position = self.mesh.positions[vertex as usize];
+                let end = usize::from((step == 0) != side.forward);
+                *ends[end].get_or_insert(position) == position
+            })
+        })
+    }
+
+    /// Whether the mesh joins the face of `a` across that side to another one than that of `b`, and not to a flat one.
+    fn otherwise(&self, faces: &[Face], a: &Side, b: &Side) -> bool {
+        let (face, corners) = (&faces[a.face], self.mesh.triangles[faces[a.face].number]);
+        let side = face.sides[a.side];
+        let across = self.passed.get(&(corners[(side + 1) % 3], corners[side]));
+        across.is_some_and(|&across| !self.is_flat[across] && across != faces[b.face].number)
+    }
+}
+
+/// An end of the shortest side.
+fn among_details(mesh: &Mesh) -> Point {
+    let ends = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+    let ends = ends.map(|ends| ends.map(|v| mesh.positions[v as usize]));
+    let sides = ends.map(|[from, to]| (length(minus(to, from)), from)).filter(|side| side.0 > 0.0);
+    sides.min_by(|x, y| x.0.total_cmp(&y.0)).map_or([0.0; 3], |side| side.1)
 }
 
 /// One point for those nearer than `near`, and the number of each vertex's.
@@ -133,7 +203,7 @@ fn joined(positions: &[Point], near: f64) -> (Vec<Point>, Vec<usize>) {
 }
 
 /// A triangle with the points on its sides as corners; nothing if it is flat.
-fn face(triangle: [usize; 3], points: &[Point], near: f64) -> Option<Face> {
+fn face(number: usize, triangle: [usize; 3], points: &[Point], near: f64) -> Option<Face> {
     let [a, b, c] = triangle.map(|v| points[v]);
     let normal = cross(minus(b, a), minus(c, a));
     let longest = length(minus(b, a)).max(length(minus(c, b))).max(length(minus(a, c)));
@@ -151,23 +221,25 @@ fn face(triangle: [usize; 3], points: &[Point], near: f64) -> Option<Face> {
                 && (0..3).all(|k| points[*v][k] >= low[k] - near && points[*v][k] <= high[k] + near)
         })
         .collect();
-    let mut corners = Vec::new();
+    let (mut corners, mut sides) = (Vec::new(), Vec::new());
     for side in 0..3 {
         let (from, to) = (triangle[side], triangle[(side + 1) % 3]);
         corners.push(from);
         let along = minus(points[to], points[from]);
         let squared = dot(along, along);
+        let on_side = 2.0 * near + SIDE_ROUNDINGS * f64::EPSILON * squared.sqrt();
         let mut on: Vec<(f64, usize)> = close
             .iter()
             .map(|&v| (dot(minus(points[v], points[from]), along) / squared, v))
             .filter(|&(t, v)| {
-                t > 0.0 && t < 1.0 && length(minus(points[v], plus(points[from], along, t))) <= 2.0 * near
+                t > 0.0 && t < 1.0 && length(minus(points[v], plus(points[from], along, t))) <= on_side
             })
             .collect();
         on.sort_by(|a, b| a.0.total_cmp(&b.0));
         corners.extend(on.into_iter().map(|(_, v)| v));
+        sides.resize(corners.len(), side);
     }
-    Some(Face { corners, triangle, normal: unit(normal) })
+    Some(Face { corners, triangle, normal: unit(normal), number, sides })
 }
 
 /// The angle at which a face leaves an edge, looking from its end to its beginning.
@@ -311,7 +383,11 @@ mod tests {
             let cells = Cells::new([0; 3], [2; 3], |[x, y, z]| bits >> (x + 2 * y + 4 * z) & 1 == 1);
             let surface = cells.surface();
             let topology = Topology { components: surface.components, euler: surface.euler };
-            assert_eq!(parted(&surface.mesh, 1e-9), Some(Parted { topology, pinched: false }), "{bits}");
+            assert_eq!(
+                parted(&surface.mesh, 1e-9),
+                Some(Parted { topology, pinched: false, mispaired: 0 }),
+                "{bits}"
+            );
         }
     }
 
@@ -322,7 +398,7 @@ mod tests {
         let mut mesh = boxed([0.0; 3], [1.0, 1.0, 3.0]);
         mesh.append(&boxed([1.0, 1.0, 1.0], [2.0, 2.0, 5.0])).expect("small");
         let topology = Topology { components: 2, euler: 4 };
-        assert_eq!(parted(&mesh, 1e-9), Some(Parted { topology, pinched: false }));
+        assert_eq!(parted(&mesh, 1e-9), Some(Parted { topology, pinched: false, mispaired: 0 }));
     }
 
     #[test]
