@@ -6,6 +6,7 @@ use rand::rngs::ChaCha8Rng;
 use trisect::{BooleanOptions, Control, Mesh, Solid};
 
 use crate::judge::cases::Case;
+use crate::judge::contacts;
 use crate::judge::many::{MANY_FROM, Many};
 use crate::judge::origin::compared_at_origin;
 use crate::judge::surface::Properties;
@@ -113,4 +114,21 @@ fn what_rounding_turns_far_from_the_origin_is_no_wall() {
         }
     }
     assert!(differ.is_empty(), "{differ:?}");
+}
+
+#[test]
+fn symmetric_differences_of_many_are_connected_as_their_material_is() {
+    // Edges of one operand pass between material of two others: what touches along them changes sides. And edges of one unit in the last
+    // place with four faces, which had no middle to come apart in and kept triangles without area.
+    let seeds = [8_589_940_811, 8_589_934_617, 8_589_934_857, 8_589_940_987, 8_589_942_669, 8_589_941_398];
+    for seed in seeds {
+        let case = Many::new(seed);
+        let solids: Vec<Solid> = case.merged().iter().map(solid).collect();
+        let outcome = BooleanOptions::new().evaluate(&case.expression, &solids).expect("no limits");
+        let found = Properties::of(outcome.solid().mesh());
+        assert!(found.closed && found.manifold && found.zero_area == 0, "seed {seed}: {found:?}");
+        let parted = [1e-9, 1e-11, 1e-13, 1e-16].map(|reach| contacts::parted(outcome.solid().mesh(), reach));
+        let mispaired = parted.iter().flatten().map(|parted| parted.mispaired).min();
+        assert_eq!(mispaired, Some(0), "seed {seed}");
+    }
 }

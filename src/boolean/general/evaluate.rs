@@ -63,7 +63,9 @@ pub(crate) fn evaluate(
     let settings = tidy::Settings {
         remove_vertices: finish.remove_vertices,
         rounding,
-        glue: false,
+        // What one operand bounds from inside, another may bound from outside: where they meet in an edge, only the order round it
+        // tells which faces bound the same material.
+        glue: true,
         contacts: general.contacts,
         always: cut.has_slivers || !sums.done.is_empty(),
     };

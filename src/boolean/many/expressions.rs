@@ -3,6 +3,7 @@
 use super::groups::{MergedGroups, merged_groups};
 use super::made::Made;
 use super::policy::{Embed, Policy, no_operands};
+use super::same::first_copies;
 use crate::boolean::arrangement::self_crossings::is_nearly_simple;
 use crate::boolean::complex::classes::Faces;
 use crate::boolean::complex::ids::FaceId;
@@ -68,13 +69,16 @@ pub(super) fn run(
             operands.len()
         )));
     }
-    // 1. One arrangement for all.
+    // 1. One arrangement for all; copies of others have no triangles in it.
+    let (first, nothing) = (first_copies(operands), Solid::default());
+    let is_first = |(i, solid)| if first[i] == i { solid } else { &nothing };
+    let distinct: Vec<&Solid> = operands.iter().copied().enumerate().map(is_first).collect();
     let groups = merged_groups(operands);
     let of_triangles: Vec<Vec<u32>> =
         operands.iter().enumerate().map(|(i, solid)| groups.of_operand(i, solid)).collect();
     let fuse = wanted.policy.contact == Contact::Fuse;
-    let crossed = Crossed::new(operands, runner)?;
-    let classes = classes(operands, &of_triangles, &crossed, wanted.policy);
+    let crossed = Crossed::new(&distinct, runner)?;
+    let classes = classes(&distinct, &of_triangles, &crossed, wanted.policy);
     let crossed = crossed.with_groups(classes.unwrap_or_else(|| of_triangles.clone()));
     let general = General::new(crossed, fuse, runner)?;
     // 2. Each expression.
@@ -82,7 +86,8 @@ pub(super) fn run(
         general: &general,
         wanted,
         operands,
-        states: states(&general, operands, runner)?,
+        first: &first,
+        states: states(&general, &distinct, &first, runner)?,
         groups: &groups,
         of_triangles: &of_triangles,
     };
@@ -94,6 +99,8 @@ struct Arranged<'a> {
     general: &'a General,
     wanted: &'a Wanted<'a>,
     operands: &'a [&'a Solid],
+    /// For each operand the first that has its surface, which stands for it.
+    first: &'a [usize],
     states: Vec<OperandState>,
     groups: &'a MergedGroups,
     /// By operand, the result's group of each triangle.
@@ -107,7 +114,8 @@ impl Arranged<'_> {
         let rule = |operand: usize| rules.get(operand).copied().unwrap_or(policy.rule);
         // 1. Which labels are inside.
         let is_inside = |label: &[(u32, i32)]| {
-            expression.contains(&|operand| rule(operand).is_inside(winding(label, operand as u32)))
+            expression
+                .contains(&|operand| rule(operand).is_inside(winding(label, self.first[operand] as u32)))
         };
         let inside: Vec<bool> =
             self.general.faces.labels.all().iter().map(|label| is_inside(label)).collect();
@@ -175,8 +183,13 @@ fn classes(
     Some(operands.iter().enumerate().map(of_operand).collect())
 }
 
-/// What is known of each operand.
-fn states(general: &General, operands: &[&Solid], runner: Runner<'_>) -> Result<Vec<OperandState>, Error> {
+/// What is known of each operand; of copies, what is known of the `first`.
+fn states(
+    general: &General,
+    operands: &[&Solid],
+    first: &[usize],
+    runner: Runner<'_>,
+) -> Result<Vec<OperandState>, Error> {
     let surfaces = &general.surfaces;
     let mut counts = vec![[0; 2]; operands.len()];
     let mut count = |faces: [FaceId; 2], kind: usize| {
@@ -201,7 +214,9 @@ fn states(general: &General, operands: &[&Solid], runner: Runner<'_>) -> Result<
             inward_volume: if inwards { inward_volume(general, operand, runner)? } else { 0.0 },
         })
     };
-    (0..).zip(operands).zip(counts).map(state).collect()
+    let states: Vec<OperandState> =
+        (0..).zip(operands).zip(counts).map(state).collect::<Result<_, Error>>()?;
+    Ok(first.iter().map(|&first| states[first].clone()).collect())
 }
 
 /// The volume of what an operand winds around more often inwards than outwards.

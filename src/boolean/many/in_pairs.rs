@@ -2,7 +2,7 @@
 //!
 //! A union merges neighbours first (space is halved again and again), so that most merges are local and pieces vanish
 //! early; a difference takes the union of all tools off the first operand in one step; an intersection starts with the
-//! smallest operands; a symmetric difference goes from left to right.
+//! smallest operands. Symmetric differences are of two operands only: of more they are made in one arrangement.
 
 use std::borrow::Cow;
 
@@ -10,6 +10,7 @@ use super::groups::{MergedGroups, merged_groups};
 use super::made::Made;
 use super::merge_order;
 use super::policy::{Embed, Policy, no_operands};
+use super::same::first_copies;
 use crate::boolean::complex::operation::{Contact, Operation};
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::pair::{self, Attributed, Combined, Settings};
@@ -70,6 +71,9 @@ pub(super) fn run(
     // 1. Every operand as a 2-manifold, with the origins and groups of its triangles.
     let groups = merged_groups(operands);
     let mut partials = manifold_partials(operands, &groups);
+    if let Some(nothing) = without_copies(operation, operands, &mut partials) {
+        partials = vec![nothing];
+    }
     // 2. Pair by pair.
     let has_attributes = operands.iter().any(|solid| !solid.mesh().attributes.is_empty());
     let engine = Engine { policy, givens: has_attributes.then_some(operands), runner };
@@ -86,9 +90,9 @@ pub(super) fn run(
         Operation::Intersection => {
             // Smallest first; the order of equal ones is that of the arguments.
             partials.sort_by_key(|partial| partial.solid.mesh().triangles.len());
-            engine.fold(Operation::Intersection, partials)?
+            engine.fold(operation, partials)?
         }
-        Operation::SymmetricDifference => engine.fold(Operation::SymmetricDifference, partials)?,
+        Operation::SymmetricDifference => engine.fold(operation, partials)?,
     };
     // 3. What is known of the result.
     let notes = Notes {
@@ -112,6 +116,22 @@ pub(super) fn run(
         is_clean,
     };
     made.finish(policy, operands, runner)
+}
+
+/// Leaves copies of others out, which change nothing; or returns the empty result where something is taken off itself.
+fn without_copies<'a>(
+    operation: Operation,
+    operands: &[&Solid],
+    partials: &mut Vec<Partial<'a>>,
+) -> Option<Partial<'a>> {
+    let first = first_copies(operands);
+    let takes_off = matches!(operation, Operation::Difference | Operation::SymmetricDifference);
+    if takes_off && first[1..].contains(&0) {
+        return Some(Partial::new(Cow::Owned(Solid::default()), Origins::default(), Vec::new()));
+    }
+    let mut is_first = first.iter().enumerate().map(|(i, &first)| i == first);
+    partials.retain(|_| is_first.next().unwrap_or(true));
+    None
 }
 
 /// Every operand as a 2-manifold, with the origins and groups of its triangles.

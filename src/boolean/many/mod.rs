@@ -2,6 +2,7 @@
 //!
 //! - `options`: the settings of a call;
 //! - `in_pairs`: operands that do not cross themselves, pair by pair;
+//! - `same`: which operands are copies of others;
 //! - `expressions`: any operands and any expressions, in one arrangement;
 //! - `made`: the last step of both.
 
@@ -12,6 +13,7 @@ pub(super) mod made;
 mod merge_order;
 pub(super) mod options;
 pub(super) mod policy;
+mod same;
 pub(super) mod trim;
 
 use crate::boolean::complex::operation::Operation;
@@ -24,7 +26,8 @@ use policy::Policy;
 
 use super::snapping;
 
-/// Runs an operation over all operands: in one arrangement where one of them crosses or touches itself, else pair by pair.
+/// Runs an operation over all operands: in one arrangement where one of them crosses or touches itself, or where what pairs make
+/// would do so, else pair by pair.
 pub(crate) fn run(
     policy: Policy,
     rules: &[Rule],
@@ -32,15 +35,23 @@ pub(crate) fn run(
     operands: &[&Solid],
     runner: Runner<'_>,
 ) -> Result<Outcome, Error> {
+    let mut in_pairs = are_simple_in_between(operation, operands.len());
     for solid in operands {
-        if !expressions::is_simple(policy, solid, runner.control)? {
-            let expression = expressions::of_operation(operation, operands.len());
-            let wanted = Wanted { expressions: &[expression], rules, policy };
-            let mut outcomes = expressions::run(&wanted, operands, runner)?;
-            return Ok(outcomes.swap_remove(0));
-        }
+        in_pairs = in_pairs && expressions::is_simple(policy, solid, runner.control)?;
     }
-    in_pairs::run(policy, operation, operands, runner)
+    if in_pairs {
+        return in_pairs::run(policy, operation, operands, runner);
+    }
+    let expression = expressions::of_operation(operation, operands.len());
+    let wanted = Wanted { expressions: &[expression], rules, policy };
+    let mut outcomes = expressions::run(&wanted, operands, runner)?;
+    Ok(outcomes.swap_remove(0))
+}
+
+/// Whether what pairs make on the way does not touch itself. A symmetric difference does, along the whole curve in which its operands
+/// cross: where a third operand contains that curve, what is inside becomes outside, and another pair of sides is connected there.
+fn are_simple_in_between(operation: Operation, operands: usize) -> bool {
+    operation != Operation::SymmetricDifference || operands <= 2
 }
 
 /// Runs `run` on the operands, welded to each other where the policy says so.

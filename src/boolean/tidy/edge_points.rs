@@ -117,10 +117,14 @@ fn boxes_along(p: Vec3A, q: Vec3A, points: usize) -> impl Iterator<Item = Aabb> 
     })
 }
 
-/// Bit set of operands: the faces of both.
-const BOTH: u8 = 3;
+/// Operands as bits; of more than so many, some have one in common.
+type Operands = u64;
 
-/// Edges of one operand along which edges of the other run, with the vertices of these.
+fn bit(owner: u32) -> Operands {
+    1 << (owner % Operands::BITS)
+}
+
+/// Edges of one operand along which edges of others run, with the vertices of these.
 pub(super) fn points_along_edges(
     patch: &Patch<'_>,
     half_edges: &HalfEdges,
@@ -128,15 +132,15 @@ pub(super) fn points_along_edges(
 ) -> Result<Splits, Error> {
     // 1. All edges, with a bit for each operand whose faces are there.
     let edges = edges_with_faces(half_edges).map(|(edge, faces)| {
-        let operand = |face: LocalFace| patch[face].origin.operand;
-        (edge, faces.fold(0u8, |of, face| of | 1 << operand(face)))
+        let owner = |face: LocalFace| patch.source().owner(patch[face].origin);
+        (edge, faces.fold(0, |of, face| of | bit(owner(face))))
     });
-    let edges: Vec<(Edge, u8)> = edges.collect();
+    let edges: Vec<(Edge, Operands)> = edges.collect();
     // 2. Each edge from both its ends, those of the same operands together.
     let from_ends = edges.iter().flat_map(|&((u, v), of)| [(u.0, (of, v)), (v.0, (of, u))]);
     let mut from_points = Buckets::new(patch.point_count(), from_ends);
-    from_points.each_mut().for_each(<[(u8, LocalPoint)]>::sort_unstable);
-    // 3. For each edge the vertices on it that edges of the other operand lead to.
+    from_points.each_mut().for_each(<[(Operands, LocalPoint)]>::sort_unstable);
+    // 3. For each edge the vertices on it that edges of other operands lead to.
     let mut splits = Splits::new(patch);
     for (i, &(edge, of)) in edges.iter().enumerate() {
         if i % EDGES_BETWEEN_CHECKS == 0 {
@@ -155,23 +159,21 @@ pub(super) fn points_along_edges(
 }
 
 /// The vertices that one comes by on an edge from `u` to `v`, of the operands `of`, from vertex to vertex by edges that
-/// are, together with it, of both operands.
+/// are, together with it, of several operands.
 fn walk_along(
     patch: &Patch<'_>,
-    from_points: &Buckets<(u8, LocalPoint)>,
+    from_points: &Buckets<(Operands, LocalPoint)>,
     (u, v): Edge,
-    of: u8,
+    of: Operands,
 ) -> Vec<LocalPoint> {
     let mut on: Vec<LocalPoint> = Vec::new();
     let mut next = 0;
     let mut around = from_points.get(u.index());
     loop {
-        let ends = (1..=BOTH).filter(|&of_x| of | of_x == BOTH).flat_map(|of_x| {
-            let of_these = around.iter().skip_while(move |entry| entry.0 < of_x);
-            of_these.take_while(move |entry| entry.0 == of_x).map(|entry| entry.1)
-        });
-        for x in ends {
-            if x != u && x != v && !on.contains(&x) && lies_between(patch, u, x, v) {
+        let ends = around.iter().filter(|entry| (of | entry.0).count_ones() > 1);
+        for &(_, x) in ends {
+            let is_new = x != u && x != v && !on.contains(&x);
+            if is_new && patch.is_complete(x) && lies_between(patch, u, x, v) {
                 on.push(x);
             }
         }

@@ -114,7 +114,8 @@ fn attempt(
         lines::remove_flat_by_line(&mut patch, merge);
         chain::remove_flat(&mut patch);
         patch.cancel();
-        // 2. Points at the same place become one, where that is asked for.
+        // 2. The ends of edges that cannot come apart become one; all points at the same place do where that is asked for.
+        snap::snap_ends(&mut patch);
         if settings.glue && has_contacts && round == 1 {
             snap::snap_coincident(&mut patch);
         }

@@ -23,6 +23,31 @@ pub(super) fn snap_coincident(patch: &mut Patch<'_>) {
     }
 }
 
+/// Makes one point of both ends of an edge without length, and of an edge of several pairs of triangles between the ends of which no
+/// number lies, so that the pairs could not come apart in its middle. Both ends must be complete; no vertex of an operand moves.
+pub(super) fn snap_ends(patch: &mut Patch<'_>) {
+    let has_middle = |&(u, v): &(LocalPoint, LocalPoint)| {
+        let (p, q) = (patch.position(u), patch.position(v));
+        let middle: [f64; 3] = std::array::from_fn(|k| 0.5 * p[k] + 0.5 * q[k]);
+        middle != *p && middle != *q
+    };
+    // 1. Edges without a middle, once for each triangle there.
+    let ascending = |(u, v): (LocalPoint, LocalPoint)| (u.min(v), u.max(v));
+    let edges = patch.faces().flat_map(|(_, face)| face.sides()).map(ascending);
+    let mut short: Vec<(LocalPoint, LocalPoint)> = edges.filter(|edge| !has_middle(edge)).collect();
+    short.sort_unstable();
+    // 2. Those that stand in the way.
+    let is_in_the_way = |edge: &&[(LocalPoint, LocalPoint)]| {
+        let (u, v) = edge[0];
+        let has_no_length = patch.position(u) == patch.position(v);
+        (has_no_length || edge.len() > 2 && patch.is_new(v)) && patch.is_complete(u) && patch.is_complete(v)
+    };
+    let ends: Vec<_> = short.chunk_by(PartialEq::eq).filter(is_in_the_way).map(|edge| edge[0]).collect();
+    if !ends.is_empty() {
+        snap_pairs(patch, &ends);
+    }
+}
+
 /// The pairs of successive points that are at the same place.
 pub(super) fn pairs_at_one_place(patch: &Patch<'_>, points: &[LocalPoint]) -> Vec<(LocalPoint, LocalPoint)> {
     let is_coincident = |pair: &&[LocalPoint]| patch.position(pair[0]) == patch.position(pair[1]);

@@ -6,7 +6,7 @@
 use crate::boolean::arrangement::identify::Identification;
 use crate::boolean::arrangement::points::Points;
 use crate::boolean::classify::body::Body;
-use crate::boolean::complex::ids::PointId;
+use crate::boolean::complex::ids::{FaceId, PointId};
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::rounding::Rounding;
 use crate::boolean::general::shape::Shape;
@@ -130,6 +130,14 @@ impl<'a> Source<'a> {
             Ground::Shape(shape) => shape.source(origin),
         };
         (source, Projection::of(&source))
+    }
+
+    /// The operand that a face comes from, of all there are.
+    pub(super) fn owner(&self, origin: Origin) -> u32 {
+        match self.ground {
+            Ground::Body(_) => origin.operand,
+            Ground::Shape(shape) => shape.general.surfaces.owner(FaceId::new(origin.triangle)),
+        }
     }
 
     /// Whether two faces look the same way from one plane and belong to one group: the edge between them is coplanar, and
