@@ -66,7 +66,7 @@ pub(crate) struct Hollow {
     #[command(flatten)]
     pub(crate) inputs: Inputs,
     /// The thickness of the wall
-    #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true, required = true)]
+    #[arg(long, alias = "thickness", value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true, required = true)]
     pub(crate) wall: f64,
     /// A hole through the wall, square to the surface at the place nearest to a point; may be repeated
     #[arg(long, value_name = "X,Y,Z:RADIUS", value_parser = drain, allow_hyphen_values = true)]

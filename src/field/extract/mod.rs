@@ -83,8 +83,8 @@ pub struct Extracted {
     pub divided_cells: usize,
     /// Side of the smallest cube used.
     pub smallest_cell: f64,
-    /// The largest deviation from the field's zero found at the middles of the triangles, to first order (the
-    /// value over the length of the gradient).
+    /// The largest deviation from the field's zero found at the middles of the triangles, and of large ones at six places more: to first
+    /// order (the value over the length of the gradient) or along the normal of the triangle, whichever is less.
     pub deviation: f64,
     /// Degrees that the normals of 95 of a hundred triangles are within of the field's gradient at their middles, reversed.
     pub normal_deviation: f64,

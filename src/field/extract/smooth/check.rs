@@ -10,7 +10,19 @@ use crate::{Control, Error};
 /// Triangles looked at before limits are checked.
 const AT_ONCE: usize = 128;
 
-/// How a triangle follows the field, at its middle.
+/// Of the tolerance: triangles with a longer side are measured at `PLACES`, too. Shorter ones are about the size of the cells.
+const LARGE: f64 = 4.0;
+/// Weights of the corners: half way from the middle to each, and next to the middle of each side, where an even bend is farthest off.
+const PLACES: [[f64; 3]; 6] = [
+    [0.66, 0.17, 0.17],
+    [0.17, 0.66, 0.17],
+    [0.17, 0.17, 0.66],
+    [0.48, 0.48, 0.04],
+    [0.04, 0.48, 0.48],
+    [0.48, 0.04, 0.48],
+];
+
+/// How a triangle follows the field: its normal at its middle, its distance there and, of a large one, in other places.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fit {
     /// Distance from the surface, to first order; where the field has no gradient, infinite off the surface.
@@ -19,28 +31,57 @@ pub(super) struct Fit {
     pub(super) angle: f64,
 }
 
-/// The fits of triangles given by their corners.
+/// The fits of triangles given by their corners, at their middles alone.
+pub(super) fn fits_at_middles(
+    triangles: &[[DVec3; 3]],
+    nearby: &Nearby<'_>,
+    control: &Control,
+) -> Result<Vec<Fit>, Error> {
+    measured(triangles, nearby, control, |_| &[])
+}
+
+/// The fits of triangles given by their corners; deviations of large ones are the largest of seven places.
 pub(super) fn fits(
     triangles: &[[DVec3; 3]],
     nearby: &Nearby<'_>,
     control: &Control,
 ) -> Result<Vec<Fit>, Error> {
+    let large = LARGE * nearby.reach();
+    let is_large = |[a, b, c]: &[DVec3; 3]| a.distance(*b).max(b.distance(*c)).max(c.distance(*a)) > large;
+    measured(triangles, nearby, control, |corners| if is_large(corners) { &PLACES } else { &[] })
+}
+
+fn measured(
+    triangles: &[[DVec3; 3]],
+    nearby: &Nearby<'_>,
+    control: &Control,
+    places: impl Fn(&[DVec3; 3]) -> &'static [[f64; 3]] + Sync,
+) -> Result<Vec<Fit>, Error> {
     let pieces = work::pieces(triangles.len(), AT_ONCE, control, "check", |range| {
         let mut scratch = Scratch::default();
-        let fit = |[a, b, c]: &[DVec3; 3]| {
-            let normal = (*b - *a).cross(*c - *a).normalize_or_zero();
-            let middle = (*a + *b + *c) / 3.0;
-            match nearby.look(middle, &mut scratch) {
-                Some(look) => Fit {
-                    deviation: look.depth.abs(),
-                    angle: normal.dot(look.outward).clamp(-1.0, 1.0).acos(),
-                },
-                None => Fit { deviation: nearby.deviation(middle, &mut scratch), angle: 0.0 },
+        let fit = |corners: &[DVec3; 3]| {
+            let [a, b, c] = *corners;
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            let mut fit = fit_at((a + b + c) / 3.0, normal, nearby, &mut scratch);
+            for [u, v, w] in places(corners) {
+                let place = a * *u + b * *v + c * *w;
+                fit.deviation = fit.deviation.max(fit_at(place, normal, nearby, &mut scratch).deviation);
             }
+            fit
         };
         Ok(triangles[range].iter().map(fit).collect::<Vec<Fit>>())
     })?;
     Ok(pieces.concat())
+}
+
+/// How a facet with this normal follows the field at one of its places.
+fn fit_at(place: DVec3, normal: DVec3, nearby: &Nearby<'_>, scratch: &mut Scratch) -> Fit {
+    match nearby.under(place, normal, scratch) {
+        Some(look) => {
+            Fit { deviation: look.depth.abs(), angle: normal.dot(look.outward).clamp(-1.0, 1.0).acos() }
+        }
+        None => Fit { deviation: nearby.deviation(place, scratch), angle: 0.0 },
+    }
 }
 
 /// The angle that 95 of a hundred triangles are within, in degrees; 0 if there are none.

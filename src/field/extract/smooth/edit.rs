@@ -24,7 +24,7 @@ const COLLAPSE_ROUNDS: usize = 12;
 /// Triangles thinner than this quality do not come of a collapse, unless there were thinner ones before.
 const QUALITY: f64 = 0.3;
 /// Radians that a triangle is off when anything better will do: 20 degrees.
-const MENDED: f64 = 20.0 * std::f64::consts::PI / 180.0;
+pub(super) const MENDED: f64 = 20.0 * std::f64::consts::PI / 180.0;
 /// The thinnest triangle that may come of mending.
 const LEAST_QUALITY: f64 = 0.05;
 /// Triangles around a vertex, at most, after a collapse.
@@ -53,7 +53,7 @@ pub(super) fn flip_all(net: &mut Net, limits: Limits) {
 }
 
 /// Flips one edge if that is better. The ends of the new one.
-fn flip(net: &mut Net, a: u32, b: u32, limits: Limits) -> Option<[u32; 2]> {
+pub(super) fn flip(net: &mut Net, a: u32, b: u32, limits: Limits) -> Option<[u32; 2]> {
     let beside = net.beside(a, b)?;
     let [left, right] = beside;
     if net.star(a).len() < 4 || net.star(b).len() < 4 || net.is_crease(a, b, beside) {
@@ -124,19 +124,10 @@ fn collapsed_cost(net: &Net, from: u32, to: u32, beside: [u32; 2], limits: Limit
         Kind::Crease if crease => {}
         _ => return None,
     }
-    // 1. The surface stays one: the two have no other common neighbours than the corners between them, which keep three triangles.
-    let [c, d] = [net.opposite(beside[0], to), net.opposite(beside[1], from)];
-    let common = net.neighbours(from).filter(|&x| net.neighbours(to).any(|y| x == y)).count();
-    let around = net.star(from).len() + net.star(to).len();
-    if common != 2
-        || c == d
-        || net.star(c).len() < 4
-        || net.star(d).len() < 4
-        || !(7..=MOST_AROUND + 4).contains(&around)
-    {
+    if !stays_one(net, from, to, beside) {
         return None;
     }
-    // 2. The triangles that follow the vertex.
+    // The triangles that follow the vertex.
     let mut worst = Shape { angle: 0.0, quality: 1.0 };
     let (mut before, mut most_sag) = (0.0, limits.sag);
     for &triangle in net.star(from) {
@@ -170,4 +161,17 @@ fn collapsed_cost(net: &Net, from: u32, to: u32, beside: [u32; 2], limits: Limit
         cost += shape.cost();
     }
     (!mending || cost < before).then_some(cost)
+}
+
+/// Whether the surface stays one closed surface if `from` is moved into `to`: the two have no other common neighbours than the corners
+/// between them, which keep three triangles.
+pub(super) fn stays_one(net: &Net, from: u32, to: u32, beside: [u32; 2]) -> bool {
+    let [c, d] = [net.opposite(beside[0], to), net.opposite(beside[1], from)];
+    let common = net.neighbours(from).filter(|&x| net.neighbours(to).any(|y| x == y)).count();
+    let around = net.star(from).len() + net.star(to).len();
+    common == 2
+        && c != d
+        && net.star(c).len() >= 4
+        && net.star(d).len() >= 4
+        && (7..=MOST_AROUND + 4).contains(&around)
 }

@@ -15,11 +15,12 @@ use crate::{Control, Error, Mesh};
 
 /// Degrees between normals that a crease has at least; less is treated as smooth.
 pub(super) const LEAST_JUMP: f64 = 6.0;
-/// Of the way to the middles of triangles: how near a vertex is looked at for a jump.
-const NEAR: f64 = 0.25;
-/// Of the difference at the middles of the triangles: a jump keeps at least this much of it near the vertex. On a smooth part a
-/// quarter is left (see `NEAR`).
-const KEPT: f64 = 0.6;
+/// Of the way to the middles of triangles: how near a vertex is looked at for a jump; and of the difference at the middles, what a jump
+/// keeps there at least. On a smooth part a quarter and a twentieth are left. (What passes the first but not the second lies beside a
+/// crease, not on it.)
+const NEAR: [(f64, f64); 2] = [(0.25, 0.6), (0.05, 0.3)];
+/// The same for how near the planes are taken whose common point is on the crease.
+const DRAWN_NEAR: [f64; 2] = [0.25, 0.05];
 /// Of the largest difference at a vertex: normals nearer to each other than this are of one side.
 const ONE_SIDE: f64 = 0.3;
 /// Of the tolerance: vertices of creases that are farther from the surface are moved.
@@ -35,7 +36,11 @@ pub(super) fn net(mesh: &Mesh, nearby: &Nearby<'_>, control: &Control) -> Result
     // 1. Which way the surface faces at every triangle.
     let sides = work::pieces(mesh.triangles.len(), AT_ONCE, control, "normals", |range| {
         let mut scratch = Scratch::default();
-        let side = |corners: &[u32; 3]| nearby.look(middle(*corners), &mut scratch).map(|look| look.outward);
+        let side = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(place);
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            nearby.under(middle(*corners), normal, &mut scratch).map(|look| look.outward)
+        };
         Ok(mesh.triangles[range].iter().map(side).collect::<Vec<_>>())
     })?;
     let sides: Vec<Option<DVec3>> = sides.concat();
@@ -97,14 +102,22 @@ fn looked_at(
     let jump = LEAST_JUMP.to_radians();
     let differs = |normal: &DVec3| own.is_none_or(|own| own.outward.angle_between(*normal) > jump);
     if around.iter().any(differs) {
-        let near: Option<Vec<DVec3>> = middles
-            .iter()
-            .map(|&middle| nearby.look(place.lerp(middle, NEAR), scratch).map(|look| look.outward))
-            .collect();
-        let near = near?;
-        let (far_apart, near_apart) = (spread(around), spread(&near));
-        if near_apart > jump && near_apart > KEPT * far_apart {
-            let normals = sides_of(&near, (ONE_SIDE * near_apart).max(jump));
+        let far_apart = spread(around);
+        let mut jumping = None;
+        for (part, kept) in NEAR {
+            let looked: Option<Vec<DVec3>> = middles
+                .iter()
+                .map(|&middle| nearby.look(place.lerp(middle, part), scratch).map(|look| look.outward))
+                .collect();
+            let near = looked?;
+            let apart = spread(&near);
+            let jumps = apart > jump && apart > kept * far_apart;
+            jumping = jumps.then(|| sides_of(&near, (ONE_SIDE * apart).max(jump)));
+            if !jumps {
+                break;
+            }
+        }
+        if let Some(normals) = jumping {
             let place = own.map_or(place, |own| drawn_in(place, own.depth, middles, nearby, scratch));
             return Some(Vertex { place, normals, kind: Kind::Crease, calm: false });
         }
@@ -126,7 +139,7 @@ fn drawn_in(
         return place;
     }
     let mut at = place;
-    for near in [NEAR, 0.2 * NEAR] {
+    for near in DRAWN_NEAR {
         let planes: Vec<(DVec3, f64)> = middles
             .iter()
             .filter_map(|&middle| nearby.look(at.lerp(middle, near), scratch).map(|look| (middle, look)))

@@ -9,7 +9,8 @@
 //!    surface keeps within the limits without them (`edit`); vertices are moved along the surface (`place`);
 //! 3. where triangles still face another way than the field, their longest edge gets a new vertex, if it is longer than the smallest
 //!    cell;
-//! 4. the field is asked at the middles of all triangles, and the exact test for crossings is run (`check`). Should there be a
+//! 4. triangles that face quite another way than the surface, most of them where a crease passes, are mended one by one (`mend`);
+//! 5. the field is asked at the middles of all triangles, and the exact test for crossings is run (`check`). Should there be a
 //!    crossing, or a triangle farther off than the tolerance, all begins again from the cells' surface, and the vertices around are moved
 //!    and left out only where triangles face the wrong way; then not at all; in the end the cells' surface is the result.
 //!
@@ -20,6 +21,7 @@ mod check;
 mod cost;
 mod edit;
 mod features;
+mod mend;
 mod nearby;
 mod net;
 mod place;
@@ -44,8 +46,10 @@ const COLLAPSED_ANGLE: f64 = 3.0;
 const DIVIDED_ANGLE: f64 = 5.0;
 /// Times that triangles are divided: each halves an edge.
 const DIVISIONS: usize = 4;
+/// Times that single triangles are mended, and vertices around them moved.
+const MENDINGS: usize = 3;
 /// Times that everything is tried, at most, each with more vertices frozen than before.
-const ATTEMPTS: usize = 3;
+const ATTEMPTS: usize = 6;
 
 /// Bytes held for each vertex of the cells' surface: the vertex twice, its star, and two triangles with the ways they face.
 const BYTES: usize = 500;
@@ -87,7 +91,7 @@ pub(super) fn smoothed(
         if faults.is_empty() {
             return Ok(measured(smooth, &fits));
         }
-        care::take_care(&mesh, &faults, f64::from(1u32 << attempt.min(2)), &mut care);
+        care::take_care(&mesh, &faults, f64::from(1u32 << attempt.min(4)), &mut care);
     }
     rough(mesh, nearby, control)
 }
@@ -135,8 +139,14 @@ fn improve(
         }
         edit::flip_all(net, limits);
     }
-    place::relax(net, nearby, limits, control)?;
-    edit::flip_all(net, limits);
+    for _ in 0..MENDINGS {
+        mend::mend(net, limits, tolerance);
+        sharpen::sharpen(net, nearby, control)?;
+        edit::flip_all(net, limits);
+        edit::collapse_all(net, limits);
+        place::relax(net, nearby, limits, control)?;
+        edit::flip_all(net, limits);
+    }
     Ok(())
 }
 
@@ -155,7 +165,7 @@ fn to_divide(
         .collect();
     let places: Vec<[DVec3; 3]> =
         present.iter().map(|corners| corners.map(|corner| net.place(corner))).collect();
-    let fits = check::fits(&places, nearby, control)?;
+    let fits = check::fits_at_middles(&places, nearby, control)?;
     let mut edges = Vec::new();
     for ([a, b, c], fit) in present.into_iter().zip(fits) {
         if !(fit.angle > DIVIDED_ANGLE.to_radians() || fit.deviation > 0.9 * tolerance) {

@@ -16,6 +16,13 @@ const STEPS: usize = 8;
 /// Roundings of the largest coordinate within which a point is on the surface.
 const ROUNDINGS: f64 = 4.0;
 
+/// The cosine of the angle within which the gradient leads the way of a facet: 15 degrees.
+const ALIKE: f64 = 0.966;
+/// Of the reach: how far along the normal of a facet the surface is looked for, step by step.
+const PROBES: [f64; 6] = [0.05, 0.2, 0.5, 0.8, 1.0, 2.0];
+/// Halvings of the last step: to about a thousandth of the reach.
+const HALVINGS: usize = 10;
+
 /// The field, to be asked near its zero set.
 pub(in crate::field::extract) struct Nearby<'a> {
     whole: &'a Tape,
@@ -79,6 +86,48 @@ impl<'a> Nearby<'a> {
         let slope = gradient.length();
         (slope > 0.0 && slope.is_finite() && value.is_finite())
             .then(|| Look { depth: value / slope, outward: gradient / -slope })
+    }
+
+    /// What the field says of a facet with this middle and normal. Where the gradient at the middle leads another way, the surface is asked
+    /// for along the normal: near a crease the value at the middle may be that of the other side, which need not be the nearer one.
+    pub(super) fn under(&self, middle: DVec3, normal: DVec3, scratch: &mut Scratch) -> Option<Look> {
+        let own = self.look(middle, scratch)?;
+        if own.outward.dot(normal) >= ALIKE || normal == DVec3::ZERO {
+            return Some(own);
+        }
+        let pierced = self.pierced(middle, normal, scratch);
+        Some(
+            pierced
+                .filter(|look| look.outward.dot(normal) > own.outward.dot(normal))
+                .filter(|look| look.depth.abs() <= own.depth.abs().max(0.1 * self.reach))
+                .unwrap_or(own),
+        )
+    }
+
+    /// The surface where the line through `from` along the unit vector `normal` leads out of it, if that is within twice the reach.
+    fn pierced(&self, from: DVec3, normal: DVec3, scratch: &mut Scratch) -> Option<Look> {
+        let mut inside = |at: f64| {
+            let place = from + normal * at;
+            self.tape(place).value(place.to_array(), scratch) > 0.0
+        };
+        let way = if inside(0.0) { 1.0 } else { -1.0 };
+        let (mut near, mut far) = (0.0, 0.0);
+        for part in PROBES {
+            far = way * part * self.reach;
+            if inside(far) != (way > 0.0) {
+                break;
+            }
+            near = far;
+        }
+        if near == far {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (near + far);
+            if inside(middle) == (way > 0.0) { near = middle } else { far = middle }
+        }
+        let look = self.look(from + normal * near, scratch)?;
+        Some(Look { depth: far, outward: look.outward })
     }
 
     /// How far the surface is from `place`, as the cells measure it.

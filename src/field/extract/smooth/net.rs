@@ -62,6 +62,17 @@ pub(super) struct Net {
     /// For every triangle which way the surface there faces: it tells which of several normals of a corner is meant.
     sides: Vec<DVec3>,
     stars: Vec<Star>,
+    /// What changes on trial began from.
+    before: Option<Before>,
+}
+
+/// Triangles and stars as they were before a change on trial, each as often as it was changed, and how many of all there were.
+#[derive(Clone, Debug, Default)]
+struct Before {
+    triangles: Vec<(u32, [u32; 3], DVec3)>,
+    stars: Vec<(u32, Star)>,
+    vertices: usize,
+    count: usize,
 }
 
 impl Net {
@@ -72,7 +83,7 @@ impl Net {
                 stars[corner as usize].push(number);
             }
         }
-        Self { vertices, triangles, sides, stars }
+        Self { vertices, triangles, sides, stars, before: None }
     }
 
     pub(super) fn vertex(&self, vertex: u32) -> &Vertex {
@@ -98,6 +109,10 @@ impl Net {
     /// Tells which way the surface faces at a triangle.
     pub(super) fn turn(&mut self, triangle: u32, side: DVec3) {
         self.sides[triangle as usize] = side;
+    }
+
+    pub(super) fn is_present(&self, triangle: u32) -> bool {
+        self.corners(triangle) != GONE
     }
 
     pub(super) fn star(&self, vertex: u32) -> &[u32] {
@@ -163,9 +178,60 @@ impl Net {
         })
     }
 
+    /// Begins changes on trial, which [`Net::undo`] takes back.
+    pub(super) fn try_out(&mut self) {
+        let (vertices, count) = (self.vertices.len(), self.triangles.len());
+        self.before = Some(Before { vertices, count, ..Before::default() });
+    }
+
+    /// The triangles changed on trial, as they were before and as they are: corners, and which way they face.
+    pub(super) fn tried(&self) -> [Vec<([u32; 3], DVec3)>; 2] {
+        let Some(before) = &self.before else { return [Vec::new(), Vec::new()] };
+        let old = before.triangles.iter().filter(|record| (record.0 as usize) < before.count);
+        let mut touched: Vec<(u32, [u32; 3], DVec3)> = old.copied().collect();
+        // The first record of each is what it was in the beginning: the sort is stable.
+        touched.sort_by_key(|record| record.0);
+        touched.dedup_by_key(|record| record.0);
+        let new = (before.count..self.triangles.len()).map(|triangle| triangle as u32);
+        let now = touched.iter().map(|record| record.0).chain(new);
+        let now = now.map(|triangle| (self.corners(triangle), self.side(triangle)));
+        let now = now.filter(|(corners, _)| *corners != GONE).collect();
+        [touched.iter().map(|&(_, corners, side)| (corners, side)).collect(), now]
+    }
+
+    /// Ends changes on trial: all is as before.
+    pub(super) fn undo(&mut self) {
+        let Some(before) = self.before.take() else { return };
+        for (triangle, corners, side) in before.triangles.into_iter().rev() {
+            self.triangles[triangle as usize] = corners;
+            self.sides[triangle as usize] = side;
+        }
+        for (vertex, star) in before.stars.into_iter().rev() {
+            self.stars[vertex as usize] = star;
+        }
+        self.vertices.truncate(before.vertices);
+        self.stars.truncate(before.vertices);
+        self.triangles.truncate(before.count);
+        self.sides.truncate(before.count);
+    }
+
+    /// Notes triangles and stars that are about to change, if that is on trial.
+    fn note(&mut self, triangles: &[u32], vertices: &[u32]) {
+        let Some(before) = &mut self.before else { return };
+        for &triangle in triangles {
+            before.triangles.push((
+                triangle,
+                self.triangles[triangle as usize],
+                self.sides[triangle as usize],
+            ));
+        }
+        before.stars.extend(vertices.iter().map(|&vertex| (vertex, self.stars[vertex as usize].clone())));
+    }
+
     /// Turns the edge from `a` to `b` in the two triangles beside it: from then on it joins the other two corners.
     pub(super) fn flip(&mut self, a: u32, b: u32, [left, right]: [u32; 2]) {
         let (c, d) = (self.opposite(left, b), self.opposite(right, a));
+        self.note(&[left, right], &[a, b, c, d]);
         let side = (self.side(left) + self.side(right)).normalize_or(self.side(left));
         self.triangles[left as usize] = [c, a, d];
         self.triangles[right as usize] = [d, b, c];
@@ -179,6 +245,14 @@ impl Net {
 
     /// Moves `a` into its neighbour `b`. The two triangles between them go.
     pub(super) fn collapse(&mut self, a: u32, b: u32, beside: [u32; 2]) {
+        let apexes = beside.map(|triangle| {
+            let corners = self.corners(triangle);
+            corners.into_iter().find(|&corner| corner != a && corner != b).unwrap_or(a)
+        });
+        if self.before.is_some() {
+            let star = self.stars[a as usize].clone();
+            self.note(&star, &[a, b, apexes[0], apexes[1]]);
+        }
         for triangle in beside {
             for corner in self.triangles[triangle as usize] {
                 if corner != a {
@@ -200,6 +274,7 @@ impl Net {
     /// Puts a vertex on the edge from `a` to `b`.
     pub(super) fn split(&mut self, a: u32, b: u32, [left, right]: [u32; 2], vertex: Vertex) {
         let (c, d) = (self.opposite(left, b), self.opposite(right, a));
+        self.note(&[left, right], &[a, b, c, d]);
         let middle = self.vertices.len() as u32;
         let first = self.triangles.len() as u32;
         self.vertices.push(vertex);
@@ -270,5 +345,25 @@ mod tests {
         net.collapse(6, 5, beside);
         assert_eq!(check(&net), 8);
         assert!(net.star(6).is_empty());
+    }
+
+    #[test]
+    fn changes_on_trial_are_undone() {
+        let mut net = net();
+        let before = net.clone();
+        net.try_out();
+        let beside = net.beside(0, 2).unwrap();
+        net.split(0, 2, beside, Vertex::free(DVec3::new(0.5, 0.5, 0.0), DVec3::X));
+        let beside = net.beside(6, 4).unwrap();
+        net.flip(6, 4, beside);
+        let beside = net.beside(6, 5).unwrap();
+        net.collapse(6, 5, beside);
+        let [old, new] = net.tried();
+        // One edge more and one fewer: as many triangles.
+        assert!(old.len() == new.len() && !old.is_empty());
+        net.undo();
+        assert_eq!((net.triangles.clone(), net.stars.clone()), (before.triangles, before.stars));
+        assert_eq!(net.vertices.len(), before.vertices.len());
+        check(&net);
     }
 }
