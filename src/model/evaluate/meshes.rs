@@ -8,17 +8,32 @@ use glam::{DAffine3, DVec3};
 
 use super::ExtractionReport;
 use super::state::State;
-use crate::boolean::{BooleanOptions, Expression, Operation, PlaneCut};
+use crate::boolean::{BooleanOptions, Expression, Leaf, Operation};
 use crate::exact::Plane;
 use crate::field::{Extracted, Extraction, extrude};
 use crate::io::ReadOptions;
 use crate::model::{Kind, Made, Mode};
 use crate::{Error, Mesh, MeshError, Solid};
 
+/// A leaf of a tree of operations.
+enum NodeLeaf {
+    Solid(Arc<Solid>),
+    Below(Plane),
+}
+
+impl NodeLeaf {
+    fn leaf(&self) -> Leaf<'_> {
+        match self {
+            Self::Solid(solid) => Leaf::Solid(solid),
+            Self::Below(plane) => Leaf::Below(*plane),
+        }
+    }
+}
+
 /// The leaves of a tree of operations, each once.
 #[derive(Default)]
 struct Leaves {
-    solids: Vec<Arc<Solid>>,
+    list: Vec<NodeLeaf>,
     /// By node.
     places: BTreeMap<usize, usize>,
     /// Operations met so far.
@@ -118,41 +133,12 @@ impl State<'_> {
 
     /// What an exact operation gives.
     fn of_tree(&mut self, operation: Operation, operands: &[usize], label: &str) -> Result<Mesh, Error> {
-        // 1. Half-spaces have no surface to arrange: they cut what the others make.
-        let planes: Vec<Plane> = operands
-            .iter()
-            .map(|&operand| self.half_space(operand))
-            .filter_map(Result::transpose)
-            .collect::<Result<_, _>>()?;
-        let solids: Vec<usize> = operands
-            .iter()
-            .copied()
-            .filter(|&operand| !matches!(self.half_space(operand), Ok(Some(_))))
-            .collect();
-        let is_bounded = match operation {
-            Operation::Intersection => !solids.is_empty(),
-            Operation::Difference => solids.first() == operands.first(),
-            Operation::Union | Operation::SymmetricDifference => planes.is_empty(),
-        };
-        if !is_bounded {
-            let what = format!(
-                "this {operation} of a half-space is unbounded and has no mesh: intersect it with a body"
-            );
-            return Err(Error::Model(what).in_node(label));
-        }
-        // 2. All others at once.
         let mut leaves = Leaves::default();
-        let expression = self.operation(operation, &solids, &mut leaves)?;
+        let expression = self.operation(operation, operands, &mut leaves)?;
         let options = BooleanOptions::new().control(self.settings.control.clone());
-        let outcome = options.evaluate(&expression, leaves.solids.iter().map(Arc::as_ref));
-        let mut solid = outcome.map_err(|error| error.in_node(label))?.into_solid();
-        // 3. Plane by plane.
-        for plane in planes {
-            let cut = PlaneCut::new(plane).options(options.clone());
-            let kept = if operation == Operation::Difference { cut.above(&solid) } else { cut.below(&solid) };
-            solid = kept.map_err(|error| error.in_node(label))?.into_solid();
-        }
-        Ok(solid.into_mesh())
+        let list: Vec<Leaf<'_>> = leaves.list.iter().map(NodeLeaf::leaf).collect();
+        let outcome = options.evaluate_leaves(&expression, &list);
+        Ok(outcome.map_err(|error| error.in_node(label))?.into_solid().into_mesh())
     }
 
     /// The plane of a node that is a half-space.
@@ -194,17 +180,15 @@ impl State<'_> {
 
     /// An operand of an operation: an operation of its own, unless it is moved or meshed first, else a leaf.
     fn set(&mut self, node: usize, leaves: &mut Leaves) -> Result<Expression, Error> {
+        let plane = self.half_space(node)?;
         let at = &self.model.nodes[node];
         leaves.operations += 1;
         let is_plain = at.extrude.is_none()
             && at.transform == DAffine3::IDENTITY
             && leaves.operations <= MOST_OPERATIONS;
-        if is_plain && self.mode(node, Some(Mode::Exact)) == Mode::Exact {
+        if plane.is_none() && is_plain && self.mode(node, Some(Mode::Exact)) == Mode::Exact {
             match &at.kind {
-                // (With a half-space among its operands it is evaluated by itself.)
-                Kind::Operation(operation, operands)
-                    if operands.iter().all(|&operand| matches!(self.half_space(operand), Ok(None))) =>
-                {
+                Kind::Operation(operation, operands) => {
                     let (operation, operands) = (*operation, operands.clone());
                     return self.operation(operation, &operands, leaves);
                 }
@@ -218,10 +202,13 @@ impl State<'_> {
         if let Some(&place) = leaves.places.get(&node) {
             return Ok(Expression::Operand(place));
         }
-        let solid = self.operand_solid(node)?;
-        leaves.solids.push(solid);
-        leaves.places.insert(node, leaves.solids.len() - 1);
-        Ok(Expression::Operand(leaves.solids.len() - 1))
+        let leaf = match plane {
+            Some(plane) => NodeLeaf::Below(plane),
+            None => NodeLeaf::Solid(self.operand_solid(node)?),
+        };
+        leaves.list.push(leaf);
+        leaves.places.insert(node, leaves.list.len() - 1);
+        Ok(Expression::Operand(leaves.list.len() - 1))
     }
 
     fn loaded(&mut self, path: &Path) -> Result<Mesh, Error> {
