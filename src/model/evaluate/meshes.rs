@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 
 use super::ExtractionReport;
 use super::state::State;
-use crate::boolean::{BooleanOptions, Expression, Leaf, Operation};
+use crate::boolean::{Expression, Leaf, Operation};
 use crate::exact::Plane;
 use crate::field::{Extracted, Extraction, extrude};
 use crate::io::ReadOptions;
@@ -85,7 +85,7 @@ impl State<'_> {
                     return Err(unbounded("a half-space", instead).in_node(label));
                 }
                 Kind::Reference(_, target) => (*self.operand_solid(*target)?).mesh().clone(),
-                Kind::Mesh(file) => self.loaded(&self.model.folder.join(file)).map_err(within)?,
+                Kind::Mesh(file) => self.mesh_file(node, file)?,
                 Kind::Primitive(primitive) => {
                     let tolerance = self.tolerance(node, primitive.diagonal());
                     primitive.mesh(tolerance).map_err(within)?
@@ -94,6 +94,7 @@ impl State<'_> {
                 Kind::Formula { .. } | Kind::Contour(_) => return self.extracted(node),
                 Kind::Parametric(solid) => solid.mesh(self.given_tolerance(node), control).map_err(within)?,
                 Kind::Made(made, operands) => self.made(node, made, operands)?,
+                Kind::Cut(cut, operands) => self.cut(node, cut, operands)?,
                 #[cfg(feature = "subdivision")]
                 Kind::Cage(cage) => self.limit_mesh(node, cage)?,
                 #[cfg(not(feature = "subdivision"))]
@@ -118,24 +119,27 @@ impl State<'_> {
 
     /// A hull, a sum, a pattern or text, of nodes that are meshed first.
     fn made(&mut self, node: usize, made: &Made, operands: &[usize]) -> Result<Mesh, Error> {
-        let solids: Vec<Arc<Solid>> = operands
-            .iter()
-            .map(|&operand| match self.mode(operand, None) {
-                Mode::Field => self.meshed(operand),
-                Mode::Exact | Mode::FreeForm => self.exact(operand),
-            })
-            .collect::<Result<_, Error>>()?;
+        let solids: Vec<Arc<Solid>> =
+            operands.iter().map(|&operand| self.solid_of(operand)).collect::<Result<_, Error>>()?;
         let solids: Vec<&Solid> = solids.iter().map(Arc::as_ref).collect();
         let tolerance = self.given_tolerance(node);
         made.mesh(&solids, tolerance, &self.model.folder, &self.settings.control)
             .map_err(|error| error.in_node(self.label(node)))
     }
 
+    /// An operand of something that is made of meshes.
+    pub(super) fn solid_of(&mut self, operand: usize) -> Result<Arc<Solid>, Error> {
+        match self.mode(operand, None) {
+            Mode::Field => self.meshed(operand),
+            Mode::Exact | Mode::FreeForm => self.exact(operand),
+        }
+    }
+
     /// What an exact operation gives.
     fn of_tree(&mut self, operation: Operation, operands: &[usize], label: &str) -> Result<Mesh, Error> {
         let mut leaves = Leaves::default();
         let expression = self.operation(operation, operands, &mut leaves)?;
-        let options = BooleanOptions::new().control(self.settings.control.clone());
+        let options = self.boolean_options();
         let list: Vec<Leaf<'_>> = leaves.list.iter().map(NodeLeaf::leaf).collect();
         let outcome = options.evaluate_leaves(&expression, &list);
         Ok(outcome.map_err(|error| error.in_node(label))?.into_solid().into_mesh())
@@ -211,7 +215,7 @@ impl State<'_> {
         Ok(Expression::Operand(leaves.list.len() - 1))
     }
 
-    fn loaded(&mut self, path: &Path) -> Result<Mesh, Error> {
+    pub(super) fn loaded(&mut self, path: &Path) -> Result<Mesh, Error> {
         if let Some(loader) = &self.settings.loader {
             return loader(path);
         }
@@ -264,7 +268,7 @@ impl State<'_> {
 }
 
 /// The mesh transformed, still facing outward.
-fn moved(mesh: Mesh, transform: DAffine3) -> Result<Mesh, MeshError> {
+pub(super) fn moved(mesh: Mesh, transform: DAffine3) -> Result<Mesh, MeshError> {
     if transform == DAffine3::IDENTITY {
         return Ok(mesh);
     }
