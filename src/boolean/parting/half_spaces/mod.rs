@@ -4,24 +4,24 @@
 //!
 //! 1. One across an axis is the part of it in a box around all there is, one face of which lies in the plane: exactly the same set
 //!    wherever a solid is. It is an operand like others.
-//! 2. Numbers have no box that ends exactly in any other plane. Such a half-space cuts ([`PlaneCut`]) the smallest set around it that has an end:
+//! 2. Numbers have no box that ends exactly in any other plane. Such a half-space cuts the smallest set around it that has an end (`work`):
 //!    with all of space for the half-space the set is what is to be kept on its side, with nothing for it what is to be kept on the
 //!    other side. Nearly always one of the two is empty.
 //! 3. What was cut is a solid in what is left of the expression.
 
+mod work;
+
 use std::sync::Arc;
 
-use super::plane::PlaneCut;
 use crate::boolean::expression::Expression;
-use crate::boolean::expression::filled::{Dependence, Filled};
 use crate::boolean::expression::rule::Rule;
 use crate::boolean::many::options::BooleanOptions;
-use crate::boolean::result::certificate::{Notes, OperandState};
 use crate::boolean::result::origins::Origins;
 use crate::boolean::result::outcome::Outcome;
 use crate::exact::Plane;
 use crate::mesh::Bounds;
 use crate::{Error, Solid, primitives};
+use work::{Held, Part, Work};
 
 /// A leaf of an expression: a solid, or a half-space.
 #[derive(Clone, Copy, Debug)]
@@ -108,27 +108,8 @@ impl BooleanOptions {
             .collect::<Result<_, _>>()?;
         let of_none = Arc::new(Origins::of_operand(u32::MAX, 0));
         parts.push(Part { solid: Held::Box(space.whole()?, of_none), rule: Rule::Positive });
-        let mut work = Work {
-            options: self,
-            leaves,
-            parts,
-            states: leaves.iter().map(|leaf| leaf.solid().map(OperandState::of)).collect(),
-            notes: Notes::default(),
-            sets: 0,
-        };
-        // 2. What is cut; if only the whole has an end, that.
-        let rest = work.without_planes(expression)?;
-        let rest = if work.is_askew(&rest) { work.cut(&rest)? } else { Some(rest) };
-        // 3. The rest.
-        let mut outcome = work.whole(rest.unwrap_or(Expression::Union(Vec::new())))?;
-        let notes = outcome.notes_mut();
-        notes.contacts = work.notes.contacts;
-        notes.clean_up_stopped = work.notes.clean_up_stopped;
-        notes.inverted = work.notes.inverted;
-        notes.three_face_points = work.notes.three_face_points;
-        notes.walls_left = work.notes.walls_left;
-        notes.operands = work.states.into_iter().flatten().collect();
-        Ok(outcome)
+        // 2. What is cut, and the rest.
+        Work::new(self, leaves, parts).result(expression)
     }
 }
 
@@ -201,244 +182,10 @@ impl Space {
     }
 }
 
-/// A solid that was given, one for a half-space, or one that was made, and where its triangles come from.
-#[derive(Clone)]
-enum Held<'a> {
-    Given(&'a Solid, Arc<Origins>),
-    Box(Arc<Solid>, Arc<Origins>),
-    Made(Arc<Outcome>),
-}
-
-/// An operand of what is left of the expression.
-#[derive(Clone)]
-struct Part<'a> {
-    solid: Held<'a>,
-    rule: Rule,
-}
-
-impl Part<'_> {
-    fn solid(&self) -> &Solid {
-        match &self.solid {
-            Held::Given(solid, _) => solid,
-            Held::Box(solid, _) => solid,
-            Held::Made(outcome) => outcome.solid(),
-        }
-    }
-
-    fn origins(&self) -> &Origins {
-        match &self.solid {
-            Held::Given(_, origins) | Held::Box(_, origins) => origins,
-            Held::Made(outcome) => outcome.runs(),
-        }
-    }
-}
-
-/// What a plane makes of a set.
-struct Sides {
-    /// The operand that the half-space is.
-    plane: usize,
-    /// What is kept inside the half-space alone.
-    inside: Option<Expression>,
-    /// What is kept outside it alone.
-    outside: Option<Expression>,
-    /// What is kept on both sides.
-    both: Option<Expression>,
-}
-
-/// An evaluation.
-struct Work<'a, 'o> {
-    options: &'o BooleanOptions,
-    leaves: &'o [Leaf<'a>],
-    /// The leaves, all of space, and what was made.
-    parts: Vec<Part<'a>>,
-    /// What is known of each leaf that is a solid.
-    states: Vec<Option<OperandState>>,
-    /// Added up over all that was done.
-    notes: Notes,
-    /// How many sets were cut.
-    sets: usize,
-}
-
-impl<'a> Work<'a, '_> {
-    fn is_half_space(&self, operand: usize) -> bool {
-        self.leaves.get(operand).is_some_and(|leaf| leaf.half_space().is_some())
-    }
-
-    fn is_plane_askew(&self, operand: usize) -> bool {
-        self.leaves.get(operand).is_some_and(Leaf::is_askew)
-    }
-
-    fn is_askew(&self, expression: &Expression) -> bool {
-        expression.any_operand(&|operand| self.is_plane_askew(operand))
-    }
-
-    /// The expression with the smallest sets cut that planes askew are in and that have an end.
-    fn without_planes(&mut self, expression: &Expression) -> Result<Expression, Error> {
-        if !self.is_askew(expression) {
-            return Ok(expression.clone());
-        }
-        let has_end = expression.is_bounded(&|operand| self.is_half_space(operand));
-        let rest = expression.of_others(|set| self.without_planes(set))?;
-        if !(has_end && self.is_askew(&rest)) {
-            return Ok(rest);
-        }
-        // (What is nothing is a union of nothing.)
-        Ok(self.cut(&rest)?.unwrap_or(Expression::Union(Vec::new())))
-    }
-
-    /// A set that has an end without its planes askew: what was cut as an operand. `None` if it is nothing.
-    fn cut(&mut self, set: &Expression) -> Result<Option<Expression>, Error> {
-        self.count(set)?;
-        self.cut_all(set)
-    }
-
-    /// Refuses a set of which planes make too many, before there is any work.
-    fn count(&mut self, set: &Expression) -> Result<(), Error> {
-        /// Sets of one expression at most: each plane may double what there is.
-        const MOST: usize = 4_096;
-        self.sets += 1;
-        if self.sets > MOST {
-            let what =
-                "half-spaces make too many sets of this expression: intersect bodies with them one by one";
-            return Err(Error::InvalidArgument(what.into()));
-        }
-        let Some(Sides { inside, outside, both, .. }) = self.sides(set)? else { return Ok(()) };
-        [inside, outside, both].iter().flatten().try_for_each(|set| self.count(set))
-    }
-
-    /// What the last plane makes of a set, in which those before it cut first; `None` if there is no plane in it.
-    fn sides(&self, set: &Expression) -> Result<Option<Sides>, Error> {
-        let askew = set.operands().into_iter().rev().find(|&operand| self.is_plane_askew(operand));
-        let Some(plane) = askew else { return Ok(None) };
-        let fill = |is_everything: bool| match set.filled(plane, is_everything, self.leaves.len()) {
-            Filled::Nothing => Ok(None),
-            Filled::Everything => Err(unbounded()),
-            Filled::Set(set) => Ok(Some(set)),
-        };
-        let (inside, outside) = (fill(true)?, fill(false)?);
-        // What is on both sides is not cut.
-        let (inside, outside, both) = match (set.dependence(plane), inside, outside) {
-            (Dependence::None, inside, _) => (None, None, inside),
-            (Dependence::Grows, inside, outside) => (inside, None, outside),
-            (Dependence::Shrinks, inside, outside) => (None, outside, inside),
-            (Dependence::Both, Some(inside), Some(outside)) => {
-                let both = Expression::Intersection(vec![inside.clone(), outside.clone()]);
-                (Some(inside), Some(outside), Some(both))
-            }
-            (Dependence::Both, inside, outside) => (inside, outside, None),
-        };
-        Ok(Some(Sides { plane, inside, outside, both }))
-    }
-
-    fn cut_all(&mut self, set: &Expression) -> Result<Option<Expression>, Error> {
-        let Some(Sides { plane, inside, outside, both }) = self.sides(set)? else {
-            return Ok(Some(set.clone()));
-        };
-        let mut pieces = Vec::new();
-        for (set, is_inside) in [(inside, true), (outside, false)] {
-            let Some(set) = set else { continue };
-            let Some(set) = self.cut_all(&set)? else { continue };
-            pieces.push(self.half(&set, plane, is_inside)?);
-        }
-        if let Some(both) = both {
-            pieces.extend(self.cut_all(&both)?);
-        }
-        // Put together, as far as there is anything.
-        let is_empty = |piece: &Expression| matches!(piece, Expression::Operand(part) if self.parts[*part].solid().is_empty());
-        pieces.retain(|piece| !is_empty(piece));
-        Ok(if pieces.len() > 1 { Some(Expression::Union(pieces)) } else { pieces.pop() })
-    }
-
-    /// What of a set is in a half-space, or outside it, as an operand.
-    fn half(&mut self, set: &Expression, plane: usize, is_inside: bool) -> Result<Expression, Error> {
-        let Some((at, is_above)) = self.leaves[plane].half_space() else { return Err(unbounded()) };
-        // 1. The set as one solid.
-        let part = match set {
-            Expression::Operand(operand) => self.parts[*operand].clone(),
-            _ => made(self.evaluate(set)?),
-        };
-        // 2. Cut.
-        let cut = PlaneCut::new(at).options(self.options.clone().rules([part.rule]));
-        let solid = part.solid();
-        let outcome = if is_above == is_inside { cut.above(solid)? } else { cut.below(solid)? };
-        self.note(&outcome, std::slice::from_ref(set));
-        let of_plane = Origins::of_operand(plane as u32, 1);
-        self.parts.push(made(outcome.of_sources(&[part.origins(), &of_plane])));
-        Ok(Expression::Operand(self.parts.len() - 1))
-    }
-
-    /// The result of what is left of the expression: nothing is done again where that is one thing that was made.
-    fn whole(&mut self, rest: Expression) -> Result<Outcome, Error> {
-        let made = match rest {
-            Expression::Operand(operand) => match &self.parts[operand].solid {
-                Held::Made(outcome) => Some(Arc::clone(outcome)),
-                Held::Given(..) | Held::Box(..) => None,
-            },
-            _ => None,
-        };
-        let Some(made) = made else { return self.evaluate(&rest) };
-        self.parts.clear();
-        Ok(Arc::try_unwrap(made).unwrap_or_else(|made| (*made).clone()))
-    }
-
-    /// An expression of the parts, told of the leaves.
-    fn evaluate(&mut self, expression: &Expression) -> Result<Outcome, Error> {
-        // 1. Of those parts alone that it names.
-        let mut used: Vec<usize> = expression.operands().into_iter().collect();
-        if used.is_empty() {
-            // (Nothing of an operand is nothing.)
-            used.push(0);
-        }
-        let place = |operand: usize| used.binary_search(&operand).unwrap_or_default();
-        let renumbered = renumbered(expression, &place);
-        let parts: Vec<Part<'a>> = used.iter().map(|&operand| self.parts[operand].clone()).collect();
-        // 2. Evaluated.
-        let options = self.options.clone().rules(parts.iter().map(|part| part.rule));
-        let outcome = options.evaluate(&renumbered, parts.iter().map(Part::solid))?;
-        let operands: Vec<Expression> = used.into_iter().map(Expression::Operand).collect();
-        self.note(&outcome, &operands);
-        // 3. Its origins.
-        let sources: Vec<&Origins> = parts.iter().map(Part::origins).collect();
-        Ok(outcome.of_sources(&sources))
-    }
-
-    /// Notes what making something of operands met.
-    fn note(&mut self, outcome: &Outcome, operands: &[Expression]) {
-        let notes = outcome.notes();
-        self.notes.contacts += notes.contacts;
-        self.notes.clean_up_stopped += notes.clean_up_stopped;
-        self.notes.inverted += notes.inverted;
-        self.notes.three_face_points += notes.three_face_points;
-        self.notes.walls_left += notes.walls_left;
-        for (operand, state) in operands.iter().zip(&notes.operands) {
-            if let Expression::Operand(operand) = operand
-                && let Some(known) = self.states.get_mut(*operand)
-                && known.is_some()
-            {
-                *known = Some(*state);
-            }
-        }
-    }
-}
-
-/// What was made, as an operand.
-fn made<'a>(outcome: Outcome) -> Part<'a> {
-    Part { solid: Held::Made(Arc::new(outcome)), rule: Rule::Positive }
-}
-
-fn renumbered(expression: &Expression, place: &dyn Fn(usize) -> usize) -> Expression {
-    match expression {
-        Expression::Operand(operand) => Expression::Operand(place(*operand)),
-        other => {
-            let Ok(other) = other.of_others(|set| Ok::<_, std::convert::Infallible>(renumbered(set, place)));
-            other
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::boolean::PlaneCut;
     use rand::rngs::ChaCha8Rng;
     use rand::{RngExt, SeedableRng};
 
