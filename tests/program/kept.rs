@@ -43,7 +43,10 @@ fn a_node_without_a_mesh_is_a_place_for_one() {
     // Where nothing is to stay, a node without a mesh is no input, and one that is not there never is.
     folder.run("union scene.gltf#socket bit.obj -o put.gltf").exits(3).says("no part is named");
     folder.run("union scene.gltf bit.obj --node sockets --scene keep -o put.gltf").exits(3).says("sockets");
-    folder.run("union bit.obj scene.gltf#socket --scene keep --node bit -o put.gltf").exits(2).says("only glTF files have scenes");
+    folder
+        .run("union bit.obj scene.gltf#socket --scene keep --node bit -o put.gltf")
+        .exits(2)
+        .says("only glTF files have scenes");
 }
 
 #[test]

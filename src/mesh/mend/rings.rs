@@ -7,19 +7,24 @@ use super::super::weld::OpenEdge;
 
 /// The loops around holes, each directed so that its filling lies to the left: against the open edges. A loop passes no vertex twice.
 ///
-/// Where several holes meet in a vertex, faces meet there in several fans, and each hole lies between two of them: a loop that comes
-/// along one fan goes on along another, by the smallest angle.
+/// Where several holes meet in a vertex, faces meet there in several fans, and each hole lies between two of them. Which two no
+/// loop can be sure of, but for a triangle all of whose edges are open: its own loop would be filled with itself, and the hole around it stay
+/// open. At its corners a loop that comes along one fan goes on along another, by the smallest angle.
 pub(super) fn rings(positions: &[[f64; 3]], triangles: &[[u32; 3]], boundary: &[OpenEdge]) -> Vec<Vec<u32>> {
     // 1. Which vertices follow on each, and where there are several the fans.
     let mut next: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
     for edge in boundary {
         next.entry(edge.to).or_default().extend(std::iter::repeat_n(edge.from, edge.count as usize));
     }
+    let is_open: FxHashSet<(u32, u32)> = boundary.iter().map(|edge| (edge.from, edge.to)).collect();
+    let is_alone =
+        |&&[a, b, c]: &&[u32; 3]| [(a, b), (b, c), (c, a)].iter().all(|edge| is_open.contains(edge));
+    let alone = triangles.iter().filter(is_alone).flatten().copied();
     let fans =
-        Fans::new(triangles, next.iter().filter(|(_, ends)| ends.len() > 1).map(|(&v, _)| v).collect());
+        Fans::new(triangles, alone.filter(|v| next.get(v).is_some_and(|ends| ends.len() > 1)).collect());
     // (Taken from the end: the lowest first.)
     next.values_mut().for_each(|ends| ends.sort_unstable_by(|x, y| y.cmp(x)));
-    // 2. From vertices that only one loop passes, then from the others.
+    // 2. From vertices that such triangles have not, then from the others.
     let mut starts: Vec<u32> = next.keys().copied().collect();
     starts.sort_unstable_by_key(|v| (fans.vertices.contains(v), *v));
     let mut loops = Vec::new();
@@ -29,8 +34,9 @@ pub(super) fn rings(positions: &[[f64; 3]], triangles: &[[u32; 3]], boundary: &[
         while let Some(to) = path.last().copied().and_then(|end| {
             let ends = next.get_mut(&end)?;
             let before = path.len().checked_sub(2).map(|place| path[place]);
-            let chosen =
-                before.filter(|_| ends.len() > 1).and_then(|from| fans.next(positions, [from, end], ends));
+            let chosen = before
+                .filter(|_| ends.len() > 1 && fans.vertices.contains(&end))
+                .and_then(|from| fans.next(positions, [from, end], ends));
             match chosen {
                 Some(place) => Some(ends.remove(place)),
                 None => ends.pop(),

@@ -76,7 +76,7 @@ impl State<'_> {
         let mut transform = DAffine3::IDENTITY;
         loop {
             let at = &self.model.nodes[node];
-            transform = transform * at.transform;
+            transform *= at.transform;
             match &at.kind {
                 // (Names do not lead round in a circle: that is checked when a model is read.)
                 Kind::Reference(_, target) if at.extrude.is_none() => node = *target,

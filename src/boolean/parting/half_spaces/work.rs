@@ -92,7 +92,7 @@ impl<'a, 'o> Work<'a, 'o> {
         let rest = self.without_planes(expression)?;
         let rest = if self.is_askew(&rest) { self.cut(&rest)? } else { Some(rest) };
         // 2. The rest.
-        let mut outcome = self.whole(rest.unwrap_or(Expression::Union(Vec::new())))?;
+        let mut outcome = self.whole(&rest.unwrap_or(Expression::Union(Vec::new())))?;
         let notes = outcome.notes_mut();
         notes.contacts = self.notes.contacts;
         notes.clean_up_stopped = self.notes.clean_up_stopped;
@@ -237,16 +237,16 @@ impl<'a, 'o> Work<'a, 'o> {
     }
 
     /// The result of what is left of the expression: nothing is done again where that is one thing that was made.
-    fn whole(&mut self, rest: Expression) -> Result<Outcome, Error> {
+    fn whole(&mut self, rest: &Expression) -> Result<Outcome, Error> {
         let made = match rest {
-            Expression::Operand(operand) => match &self.parts[operand].solid {
+            Expression::Operand(operand) => match &self.parts[*operand].solid {
                 Held::Made(outcome) => Some(Arc::clone(outcome)),
                 Held::Given(..) | Held::Box(..) => None,
             },
             _ => None,
         };
         let Some(made) = made else {
-            let mut outcomes = self.evaluate(std::slice::from_ref(&rest))?;
+            let mut outcomes = self.evaluate(std::slice::from_ref(rest))?;
             return Ok(outcomes.swap_remove(0));
         };
         self.parts.clear();
