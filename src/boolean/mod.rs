@@ -51,7 +51,7 @@ pub use general::embed::{Embedding, Grid};
 pub use many::options::BooleanOptions;
 pub use many::policy::Embed;
 pub use many::trim::{TrimSide, Trimmed};
-pub use parting::{Cell, Imprinted, PlaneCut, Section, SectionSide, Sections};
+pub use parting::{Cell, Imprinted, Leaf, PlaneCut, Section, SectionSide, Sections};
 pub use result::attributes::CornerOrigin;
 pub use result::certificate::{Certificate, OperandState};
 pub use result::cut_faces::CutFaces;

@@ -4,9 +4,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use serde_json::{Value, json};
-use trisect::Solid;
 use trisect::field::Contours;
 use trisect::model::{Evaluated, Evaluation, Model};
+use trisect::{Mesh, Solid};
 
 use super::argument_groups::Colours;
 use super::documents::{self, Document};
@@ -59,13 +59,13 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     }
     // Contours alone need no mesh.
     let found = if wanted || drawn.is_empty() { Some(evaluation.run(&model)?) } else { None };
-    let solid = found.as_ref().map(|found| Solid::try_from(found.mesh.clone())).transpose();
-    let solid = solid.map_err(trisect::Error::from)?;
     let seconds = session.took("run", start);
-    if let (Some(found), Some(solid)) = (&found, &solid) {
-        parts.push(note_result(found, solid, session));
-    }
-    write(arguments, &targets, solid.as_ref(), &drawn, session)?;
+    let mesh = found.as_ref().map(|found| measured(found, session)).transpose()?;
+    let mesh = mesh.map(|(mesh, line)| {
+        parts.push(line);
+        mesh
+    });
+    write(arguments, &targets, mesh.as_ref(), &drawn, session)?;
     let names: Vec<String> = targets
         .iter()
         .map(Target::name)
@@ -110,16 +110,22 @@ fn note_contours(contours: &Contours, height: f64, session: &mut Session<'_>) ->
     )
 }
 
-/// Notes the mesh in the report, and says it in a line.
-fn note_result(found: &Evaluated, solid: &Solid, session: &mut Session<'_>) -> String {
-    let measures = Measures::of_solid(solid);
+/// Notes the mesh in the report, and gives it with the line that says what it is.
+fn measured(found: &Evaluated, session: &mut Session<'_>) -> Result<(Mesh, String), Fault> {
+    let (mesh, measures) = if found.is_open {
+        (found.mesh.clone(), Measures::of_mesh(&found.mesh))
+    } else {
+        let solid = Solid::try_from(found.mesh.clone()).map_err(trisect::Error::from)?;
+        let measures = Measures::of_solid(&solid);
+        (solid.into_mesh(), measures)
+    };
     let mut result = measures.to_json();
     result.insert("extraction".into(), extraction(found));
     session.note("result", result);
     for warning in &found.warnings {
         session.warn(warning.clone());
     }
-    measures.line()
+    Ok((mesh, measures.line()))
 }
 
 fn dry_run(model: &Model, name: &str, session: &mut Session<'_>) -> Result<Exit, Fault> {
@@ -142,14 +148,14 @@ fn dry_run(model: &Model, name: &str, session: &mut Session<'_>) -> Result<Exit,
 fn write(
     arguments: &Eval,
     targets: &[Target],
-    solid: Option<&Solid>,
+    mesh: Option<&Mesh>,
     drawn: &[Document],
     session: &mut Session<'_>,
 ) -> Result<(), Fault> {
     let start = Instant::now();
     session.console.stage("writing", 1.0);
-    let outputs = if let Some(solid) = solid {
-        let mesh = recenter::placed(solid.mesh(), &arguments.results.writing, session);
+    let outputs = if let Some(mesh) = mesh {
+        let mesh = recenter::placed(mesh, &arguments.results.writing, session);
         let mesh = mesh.as_ref();
         let drawing = &arguments.results.drawing;
         let picture = || {

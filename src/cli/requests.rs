@@ -29,6 +29,8 @@ pub(crate) struct Request {
     pub(crate) repairs: Repairs,
     /// What is inside, where the surface crosses itself.
     pub(crate) rule: Rule,
+    /// Whether it is a node whose scene stays: one without a mesh is then a place for one.
+    pub(crate) is_place: bool,
 }
 
 impl Request {
@@ -98,7 +100,17 @@ pub(crate) fn placed_inputs(
                 settings.push(Setting::default());
                 let (format, chosen, transforms) = (None, None, Vec::new());
                 let (repairs, rule) = (Repairs::default(), rule_for_all);
-                requests.push(Request { path, part, chosen, format, expansion, transforms, repairs, rule });
+                requests.push(Request {
+                    path,
+                    part,
+                    chosen,
+                    format,
+                    expansion,
+                    transforms,
+                    repairs,
+                    rule,
+                    is_place: false,
+                });
             }
             (Item::Rule(rule), Some(request)) => request.rule = rule,
             (Item::Rule(rule), None) => rule_for_all = rule,

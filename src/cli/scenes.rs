@@ -11,8 +11,11 @@ pub(crate) fn lost(contents: &Contents, writing: &Writing, index: usize) -> Vec<
     if index == 0 && writing.scene == SceneChoice::Keep { Vec::new() } else { contents.not_kept() }
 }
 
-/// Names the node of the first input, if `--node` does.
+/// Names the node of the first input, if `--node` does, and tells whether its scene stays.
 pub(crate) fn name_node(requests: &mut [Request], writing: &Writing) -> Result<(), Fault> {
+    if let Some(first) = requests.first_mut() {
+        first.is_place = writing.scene == SceneChoice::Keep && !first.is_standard();
+    }
     let Some(node) = &writing.node else { return Ok(()) };
     match requests.first_mut() {
         Some(first) if first.part.is_none() => first.part = Some(node.clone()),

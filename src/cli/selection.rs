@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use trisect::io::{self, Format, PartName, Parts};
+use trisect::io::{self, Format, FormatError, KeptScene, PartName, Parts};
 use trisect::{Control, Error, Mesh};
 
 use super::chosen::Chosen;
@@ -31,20 +31,14 @@ pub(crate) fn each(
             files.insert(key.clone(), read(&request, limits, control).map_err(fail)?);
         }
         let Some(file) = files.get(&key) else { continue };
-        let parts = file.select(&pattern).map_err(fail)?;
-        for (number, part) in parts.into_iter().enumerate() {
+        let parts = selected(file, &pattern, &request).map_err(fail)?;
+        for (number, (name, mesh)) in parts.into_iter().enumerate() {
             // What is to be said of the file is said once.
             let warnings = if number == 0 { file.whole.warnings.clone() } else { Vec::new() };
             let mut contents =
                 if number == 0 { file.whole.contents.clone() } else { io::Contents::default() };
-            contents.skinned = usize::from(is_skinned(&part.mesh));
-            let chosen = Chosen {
-                name: Some(part.name),
-                mesh: part.mesh,
-                format: file.whole.format,
-                warnings,
-                contents,
-            };
+            contents.skinned = usize::from(is_skinned(&mesh));
+            let chosen = Chosen { name: Some(name), mesh, format: file.whole.format, warnings, contents };
             expanded.push(Request { chosen: Some(Arc::new(chosen)), ..request.clone() });
         }
     }
@@ -68,8 +62,8 @@ pub(crate) fn joined(
 pub(crate) fn together(request: Request, limits: &Limits, control: &Control) -> Result<Request, Error> {
     let Some(pattern) = request.part.clone() else { return Ok(request) };
     let file = read(&request, limits, control)?;
-    let parts = file.select(&pattern)?;
-    let mesh = Mesh::merged(parts.iter().map(|part| &part.mesh))?;
+    let parts = selected(&file, &pattern, &request)?;
+    let mesh = Mesh::merged(parts.iter().map(|(_, mesh)| mesh))?;
     let chosen = Chosen {
         name: Some(pattern),
         mesh,
@@ -78,6 +72,20 @@ pub(crate) fn together(request: Request, limits: &Limits, control: &Control) -> 
         contents: file.whole.contents,
     };
     Ok(Request { chosen: Some(Arc::new(chosen)), ..request })
+}
+
+/// The parts that a pattern means, with their names. A node whose scene stays may have no mesh yet.
+fn selected(file: &Parts, pattern: &str, request: &Request) -> Result<Vec<(String, Mesh)>, Error> {
+    match file.select(pattern) {
+        Ok(parts) => Ok(parts.into_iter().map(|part| (part.name, part.mesh)).collect()),
+        Err(error) => {
+            let is_unknown = matches!(error, Error::Format(FormatError::NoSuchPart { .. }));
+            if is_unknown && request.is_place && KeptScene::load(&request.path, pattern)?.has_node()? {
+                return Ok(vec![(pattern.to_owned(), Mesh::default())]);
+            }
+            Err(error)
+        }
+    }
 }
 
 /// The input, read, and the names of the parts of its file.

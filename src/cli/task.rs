@@ -1,10 +1,10 @@
 //! What a verb wants of its operands: an operation, or expressions.
 
-use trisect::{BooleanOptions, Expression, Operation, Outcome, Solid};
+use trisect::{BooleanOptions, Expression, Leaf, Operation, Outcome, Solid};
 
 use super::arguments::Combination;
 use super::fault::Fault;
-use super::half_spaces::{self, HalfSpace};
+use super::half_spaces;
 use super::requests::Request;
 
 /// What is wanted.
@@ -25,7 +25,7 @@ pub(crate) struct Part {
     pub(crate) suffix: &'static str,
     pub(crate) expression: Expression,
     /// Its last operands, which are no inputs.
-    pub(crate) half_spaces: Vec<HalfSpace>,
+    pub(crate) half_spaces: Vec<Leaf<'static>>,
 }
 
 impl Task {
@@ -126,8 +126,8 @@ impl Task {
             },
             Self::Expressions(parts) if parts.len() == 1 => {
                 let Part { expression, half_spaces, .. } = &parts[0];
-                let more = half_spaces::solids(half_spaces, expression, operands)?;
-                Ok(vec![options.evaluate(expression, all.chain(&more))?])
+                let leaves: Vec<Leaf<'_>> = all.map(Leaf::Solid).chain(half_spaces.iter().copied()).collect();
+                Ok(vec![options.evaluate_leaves(expression, &leaves)?])
             }
             Self::Expressions(parts) => {
                 let expressions: Vec<Expression> = parts.iter().map(|part| part.expression.clone()).collect();

@@ -109,7 +109,12 @@ fn weights_in_plane(corners: &[[f64; 3]; 3], p: &[f64; 3]) -> Option<([f64; 3], 
     if is_plain {
         let [wb, wc] = two_weights(&u, &v, &plain(p, a), &normal, squared);
         let area = squared.sqrt();
-        return Some(([1.0 - wb - wc, wb, wc], [0, 1, 2].map(|k| area / side(k))));
+        // (Squares of such sides neither under- nor overflow, and `hypot` takes several times as long.)
+        let plain_side = |k: usize| {
+            let side = plain(&corners[(k + 2) % 3], &corners[(k + 1) % 3]);
+            dot(&side, &side).sqrt()
+        };
+        return Some(([1.0 - wb - wc, wb, wc], [0, 1, 2].map(|k| area / plain_side(k))));
     }
     let longest = [0, 1, 2].map(side).into_iter().fold(0.0, f64::max);
     let power = power_of_two(longest);

@@ -24,6 +24,7 @@
 #[cfg(feature = "subdivision")]
 mod cage;
 mod contour;
+mod cuts;
 mod evaluate;
 mod half_space;
 mod made;
@@ -47,6 +48,7 @@ use crate::{Control, Mesh};
 #[cfg(feature = "subdivision")]
 use cage::Cage;
 use contour::PlaneRegion;
+use cuts::{Cut, MeshFile};
 use glam::DAffine3;
 use half_space::HalfSpace;
 use made::Made;
@@ -124,7 +126,7 @@ enum Kind {
     Complement(usize),
     /// Another node, by name, and its position once names are resolved.
     Reference(String, usize),
-    Mesh(PathBuf),
+    Mesh(MeshFile),
     Primitive(Primitive),
     Formula {
         formula: Box<Formula>,
@@ -144,6 +146,8 @@ enum Kind {
     Parametric(Parametric),
     /// Something made of other nodes as meshes, or of text.
     Made(Made, Vec<usize>),
+    /// What is cut, or made of a soup.
+    Cut(Cut, Vec<usize>),
     /// A cage: the solid of its limit surface.
     #[cfg_attr(not(feature = "subdivision"), allow(dead_code, reason = "there are no cages in such a build"))]
     Cage(Box<Cage>),
@@ -187,7 +191,12 @@ impl Model {
     pub fn files(&self) -> Vec<PathBuf> {
         let mut files: Vec<PathBuf> = Vec::new();
         for node in &self.nodes {
-            if let Kind::Mesh(file) = &node.kind {
+            let named = match &node.kind {
+                Kind::Mesh(mesh) => vec![&mesh.file],
+                Kind::Cut(cut, _) => cut.files(),
+                _ => Vec::new(),
+            };
+            for file in named {
                 let file = self.folder.join(file);
                 if !files.contains(&file) {
                     files.push(file);
@@ -200,7 +209,9 @@ impl Model {
     /// The nodes a node is made of.
     fn operands(&self, node: usize) -> Vec<usize> {
         match &self.nodes[node].kind {
-            Kind::Operation(_, operands) | Kind::Made(_, operands) => operands.clone(),
+            Kind::Operation(_, operands) | Kind::Made(_, operands) | Kind::Cut(_, operands) => {
+                operands.clone()
+            }
             Kind::Complement(operand) | Kind::Reference(_, operand) => vec![*operand],
             Kind::Formula { uses, .. } => uses.iter().map(|used| used.1).collect(),
             Kind::Mesh(_)

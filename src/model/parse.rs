@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 
 #[cfg(feature = "parametric")]
 use super::contour::PlaneRegion;
+use super::cuts::{self, Cut, MeshFile};
 use super::half_space::HalfSpace;
 #[cfg(feature = "parametric")]
 use super::parametric::{self, Curves, Described, Parametric};
@@ -25,7 +26,7 @@ const CUSTOM: &str = "x-";
 const PARAMETRIC: [&str; 4] = ["patches", "extrusion", "revolution", "sweep"];
 const KINDS: &str = "union, intersection, difference, xor, complement, mesh, box, sphere, cylinder, cone, torus, half_space, \
                      formula, contour, region, patches, extrusion, revolution, sweep, parametric, \
-                     freeform, hull, minkowski, offset, hollow, pattern, text";
+                     freeform, hull, minkowski, offset, hollow, pattern, text, solidify, split, trim";
 
 struct ModelReader<'a> {
     nodes: Vec<Node>,
@@ -215,7 +216,7 @@ impl ModelReader<'_> {
                 let kind = match extension(&text) {
                     _ if self.names.contains_key(&text) => Kind::Reference(text, usize::MAX),
                     Some("json") => self.described(&text).map_err(within(label))?,
-                    Some(_) => Kind::Mesh(text.into()),
+                    Some(_) => Kind::Mesh(MeshFile::plain(text)),
                     None => Kind::Reference(text, usize::MAX),
                 };
                 Ok(Node::new(label.to_owned(), kind))
@@ -266,7 +267,7 @@ impl ModelReader<'_> {
             return primitive.map(Kind::Primitive).map_err(|what| fault(what).in_node(label));
         }
         let kind = match name {
-            "mesh" => Kind::Mesh(file_of(&mut object).map_err(within(label))?.into()),
+            "mesh" => Kind::Mesh(MeshFile::take(&mut object).map_err(within(label))?),
             "half_space" => {
                 let keys = Value::Object(std::mem::take(&mut object));
                 Kind::HalfSpace(HalfSpace::parse(keys).map_err(fault).map_err(within(label))?)
@@ -297,6 +298,10 @@ impl ModelReader<'_> {
                 self.described(&file).map_err(within(label))?
             }
             kind if made::KINDS.contains(&kind) => self.made(kind, &mut object, label, path)?,
+            kind if cuts::KINDS.contains(&kind) => {
+                let (cut, operands) = Cut::parse(kind, &mut object).map_err(within(label))?;
+                Kind::Cut(cut, self.add_all(operands, path)?)
+            }
             "freeform" => self.cage(std::mem::take(&mut object)).map_err(within(label))?,
             kind if PARAMETRIC.contains(&kind) => {
                 solid_of(kind, std::mem::take(&mut object)).map_err(within(label))?

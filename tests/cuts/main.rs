@@ -5,6 +5,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod models;
+#[cfg(feature = "model")]
+mod nodes;
 mod partitions;
 mod parts;
 mod planes;

@@ -296,6 +296,13 @@ mod half_spaces {
         let whole =
             tree("union", &[&inner, &tree("difference", &[&tree("intersection", &[BOX, BELOW]), slope])]);
         assert!((volume(&whole).unwrap() - part).abs() < 1e-12);
+        // A sum that has no end by itself has one inside a body.
+        let sum = tree("union", &[BELOW, slope]);
+        let united =
+            tree("union", &[&tree("intersection", &[BOX, BELOW]), &tree("intersection", &[BOX, slope])]);
+        let inside = volume(&tree("intersection", &[BOX, &sum])).unwrap();
+        assert!((inside - volume(&united).unwrap()).abs() < 1e-12);
+        assert!(part < inside && inside < 8.0);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
+use trisect::mesh::Welding;
 use trisect::{BooleanOptions, Control, Mesh, Rule, Solid, Solidified, Solidify, primitives};
 
 use crate::common::shapes;
@@ -130,6 +131,43 @@ fn what_is_closed_is_what_it_winds_around() {
             "seed {seed} apart: {} {want}",
             made.solid.volume()
         );
+    }
+}
+
+/// A box of squares, so many along each edge, all by common vertices.
+fn squared_box(count: u32) -> Mesh {
+    let mut mesh = Mesh::default();
+    let n = f64::from(count);
+    for (axis, high) in [0, 1, 2].into_iter().flat_map(|axis| [(axis, false), (axis, true)]) {
+        let first = mesh.positions.len() as u32;
+        for (s, t) in (0..=count).flat_map(|s| (0..=count).map(move |t| (s, t))) {
+            let mut at = [0.0; 3];
+            at[axis] = f64::from(u8::from(high));
+            at[(axis + 1) % 3] = f64::from(s) / n;
+            at[(axis + 2) % 3] = f64::from(t) / n;
+            mesh.positions.push(at);
+        }
+        for (s, t) in (0..count).flat_map(|s| (0..count).map(move |t| (s, t))) {
+            let corner = |i: u32, j: u32| first + (s + i) * (count + 1) + t + j;
+            let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+            mesh.triangles.extend(if high { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] });
+        }
+    }
+    mesh.welded(0.0).expect("one mesh")
+}
+
+/// Many holes that meet in vertices, and faces all by themselves between them.
+#[test]
+fn holes_beside_holes_are_filled() {
+    let solid = squared_box(8);
+    for seed in 0..12 {
+        let mut rng = ChaCha8Rng::seed_from_u64(190_700 + seed);
+        let missing = rng.random_range(0.1..0.3);
+        let mut soup = solid.clone();
+        soup.triangles.retain(|_| !rng.random_bool(missing));
+        let made = soup.solidify(&Solidify::new().weld(Welding::Within(0.0))).expect("a solid of a soup");
+        let off = (made.solid.volume() - 1.0).abs();
+        assert!(off < 0.05, "seed {seed}: {off} off, {missing} missing; {:?}", made.report);
     }
 }
 

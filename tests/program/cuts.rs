@@ -282,7 +282,12 @@ fn half_spaces_are_operands_of_expressions() {
     run("a & above(z=9)").exits(0);
     assert_eq!(volume(&folder, "made.off"), 0.0);
     run("a + above(z=1)").exits(1).says("unbounded");
-    run("a - above(1,1,1,0)").exits(1).says("z=");
+    // Planes askew: of the block of 2 by 3 by 4 what is below x + z = 3 and not beyond y = x.
+    run("a & below(1,0,1,3)").exits(0);
+    assert_eq!(volume(&folder, "made.off"), 3.0 * 4.0);
+    run("a & (below(1,0,1,3) + above(z=2)) - above(0,0,0, 1,1,0, 0,0,1)").exits(0);
+    run("a - above(0,0,0,1)").exits(1).says("normal");
+    run("a ^ below(1,0,1,3)").exits(1).says("unbounded");
 }
 
 #[test]

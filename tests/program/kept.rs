@@ -29,6 +29,27 @@ fn scene(folder: &Folder) {
 }
 
 #[test]
+fn a_node_without_a_mesh_is_a_place_for_one() {
+    let folder = workshop();
+    scene(&folder);
+    let mut document: Value = serde_json::from_str(&folder.read("scene.gltf")).expect("JSON");
+    let nodes = document["nodes"].as_array_mut().unwrap();
+    nodes.push(json!({"name": "socket", "translation": [0, 0, 20]}));
+    nodes[0]["children"] = json!([1, 2, 3, 4]);
+    folder.write("scene.gltf", document.to_string());
+    folder.run("union scene.gltf bit.obj --node socket --scene keep -o put.gltf").exits(0);
+    let said = described(&folder, "put.gltf#socket");
+    assert!((said["volume"].as_f64().expect("closed") - 0.75_f64.powi(3)).abs() < 1e-6, "{said}");
+    // Where nothing is to stay, a node without a mesh is no input, and one that is not there never is.
+    folder.run("union scene.gltf#socket bit.obj -o put.gltf").exits(3).says("no part is named");
+    folder.run("union scene.gltf bit.obj --node sockets --scene keep -o put.gltf").exits(3).says("sockets");
+    folder
+        .run("union bit.obj scene.gltf#socket --scene keep --node bit -o put.gltf")
+        .exits(2)
+        .says("only glTF files have scenes");
+}
+
+#[test]
 fn a_scene_stays_around_the_node_that_is_cut() {
     let folder = workshop();
     scene(&folder);

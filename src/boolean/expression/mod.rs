@@ -1,8 +1,10 @@
 //! Expressions: sets made of operands.
 //!
 //! - `text`: how they are written;
-//! - `rule`: what is inside an operand that crosses itself.
+//! - `rule`: what is inside an operand that crosses itself;
+//! - `filled`: what they are where an operand is everything, or nothing.
 
+pub(super) mod filled;
 pub(super) mod rule;
 pub(super) mod text;
 

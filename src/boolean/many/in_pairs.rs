@@ -224,7 +224,7 @@ impl Engine<'_> {
                 .map(|origin| sources[origin.operand as usize].groups[origin.triangle as usize])
                 .collect()
         };
-        let origins = made.origins.compose([&a.origins, &b.origins]);
+        let origins = made.origins.compose(&[&a.origins, &b.origins]);
         Ok(Partial {
             solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(made.positions, made.triangles))),
             origins,

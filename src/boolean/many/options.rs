@@ -294,6 +294,11 @@ impl BooleanOptions {
         Ok(outcomes.swap_remove(0))
     }
 
+    /// What is inside an operand.
+    pub(in crate::boolean) fn rule_of(&self, operand: usize) -> Rule {
+        self.rules.get(operand).copied().unwrap_or(self.policy.rule)
+    }
+
     /// Other work under these settings, on the threads that were asked for.
     pub(in crate::boolean) fn work<T: Send>(
         &self,

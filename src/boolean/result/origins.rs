@@ -120,11 +120,12 @@ impl Origins {
     }
 
     /// The origins of the origins: `sources` are those of the operands.
-    pub(crate) fn compose(mut self, sources: [&Self; 2]) -> Self {
+    pub(crate) fn compose(mut self, sources: &[&Self]) -> Self {
         // Nearly always the operands are whole: only their numbers change.
-        if let [Some(a), Some(b)] = sources.map(Self::whole_operand) {
+        if let Some(whole) = sources.iter().map(|source| source.whole_operand()).collect::<Option<Vec<u32>>>()
+        {
             for stretch in &mut self.stretches {
-                let renumber = |origin: &mut Origin| origin.operand = [a, b][origin.operand as usize];
+                let renumber = |origin: &mut Origin| origin.operand = whole[origin.operand as usize];
                 match stretch {
                     Stretch::Kept(kept) => renumber(&mut kept.first),
                     Stretch::Runs(runs) => runs.iter_mut().for_each(|run| renumber(&mut run.first)),
@@ -132,7 +133,7 @@ impl Origins {
             }
             return self;
         }
-        let sources = sources.map(Sequence::new);
+        let sources: Vec<Sequence> = sources.iter().map(|source| Sequence::new(source)).collect();
         let mut result = Self::default();
         for Run { first, count } in self.runs() {
             sources[first.operand as usize].for_runs(first.triangle, count, |mut run| {
@@ -258,7 +259,7 @@ mod tests {
                     Origin { reversed: source.reversed != origin.reversed, ..source }
                 })
                 .collect();
-            let through = runs.compose(sources.each_ref());
+            let through = runs.compose(&sources.each_ref());
             assert_eq!(through.iter().collect::<Vec<_>>(), expected);
         }
     }
@@ -282,7 +283,7 @@ mod tests {
                 assert_eq!(origins.iter().collect::<Vec<_>>(), list, "{share} of {count}");
 
                 let whole = [7, 5].map(|operand| Origins::of_operand(operand, 2_000));
-                let renumbered = origins.clone().compose(whole.each_ref());
+                let renumbered = origins.clone().compose(&whole.each_ref());
                 let expected =
                     list.iter().map(|origin| Origin { operand: [7, 5][origin.operand as usize], ..*origin });
                 assert!(renumbered.iter().eq(expected));
@@ -290,7 +291,7 @@ mod tests {
                     .filter(|_| rng.random_bool(0.5))
                     .map(|triangle| Origin { operand: 0, triangle, reversed: true })
                     .collect();
-                let through = places.iter().copied().collect::<Origins>().compose([&origins, &whole[1]]);
+                let through = places.iter().copied().collect::<Origins>().compose(&[&origins, &whole[1]]);
                 let turned = |origin: &Origin| {
                     let source = list[origin.triangle as usize];
                     Origin { reversed: !source.reversed, ..source }

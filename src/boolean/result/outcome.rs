@@ -120,12 +120,27 @@ impl Outcome {
     #[must_use]
     pub fn after(mut self, earlier: &Self, plane: u32) -> Self {
         let plane = Origins::from_iter([Origin { operand: plane, triangle: 0, reversed: false }]);
-        self.origins = self.origins.compose([&earlier.origins, &plane]);
+        self.origins = self.origins.compose(&[&earlier.origins, &plane]);
         self.list = OnceLock::new();
         self.nearly_flush = OnceLock::new();
         self.certificate = OnceLock::new();
         self.notes.operands.clone_from(&earlier.notes.operands);
         self
+    }
+
+    /// This outcome told of other operands, of which its own were made: `sources` has the origins of each of these.
+    pub(crate) fn of_sources(self, sources: &[&Origins]) -> Self {
+        Self::new(self.solid, self.origins.compose(sources), self.unit, self.notes)
+    }
+
+    /// What was noted as it was made.
+    pub(crate) fn notes_mut(&mut self) -> &mut Notes {
+        &mut self.notes
+    }
+
+    /// The same to read.
+    pub(crate) fn notes(&self) -> &Notes {
+        &self.notes
     }
 
     /// The same as runs of triangles.

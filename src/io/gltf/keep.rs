@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 use super::super::notes::Notes;
@@ -15,7 +16,7 @@ use super::Reader;
 use super::budget::Budget;
 use super::buffers::Buffers;
 use super::container;
-use super::document::Document;
+use super::document::{Document, Node, NodeFields};
 use super::joints;
 use super::materials::Materials;
 use super::place::{Place, find, in_node};
@@ -57,6 +58,37 @@ impl KeptScene {
         let folder = folder.unwrap_or(Path::new(".")).to_path_buf();
         Ok(Self { bytes: bytes.into(), format, folder, node: node.into() })
     }
+
+    /// Whether the node is there, be it without any mesh: a place for one.
+    ///
+    /// # Errors
+    /// What is wrong with the document, and [`Error::InvalidArgument`] if several nodes have the name.
+    pub fn has_node(&self) -> Result<bool, Error> {
+        let mut notes = Notes::default();
+        let container = container::open(&self.bytes, self.format, &mut notes)?;
+        let broken = |error: serde_json::Error| malformed(self.format, "JSON", error.to_string());
+        let mut document: Document<'_> = serde_json::from_slice(container.json).map_err(broken)?;
+        take_all_nodes(&mut document, container.json).map_err(broken)?;
+        let reader = Reader { document: &document, format: self.format };
+        reader.check()?;
+        match find(&reader, &self.node) {
+            Ok(_) => Ok(true),
+            Err(Error::Format(FormatError::NoSuchPart { .. })) => Ok(false),
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Reads the nodes again, with those that show nothing: one of them may be the place for the mesh.
+fn take_all_nodes(document: &mut Document<'_>, json: &[u8]) -> Result<(), serde_json::Error> {
+    #[derive(Deserialize)]
+    struct Nodes {
+        #[serde(default)]
+        nodes: Vec<NodeFields>,
+    }
+    let all: Nodes = serde_json::from_slice(json)?;
+    document.nodes = all.nodes.into_iter().map(|fields| Node(Some(Box::new(fields)))).collect();
+    Ok(())
 }
 
 /// Writes the scene with the mesh, given in the coordinates of the scene, at its node.
@@ -71,7 +103,8 @@ pub(in crate::io) fn write(
     let read_options = ReadOptions::new().folder(&kept.folder).control(options.control.clone());
     let container = container::open(&kept.bytes, kept.format, &mut notes)?;
     let broken = |error: serde_json::Error| malformed(kept.format, "JSON", error.to_string());
-    let document: Document<'_> = serde_json::from_slice(container.json).map_err(broken)?;
+    let mut document: Document<'_> = serde_json::from_slice(container.json).map_err(broken)?;
+    take_all_nodes(&mut document, container.json).map_err(broken)?;
     let reader = Reader { document: &document, format: kept.format };
     reader.check()?;
     let buffers = Buffers::new(&reader, container.binary, &read_options);

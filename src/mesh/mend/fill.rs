@@ -7,9 +7,10 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::super::places::Spots;
-use super::super::weld::{self, OpenEdge};
+use super::super::weld;
 use super::super::{Bounds, measure};
 use super::Surface;
+use super::rings::rings;
 
 /// Loops of up to so many edges are filled by the smallest of all triangulations: 200^3 / 6 sums, some 5 ms.
 const SMALL: usize = 200;
@@ -18,7 +19,10 @@ const SMALL: usize = 200;
 pub(super) fn fill(surface: &mut Surface<'_>, most: usize) {
     let positions = &surface.mesh.positions;
     let boundary = weld::boundary(&surface.triangles, positions.len());
-    let loops: Vec<Vec<u32>> = rings(&boundary).into_iter().filter(|ring| ring.len() <= most).collect();
+    let loops: Vec<Vec<u32>> = rings(positions, &surface.triangles, &boundary)
+        .into_iter()
+        .filter(|ring| ring.len() <= most)
+        .collect();
     if loops.is_empty() {
         return;
     }
@@ -135,53 +139,6 @@ fn neighbours(positions: &[[f64; 3]], loops: &[Vec<u32>]) -> Vec<(usize, usize, 
     pairs.sort_unstable();
     pairs.dedup_by_key(|pair| (pair.0, pair.1));
     pairs
-}
-
-/// The loops around holes; see [`loops`].
-pub(super) fn rings(boundary: &[OpenEdge]) -> Vec<Vec<u32>> {
-    let edges: Vec<(u32, u32)> = boundary
-        .iter()
-        .flat_map(|edge| std::iter::repeat_n((edge.from, edge.to), edge.count as usize))
-        .collect();
-    loops(&edges)
-}
-
-/// The loops around holes, each directed so that its filling lies to the left: against the open edges. A loop passes no vertex twice.
-fn loops(edges: &[(u32, u32)]) -> Vec<Vec<u32>> {
-    let mut next: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
-    for &(from, to) in edges {
-        next.entry(to).or_default().push(from);
-    }
-    let mut starts: Vec<u32> = next.keys().copied().collect();
-    starts.sort_unstable();
-    // (Taken from the end: the lowest first.)
-    next.values_mut().for_each(|ends| ends.sort_unstable_by(|x, y| y.cmp(x)));
-    let mut loops = Vec::new();
-    for start in starts {
-        let mut path = vec![start];
-        let mut place_of: FxHashMap<u32, usize> = FxHashMap::from_iter([(start, 0)]);
-        while let Some(to) = path.last().and_then(|end| next.get_mut(end)).and_then(Vec::pop) {
-            match place_of.get(&to) {
-                // Back at a vertex: what was passed since is a loop of its own.
-                Some(&place) => {
-                    let ring: Vec<u32> = path.drain(place..).collect();
-                    ring.iter().for_each(|v| {
-                        place_of.remove(v);
-                    });
-                    loops.push(ring);
-                    place_of.insert(to, path.len());
-                    path.push(to);
-                }
-                None => {
-                    place_of.insert(to, path.len());
-                    path.push(to);
-                }
-            }
-        }
-    }
-    // A loop of two edges is closed by nothing, and open edges do not make one.
-    loops.retain(|ring| ring.len() > 2);
-    loops
 }
 
 fn area(p: [f64; 3], q: [f64; 3], r: [f64; 3]) -> f64 {

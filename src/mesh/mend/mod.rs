@@ -18,6 +18,7 @@ mod fill;
 mod points;
 mod refine;
 mod report;
+mod rings;
 mod rounding;
 mod seams;
 mod sew;

@@ -12,7 +12,7 @@ use super::super::{
     Bounds, Mesh, MeshError, WeightedUnionFind, area_vector, attributes, chain, clean, measure, unit, weld,
 };
 use super::sew::{Sewing, Splits};
-use super::{Surface, fill, sew};
+use super::{Surface, fill, rings, sew};
 use crate::exact::collinear;
 use crate::mesh::Welding;
 
@@ -344,7 +344,7 @@ struct Closing {
 
 impl Closing {
     fn new(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Self {
-        let loops = fill::rings(&weld::boundary(triangles, positions.len()));
+        let loops = rings::rings(positions, triangles, &weld::boundary(triangles, positions.len()));
         let at_edge = fill::between(triangles, &loops);
         let has_edge = |u: u32, v: u32| at_edge.contains_key(&(u, v)) || at_edge.contains_key(&(v, u));
         let mut all = Self { filling: Vec::new(), of_loops: 0, beside: Vec::new(), loops: loops.len() };

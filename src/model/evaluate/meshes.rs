@@ -8,17 +8,32 @@ use glam::{DAffine3, DVec3};
 
 use super::ExtractionReport;
 use super::state::State;
-use crate::boolean::{BooleanOptions, Expression, Operation, PlaneCut};
+use crate::boolean::{Expression, Leaf, Operation};
 use crate::exact::Plane;
 use crate::field::{Extracted, Extraction, extrude};
 use crate::io::ReadOptions;
 use crate::model::{Kind, Made, Mode};
 use crate::{Error, Mesh, MeshError, Solid};
 
+/// A leaf of a tree of operations.
+enum NodeLeaf {
+    Solid(Arc<Solid>),
+    Below(Plane),
+}
+
+impl NodeLeaf {
+    fn leaf(&self) -> Leaf<'_> {
+        match self {
+            Self::Solid(solid) => Leaf::Solid(solid),
+            Self::Below(plane) => Leaf::Below(*plane),
+        }
+    }
+}
+
 /// The leaves of a tree of operations, each once.
 #[derive(Default)]
 struct Leaves {
-    solids: Vec<Arc<Solid>>,
+    list: Vec<NodeLeaf>,
     /// By node.
     places: BTreeMap<usize, usize>,
     /// Operations met so far.
@@ -70,7 +85,7 @@ impl State<'_> {
                     return Err(unbounded("a half-space", instead).in_node(label));
                 }
                 Kind::Reference(_, target) => (*self.operand_solid(*target)?).mesh().clone(),
-                Kind::Mesh(file) => self.loaded(&self.model.folder.join(file)).map_err(within)?,
+                Kind::Mesh(file) => self.mesh_file(node, file)?,
                 Kind::Primitive(primitive) => {
                     let tolerance = self.tolerance(node, primitive.diagonal());
                     primitive.mesh(tolerance).map_err(within)?
@@ -79,6 +94,7 @@ impl State<'_> {
                 Kind::Formula { .. } | Kind::Contour(_) => return self.extracted(node),
                 Kind::Parametric(solid) => solid.mesh(self.given_tolerance(node), control).map_err(within)?,
                 Kind::Made(made, operands) => self.made(node, made, operands)?,
+                Kind::Cut(cut, operands) => self.cut(node, cut, operands)?,
                 #[cfg(feature = "subdivision")]
                 Kind::Cage(cage) => self.limit_mesh(node, cage)?,
                 #[cfg(not(feature = "subdivision"))]
@@ -103,56 +119,30 @@ impl State<'_> {
 
     /// A hull, a sum, a pattern or text, of nodes that are meshed first.
     fn made(&mut self, node: usize, made: &Made, operands: &[usize]) -> Result<Mesh, Error> {
-        let solids: Vec<Arc<Solid>> = operands
-            .iter()
-            .map(|&operand| match self.mode(operand, None) {
-                Mode::Field => self.meshed(operand),
-                Mode::Exact | Mode::FreeForm => self.exact(operand),
-            })
-            .collect::<Result<_, Error>>()?;
+        let solids: Vec<Arc<Solid>> =
+            operands.iter().map(|&operand| self.solid_of(operand)).collect::<Result<_, Error>>()?;
         let solids: Vec<&Solid> = solids.iter().map(Arc::as_ref).collect();
         let tolerance = self.given_tolerance(node);
         made.mesh(&solids, tolerance, &self.model.folder, &self.settings.control)
             .map_err(|error| error.in_node(self.label(node)))
     }
 
+    /// An operand of something that is made of meshes.
+    pub(super) fn solid_of(&mut self, operand: usize) -> Result<Arc<Solid>, Error> {
+        match self.mode(operand, None) {
+            Mode::Field => self.meshed(operand),
+            Mode::Exact | Mode::FreeForm => self.exact(operand),
+        }
+    }
+
     /// What an exact operation gives.
     fn of_tree(&mut self, operation: Operation, operands: &[usize], label: &str) -> Result<Mesh, Error> {
-        // 1. Half-spaces have no surface to arrange: they cut what the others make.
-        let planes: Vec<Plane> = operands
-            .iter()
-            .map(|&operand| self.half_space(operand))
-            .filter_map(Result::transpose)
-            .collect::<Result<_, _>>()?;
-        let solids: Vec<usize> = operands
-            .iter()
-            .copied()
-            .filter(|&operand| !matches!(self.half_space(operand), Ok(Some(_))))
-            .collect();
-        let is_bounded = match operation {
-            Operation::Intersection => !solids.is_empty(),
-            Operation::Difference => solids.first() == operands.first(),
-            Operation::Union | Operation::SymmetricDifference => planes.is_empty(),
-        };
-        if !is_bounded {
-            let what = format!(
-                "this {operation} of a half-space is unbounded and has no mesh: intersect it with a body"
-            );
-            return Err(Error::Model(what).in_node(label));
-        }
-        // 2. All others at once.
         let mut leaves = Leaves::default();
-        let expression = self.operation(operation, &solids, &mut leaves)?;
-        let options = BooleanOptions::new().control(self.settings.control.clone());
-        let outcome = options.evaluate(&expression, leaves.solids.iter().map(Arc::as_ref));
-        let mut solid = outcome.map_err(|error| error.in_node(label))?.into_solid();
-        // 3. Plane by plane.
-        for plane in planes {
-            let cut = PlaneCut::new(plane).options(options.clone());
-            let kept = if operation == Operation::Difference { cut.above(&solid) } else { cut.below(&solid) };
-            solid = kept.map_err(|error| error.in_node(label))?.into_solid();
-        }
-        Ok(solid.into_mesh())
+        let expression = self.operation(operation, operands, &mut leaves)?;
+        let options = self.boolean_options();
+        let list: Vec<Leaf<'_>> = leaves.list.iter().map(NodeLeaf::leaf).collect();
+        let outcome = options.evaluate_leaves(&expression, &list);
+        Ok(outcome.map_err(|error| error.in_node(label))?.into_solid().into_mesh())
     }
 
     /// The plane of a node that is a half-space.
@@ -194,17 +184,15 @@ impl State<'_> {
 
     /// An operand of an operation: an operation of its own, unless it is moved or meshed first, else a leaf.
     fn set(&mut self, node: usize, leaves: &mut Leaves) -> Result<Expression, Error> {
+        let plane = self.half_space(node)?;
         let at = &self.model.nodes[node];
         leaves.operations += 1;
         let is_plain = at.extrude.is_none()
             && at.transform == DAffine3::IDENTITY
             && leaves.operations <= MOST_OPERATIONS;
-        if is_plain && self.mode(node, Some(Mode::Exact)) == Mode::Exact {
+        if plane.is_none() && is_plain && self.mode(node, Some(Mode::Exact)) == Mode::Exact {
             match &at.kind {
-                // (With a half-space among its operands it is evaluated by itself.)
-                Kind::Operation(operation, operands)
-                    if operands.iter().all(|&operand| matches!(self.half_space(operand), Ok(None))) =>
-                {
+                Kind::Operation(operation, operands) => {
                     let (operation, operands) = (*operation, operands.clone());
                     return self.operation(operation, &operands, leaves);
                 }
@@ -218,13 +206,16 @@ impl State<'_> {
         if let Some(&place) = leaves.places.get(&node) {
             return Ok(Expression::Operand(place));
         }
-        let solid = self.operand_solid(node)?;
-        leaves.solids.push(solid);
-        leaves.places.insert(node, leaves.solids.len() - 1);
-        Ok(Expression::Operand(leaves.solids.len() - 1))
+        let leaf = match plane {
+            Some(plane) => NodeLeaf::Below(plane),
+            None => NodeLeaf::Solid(self.operand_solid(node)?),
+        };
+        leaves.list.push(leaf);
+        leaves.places.insert(node, leaves.list.len() - 1);
+        Ok(Expression::Operand(leaves.list.len() - 1))
     }
 
-    fn loaded(&mut self, path: &Path) -> Result<Mesh, Error> {
+    pub(super) fn loaded(&mut self, path: &Path) -> Result<Mesh, Error> {
         if let Some(loader) = &self.settings.loader {
             return loader(path);
         }
@@ -277,7 +268,7 @@ impl State<'_> {
 }
 
 /// The mesh transformed, still facing outward.
-fn moved(mesh: Mesh, transform: DAffine3) -> Result<Mesh, MeshError> {
+pub(super) fn moved(mesh: Mesh, transform: DAffine3) -> Result<Mesh, MeshError> {
     if transform == DAffine3::IDENTITY {
         return Ok(mesh);
     }

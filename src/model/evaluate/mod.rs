@@ -2,6 +2,7 @@
 
 #[cfg(feature = "subdivision")]
 mod cages;
+mod cuts;
 mod meshes;
 mod state;
 
@@ -51,8 +52,10 @@ impl Default for Evaluation {
 /// What a model evaluates to.
 #[derive(Clone, Debug)]
 pub struct Evaluated {
-    /// The closed surface; empty if the solid is.
+    /// The closed surface; empty if the solid is. Open where the result is a `trim`.
     pub mesh: Mesh,
+    /// Whether it is a trimmed surface, and no solid.
+    pub is_open: bool,
     /// What the last extraction reports, if the result is one.
     pub extraction: Option<ExtractionReport>,
     /// What the readers of mesh files had to say, each with the file's name.
@@ -109,17 +112,21 @@ impl Evaluation {
         self
     }
 
-    /// The model's result as a closed mesh.
+    /// The model's result as a closed mesh, or, of a `trim`, as one that may be open.
     ///
     /// # Errors
     /// What is wrong, in [`Error::InNode`] with the node at fault.
     pub fn run(&self, model: &Model) -> Result<Evaluated, Error> {
         let mut state = State::new(self, model);
+        if let Some(mesh) = state.trimmed()? {
+            return Ok(Evaluated { mesh, is_open: true, extraction: None, warnings: state.warnings });
+        }
         let solid = match state.mode(model.result, None) {
             Mode::Exact | Mode::FreeForm => state.exact(model.result)?,
             Mode::Field => state.meshed(model.result)?,
         };
-        Ok(Evaluated { mesh: solid.mesh().clone(), extraction: state.last, warnings: state.warnings })
+        let mesh = solid.mesh().clone();
+        Ok(Evaluated { mesh, is_open: false, extraction: state.last, warnings: state.warnings })
     }
 
     /// The model's result as a function, positive inside.

@@ -59,7 +59,7 @@ impl<'a> State<'a> {
                 Kind::Formula { .. } | Kind::Complement(_) => return Mode::Field,
                 Kind::Contour(_) if at.extrude.is_none() => return Mode::Field,
                 // Meshes, whatever they are made of.
-                Kind::Made(..) => {}
+                Kind::Made(..) | Kind::Cut(..) => {}
                 _ => pending.extend(self.model.operands(node)),
             }
         }
@@ -156,9 +156,12 @@ impl<'a> State<'a> {
     fn is_exact_leaf(&self, node: usize) -> bool {
         let at = &self.model.nodes[node];
         match at.kind {
-            Kind::Mesh(_) | Kind::Parametric(_) | Kind::Cage(_) | Kind::Made(..) | Kind::Custom { .. } => {
-                at.extrude.is_none()
-            }
+            Kind::Mesh(_)
+            | Kind::Parametric(_)
+            | Kind::Cage(_)
+            | Kind::Made(..)
+            | Kind::Cut(..)
+            | Kind::Custom { .. } => at.extrude.is_none(),
             Kind::Operation(..) => {
                 matches!(at.mode, Some(Mode::Exact | Mode::FreeForm)) && at.extrude.is_none()
             }
@@ -215,7 +218,12 @@ impl<'a> State<'a> {
                 let distance = ContourDistance::new(&contours).map_err(|error| error.in_node(label))?;
                 Ok(self.graph.leaf(Arc::new(distance)))
             }
-            Kind::Mesh(_) | Kind::Parametric(_) | Kind::Cage(_) | Kind::Made(..) | Kind::Custom { .. } => {
+            Kind::Mesh(_)
+            | Kind::Parametric(_)
+            | Kind::Cage(_)
+            | Kind::Made(..)
+            | Kind::Cut(..)
+            | Kind::Custom { .. } => {
                 // Only when extruded: a mesh has no plane region.
                 let what = "only formulas, contours, regions and combinations of them can be extruded";
                 Err(Error::Model(what.into()).in_node(label))

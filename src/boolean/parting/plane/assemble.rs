@@ -67,21 +67,23 @@ fn numbers(split: &Split<'_>, nodes: &Nodes, half: Half, new: &New) -> (Vec<u32>
             split.corners(triangle).into_iter().for_each(|v| is_used(v, &mut numbers));
         }
     }
-    // 2. All other vertices on this side, but for those that lay inside faces that were cut as one.
+    // 2. All other vertices on this side, but for those of cut and replaced triangles that nothing is left of: they lay inside faces
+    //    that were cut as one, or rounding made them points in the plane.
     let mut doubtful: Vec<u32> = nodes
-        .plane_faces
+        .faces
         .iter()
-        .filter(|places| places.len() > 1)
-        .flatten()
-        .flat_map(|&place| split.corners(nodes.faces[place as usize].triangle))
+        .map(|face| face.triangle)
+        .chain(new.replaced.iter().copied())
+        .flat_map(|triangle| split.corners(triangle))
         .filter(|&v| split.mark(v) == mark && numbers[v as usize] == NONE)
         .collect();
     doubtful.sort_unstable();
     doubtful.dedup();
     if !doubtful.is_empty() {
-        for corners in
-            split.mesh.triangles.iter().filter(|corners| corners.iter().all(|&v| split.mark(v) == mark))
-        {
+        let is_whole = |&(triangle, corners): &(u32, &[u32; 3])| {
+            corners.iter().all(|&v| split.mark(v) == mark) && new.replaced.binary_search(&triangle).is_err()
+        };
+        for (_, corners) in (0u32..).zip(&split.mesh.triangles).filter(is_whole) {
             for v in corners {
                 if let Ok(place) = doubtful.binary_search(v) {
                     doubtful.remove(place);

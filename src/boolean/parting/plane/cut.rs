@@ -224,7 +224,7 @@ impl Cut<'_> {
             given = of;
             operands.clone_from(&outcome.certificate().operands);
             let plane = Origins::of_operand(1, 1);
-            origins = origins.compose([outcome.runs(), &plane]);
+            origins = origins.compose(&[outcome.runs(), &plane]);
         }
         let notes = Notes { contacts, inverted, operands, ..Notes::default() };
         let made = Made {
