@@ -107,7 +107,7 @@ fn a_run_goes_on_and_failures_are_tried_again() {
 fn limits_of_jobs_are_theirs() {
     let folder = &Folder::new();
     files(folder);
-    let job = |id: &str, options: Value| json!({ "id": id, "verb": "union", "inputs": ["cube.off", "cube.off"], "output": "x.ply", "options": options });
+    let job = |id: &str, options: Value| json!({ "id": id, "verb": "union", "inputs": ["cube.off", { "file": "cube.off", "translate": [0.5, 0, 0] }], "output": "x.ply", "options": options });
     let lines =
         format!("{}\n{}\n", job("short", json!({})), job("long", json!({ "memory": "1G", "timeout": 600 })));
     folder.write("jobs.jsonl", lines);

@@ -35,11 +35,11 @@ pub(crate) fn run(
     operands: &[&Solid],
     runner: Runner<'_>,
 ) -> Result<Outcome, Error> {
-    let mut in_pairs = are_simple_in_between(operation, operands.len());
+    let mut is_simple = are_simple_in_between(operation, operands.len());
     for solid in operands {
-        in_pairs = in_pairs && expressions::is_simple(policy, solid, runner.control)?;
+        is_simple = is_simple && expressions::is_simple(policy, solid, runner.control)?;
     }
-    if in_pairs {
+    if is_simple {
         return in_pairs::run(policy, operation, operands, runner);
     }
     let expression = expressions::of_operation(operation, operands.len());

@@ -2,6 +2,7 @@
 //! can be turned, what is best is done, tried out with the flips that follow.
 
 use glam::DVec3;
+use rustc_hash::FxHashSet;
 
 use super::cost::{Shape, sag};
 use super::edit::{self, Limits, MENDED};
@@ -9,6 +10,8 @@ use super::net::{Kind, Net};
 
 /// Times over the triangles.
 const ROUNDS: usize = 4;
+/// Of so many triangles one may be to be mended: each takes as long as a hundred others.
+const MOST: usize = 50;
 /// What a triangle counts that faces another way by `MENDED`; turned over it counts eighty times that.
 const OFF: f64 = 20.0;
 /// What a thin triangle counts, at most.
@@ -25,14 +28,34 @@ enum Change {
     Flip(u32, u32),
 }
 
-/// Mends what can be. `short` is the length of edges along creases that do not matter.
-pub(super) fn mend(net: &mut Net, limits: Limits, short: f64) {
+/// Triangles that nothing could be done for, by their corners.
+pub(super) type Hopeless = FxHashSet<[u32; 3]>;
+
+/// Mends what can be. `short` is the length of edges along creases that do not matter. What is `hopeless` is not tried again until
+/// something around it has been mended.
+pub(super) fn mend(net: &mut Net, limits: Limits, short: f64, hopeless: &mut Hopeless) {
     for _ in 0..ROUNDS {
-        let bad: Vec<u32> = net.present().map(|(triangle, _)| triangle).filter(|&t| is_off(net, t)).collect();
+        let is_bad = |&triangle: &u32| is_off(net, triangle) && !hopeless.contains(&net.corners(triangle));
+        let bad: Vec<u32> = net.present().map(|(triangle, _)| triangle).filter(is_bad).collect();
+        // Where so many face another way, it is not for a few vertices to mend: the field is not smooth there.
+        if bad.len() * MOST > net.present().count() {
+            break;
+        }
         let mut mended = 0;
         for triangle in bad {
-            if net.is_present(triangle) && is_off(net, triangle) {
-                mended += usize::from(mend_one(net, triangle, limits, short));
+            if !net.is_present(triangle) || !is_off(net, triangle) {
+                continue;
+            }
+            let corners = net.corners(triangle);
+            if !mend_one(net, triangle, limits, short) {
+                hopeless.insert(corners);
+                continue;
+            }
+            mended += 1;
+            for &corner in &corners {
+                for &around in net.star(corner) {
+                    hopeless.remove(&net.corners(around));
+                }
             }
         }
         if mended == 0 {

@@ -49,7 +49,7 @@ const DIVISIONS: usize = 4;
 /// Times that single triangles are mended, and vertices around them moved.
 const MENDINGS: usize = 3;
 /// Times that everything is tried, at most, each with more vertices frozen than before.
-const ATTEMPTS: usize = 6;
+const ATTEMPTS: usize = 4;
 
 /// Bytes held for each vertex of the cells' surface: the vertex twice, its star, and two triangles with the ways they face.
 const BYTES: usize = 500;
@@ -139,8 +139,9 @@ fn improve(
         }
         edit::flip_all(net, limits);
     }
+    let mut hopeless = mend::Hopeless::default();
     for _ in 0..MENDINGS {
-        mend::mend(net, limits, tolerance);
+        mend::mend(net, limits, tolerance, &mut hopeless);
         sharpen::sharpen(net, nearby, control)?;
         edit::flip_all(net, limits);
         edit::collapse_all(net, limits);
