@@ -14,8 +14,7 @@ use super::arguments::{Combination, Combine};
 use super::fault::{Exit, Fault};
 use super::mended;
 use super::operands::{self, Operand};
-use super::output::{self, Product, Shown, Target};
-use super::recenter;
+use super::output::{self, Target};
 use super::report::{self, Measures};
 use super::requests::{self, Request};
 use super::scenes;
@@ -25,6 +24,7 @@ use super::surface;
 use super::task::Task;
 use super::values;
 use super::words;
+use super::written::Written;
 
 /// Runs a boolean of the inputs.
 pub(crate) fn run(
@@ -346,21 +346,14 @@ pub(super) fn write(
 ) -> Result<Vec<Value>, Fault> {
     let start = Instant::now();
     session.console.stage("writing", 1.0);
-    let mesh = recenter::placed(outcome.solid().mesh(), &results.writing, session);
-    let mesh = mesh.as_ref();
-    let drawing = &results.drawing;
-    let picture = || {
-        let operands = outcome.origins().iter().map(|origin| origin.operand as usize);
-        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), operands);
-        trisect::render::mesh(mesh, &output::view(drawing, style.format), colours.as_deref())
+    let operand = |triangle: usize| outcome.origins()[triangle].operand as usize;
+    let written = Written {
+        usual: Colours::Operand,
+        operand: &operand,
+        outcome: Some(outcome),
+        ..Written::new(outcome.solid().mesh(), style.options.clone(), style.format)
     };
-    let options = style.options.clone();
-    let shown = Shown::new(drawing, style.format, Some(outcome));
-    let product = Product { mesh, options, picture: &picture, documents: &[], shown };
-    let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
-    for warning in warnings {
-        session.warn(warning);
-    }
+    let outputs = written.to(targets, &results.writing, &results.drawing, session)?;
     session.took("write", start);
     Ok(outputs)
 }

@@ -9,13 +9,12 @@ use trisect::control::Reservation;
 use trisect::io::{Format, WriteOptions};
 use trisect::{Error, Mesh};
 
-use super::argument_groups::{Colours, Writing};
+use super::argument_groups::Writing;
 use super::arguments::Convert;
 use super::fault::{Exit, Fault};
 use super::mended;
-use super::output::{self, Product, Shown, Target};
+use super::output::{self, Target};
 use super::reading::{self, Input};
-use super::recenter;
 use super::report::{self, Measures};
 use super::requests::{self, Request};
 use super::scenes;
@@ -23,6 +22,7 @@ use super::selection;
 use super::session::Session;
 use super::usable;
 use super::words;
+use super::written::Written;
 
 /// Converts one input.
 pub(crate) fn run(
@@ -116,21 +116,9 @@ fn write(
 ) -> Result<(), Fault> {
     let start = Instant::now();
     session.console.stage("writing", 1.0);
-    let mesh = recenter::placed(mesh, writing, session);
-    let mesh = mesh.as_ref();
-    let drawing = &arguments.results.drawing;
-    let picture = || {
-        let operands = mesh.triangles.iter().map(|_| 0);
-        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
-        trisect::render::mesh(mesh, &output::view(drawing, Some(*format)), colours.as_deref())
-    };
-    let shown = Shown::new(drawing, Some(*format), None);
-    let product = Product { mesh, options, picture: &picture, documents: &[], shown };
-    let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
+    let written = Written::new(mesh, options, Some(*format));
+    let outputs = written.to(targets, writing, &arguments.results.drawing, session)?;
     session.note("outputs", outputs);
-    for warning in warnings {
-        session.warn(warning);
-    }
     session.took("write", start);
     Ok(())
 }

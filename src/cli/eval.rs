@@ -8,18 +8,18 @@ use trisect::field::Contours;
 use trisect::model::{Evaluated, Evaluation, Model};
 use trisect::{Mesh, Solid};
 
-use super::argument_groups::Colours;
+use super::argument_groups::Results;
 use super::documents::{self, Document};
 use super::fault::{Exit, Fault};
 use super::field_arguments::Eval;
-use super::output::{self, Product, Shown, Target};
+use super::output::{self, Target};
 use super::reading;
-use super::recenter;
 use super::report::Measures;
 use super::scenes;
 use super::session::Session;
 use super::stream::STANDARD;
 use super::words;
+use super::written::Written;
 
 /// Evaluates a model.
 pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, Fault> {
@@ -155,22 +155,10 @@ fn write(
     let start = Instant::now();
     session.console.stage("writing", 1.0);
     let outputs = if let Some(mesh) = mesh {
-        let mesh = recenter::placed(mesh, &arguments.results.writing, session);
-        let mesh = mesh.as_ref();
-        let drawing = &arguments.results.drawing;
-        let picture = || {
-            let operands = mesh.triangles.iter().map(|_| 0);
-            let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
-            trisect::render::mesh(mesh, &output::view(drawing, None), colours.as_deref())
-        };
-        let options = output::write_options(&arguments.results.writing, &session.limits);
-        let shown = Shown::new(drawing, None, None);
-        let product = Product { mesh, options, picture: &picture, documents: drawn, shown };
-        let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
-        for warning in warnings {
-            session.warn(warning);
-        }
-        outputs
+        let Results { writing, drawing } = &arguments.results;
+        let options = output::write_options(writing, &session.limits);
+        let written = Written { documents: drawn, ..Written::new(mesh, options, None) };
+        written.to(targets, writing, drawing, session)?
     } else {
         documents::write(drawn, &session.limits)?
     };

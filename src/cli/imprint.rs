@@ -6,12 +6,11 @@ use clap::ArgMatches;
 use serde_json::Value;
 use trisect::{Imprinted, Mesh};
 
-use super::argument_groups::{Colours, Results};
+use super::argument_groups::Results;
 use super::combine::Style;
 use super::cut_arguments::Imprint;
 use super::fault::{Exit, Fault};
-use super::output::{self, Product, Shown, Target};
-use super::recenter;
+use super::output::{self, Target};
 use super::report::Measures;
 use super::requests;
 use super::scenes;
@@ -19,6 +18,7 @@ use super::selection;
 use super::session::Session;
 use super::trim::{self, Sheet};
 use super::words;
+use super::written::Written;
 
 /// Draws the curve in which two inputs meet on both.
 pub(crate) fn run(
@@ -91,17 +91,6 @@ fn write(
     style: Style,
     session: &mut Session<'_>,
 ) -> Result<Vec<Value>, Fault> {
-    let placed = recenter::placed(mesh, &results.writing, session);
-    let placed = placed.as_ref();
-    let drawing = &results.drawing;
-    let picture = || {
-        let operands = placed.triangles.iter().map(|_| 0);
-        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
-        trisect::render::mesh(placed, &output::view(drawing, style.format), colours.as_deref())
-    };
-    let shown = Shown::new(drawing, style.format, None);
-    let product = Product { mesh: placed, options: style.options, picture: &picture, documents: &[], shown };
-    let (written, warnings) = output::write_all(targets, &product, &session.limits)?;
-    warnings.into_iter().for_each(|warning| session.warn(warning));
-    Ok(written)
+    let written = Written::new(mesh, style.options, style.format);
+    written.to(targets, &results.writing, &results.drawing, session)
 }

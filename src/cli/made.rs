@@ -3,15 +3,15 @@
 use std::time::Instant;
 
 use trisect::io::Format;
-use trisect::{Mesh, Solid};
+use trisect::Solid;
 
 use super::argument_groups::{Colours, Results};
 use super::fault::Fault;
-use super::output::{self, Product, Shown, Target};
-use super::recenter;
+use super::output::{self, Target};
 use super::report::Measures;
 use super::session::Session;
 use super::words;
+use super::written::Written;
 
 /// The outputs that are asked for, which can be written; a fault where there is no use of the result.
 pub(crate) fn targets(results: &Results, session: &Session<'_>) -> Result<Vec<Target>, Fault> {
@@ -38,21 +38,9 @@ pub(crate) fn deliver(
     session.console.stage("writing", 1.0);
     let measures = if session.is_reported() { Measures::of_solid(solid) } else { Measures::for_line(solid) };
     session.note("result", measures.to_json());
-    let mesh = recenter::placed(solid.mesh(), &results.writing, session);
-    let mesh: &Mesh = mesh.as_ref();
-    let drawing = &results.drawing;
-    let picture = || {
-        let operands = mesh.triangles.iter().map(|_| 0);
-        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), operands);
-        trisect::render::mesh(mesh, &output::view(drawing, format), colours.as_deref())
-    };
     let options = output::write_options(&results.writing, &session.limits);
-    let shown = Shown::new(drawing, format, None);
-    let product = Product { mesh, options, picture: &picture, documents: &[], shown };
-    let (outputs, warnings) = output::write_all(targets, &product, &session.limits)?;
-    for warning in warnings {
-        session.warn(warning);
-    }
+    let written = Written { usual: Colours::Operand, ..Written::new(solid.mesh(), options, format) };
+    let outputs = written.to(targets, &results.writing, &results.drawing, session)?;
     session.note("outputs", outputs);
     session.took("write", start);
     let arrow = output::arrow(targets);

@@ -73,6 +73,7 @@ mod usable;
 mod values;
 mod verbs;
 mod words;
+mod written;
 
 use std::any::Any;
 use std::ffi::OsString;

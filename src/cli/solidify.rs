@@ -10,15 +10,15 @@ use super::cut_arguments::Solidify as Arguments;
 use super::fault::{Exit, Fault};
 use super::json::json_of;
 use super::made;
-use super::output::{self, Product, Shown, Target};
+use super::output::{self, Target};
 use super::reading::{self, Input};
-use super::recenter;
 use super::report::Measures;
 use super::requests;
 use super::scenes;
 use super::selection;
 use super::session::Session;
 use super::words;
+use super::written::Written;
 
 /// Makes a solid of an input.
 pub(crate) fn run(
@@ -56,18 +56,12 @@ pub(crate) fn run(
     tell(&made, &targets, seconds, session);
 
     let start = Instant::now();
-    let placed = recenter::placed(made.solid.mesh(), writing, session);
-    let placed = placed.as_ref();
-    let drawing = &arguments.results.drawing;
-    let picture = || {
-        let operands = made.origins.iter().map(|origin| origin.operand as usize);
-        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Operand), operands);
-        trisect::render::mesh(placed, &output::view(drawing, Some(format)), colours.as_deref())
+    let written = Written {
+        usual: Colours::Operand,
+        operand: &|triangle| made.origins[triangle].operand as usize,
+        ..Written::new(made.solid.mesh(), write_options, Some(format))
     };
-    let shown = Shown::new(drawing, Some(format), None);
-    let product = Product { mesh: placed, options: write_options, picture: &picture, documents: &[], shown };
-    let (outputs, warnings) = output::write_all(&targets, &product, &session.limits)?;
-    warnings.into_iter().for_each(|warning| session.warn(warning));
+    let outputs = written.to(&targets, writing, &arguments.results.drawing, session)?;
     session.note("outputs", outputs);
     session.took("write", start);
     Ok(Exit::Fine)

@@ -13,8 +13,7 @@ use super::combine;
 use super::cut_arguments::Split;
 use super::fault::{Exit, Fault};
 use super::operands::{self, Operand};
-use super::output::{self, Product, Shown, Target};
-use super::recenter;
+use super::output::{self, Target};
 use super::report::{self, Measures};
 use super::requests::{self, Request};
 use super::scenes;
@@ -22,6 +21,7 @@ use super::selection;
 use super::session::Session;
 use super::trim::{self, Sheet};
 use super::words;
+use super::written::Written;
 
 /// A part that is written to files of its own.
 struct Part {
@@ -219,19 +219,12 @@ fn write(
     for part in parts {
         let targets: Vec<Target> =
             targets.iter().map(|target| target.with_suffix(&part.suffix)).collect::<Result<_, _>>()?;
-        let mesh = recenter::placed(&part.mesh, &results.writing, session);
-        let mesh = mesh.as_ref();
-        let picture = || {
-            let operands = part.operands.iter().copied();
-            let colours = output::colours(results.drawing.png_color.unwrap_or(Colours::Operand), operands);
-            trisect::render::mesh(mesh, &output::view(&results.drawing, style.format), colours.as_deref())
+        let written = Written {
+            usual: Colours::Operand,
+            operand: &|triangle| part.operands[triangle],
+            ..Written::new(&part.mesh, style.options.clone(), style.format)
         };
-        let options = style.options.clone();
-        let shown = Shown::new(&results.drawing, style.format, None);
-        let product = Product { mesh, options, picture: &picture, documents: &[], shown };
-        let (written, warnings) = output::write_all(&targets, &product, &session.limits)?;
-        warnings.into_iter().for_each(|warning| session.warn(warning));
-        outputs.extend(written);
+        outputs.extend(written.to(&targets, &results.writing, &results.drawing, session)?);
         let mut object = part.measures.to_json();
         let name = part.suffix.trim_start_matches('-').to_owned();
         object.insert("part".into(), name.clone().into());

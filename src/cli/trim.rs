@@ -7,16 +7,15 @@ use trisect::control::Reservation;
 use trisect::io::Format;
 use trisect::{Control, Error, Mesh, TrimSide};
 
-use super::argument_groups::{Colours, Writing};
+use super::argument_groups::Writing;
 use super::combine;
 use super::cut_arguments::Trim;
 use super::fault::{Exit, Fault};
 use super::made;
 use super::mended;
 use super::operands;
-use super::output::{self, Product, Shown};
+use super::output;
 use super::reading::{self, Input};
-use super::recenter;
 use super::report::Measures;
 use super::requests::{self, Request};
 use super::scenes;
@@ -24,6 +23,7 @@ use super::selection;
 use super::session::Session;
 use super::usable;
 use super::words;
+use super::written::Written;
 
 /// Trims the first input by the second.
 pub(crate) fn run(arguments: &Trim, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
@@ -56,18 +56,8 @@ pub(crate) fn run(arguments: &Trim, matches: &ArgMatches, session: &mut Session<
     session.note("result", measures.to_json());
 
     let start = Instant::now();
-    let placed = recenter::placed(&trimmed.mesh, writing, session);
-    let placed = placed.as_ref();
-    let drawing = &arguments.results.drawing;
-    let picture = || {
-        let operands = placed.triangles.iter().map(|_| 0);
-        let colours = output::colours(drawing.png_color.unwrap_or(Colours::Material), operands);
-        trisect::render::mesh(placed, &output::view(drawing, Some(sheet.format)), colours.as_deref())
-    };
-    let shown = Shown::new(drawing, Some(sheet.format), None);
-    let product = Product { mesh: placed, options: write_options, picture: &picture, documents: &[], shown };
-    let (outputs, warnings) = output::write_all(&targets, &product, &session.limits)?;
-    warnings.into_iter().for_each(|warning| session.warn(warning));
+    let written = Written::new(&trimmed.mesh, write_options, Some(sheet.format));
+    let outputs = written.to(&targets, writing, &arguments.results.drawing, session)?;
     session.note("outputs", outputs);
     session.took("write", start);
     let arrow = output::arrow(&targets);
