@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use trisect::io::Format;
 use trisect::Solid;
+use trisect::io::Format;
 
 use super::argument_groups::{Colours, Results};
 use super::fault::Fault;

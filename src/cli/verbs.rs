@@ -61,12 +61,12 @@ const MEANT_OPTIONS: &[(&[&str], &str)] = &[
     ),
 ];
 
-/// Values that people give by themselves, without the option they belong to.
-const BARE: &[(&[&str], &str, fn(&str) -> bool)] = &[
-    (&["offset"], "--distance", is_number),
-    (&["hollow"], "--wall", is_number),
-    (&["section"], "--plane", is_plane),
-];
+/// Whether a word can be a value.
+type Fits = fn(&str) -> bool;
+
+/// Values that people give by themselves, without the option they belong to: of which verb, of which option.
+const BARE: &[(&str, &str, Fits)] =
+    &[("offset", "--distance", is_number), ("hollow", "--wall", is_number), ("section", "--plane", is_plane)];
 
 fn is_number(word: &str) -> bool {
     word.parse::<f64>().is_ok()
@@ -105,7 +105,7 @@ pub(super) fn hint(error: &clap::Error, line: &[OsString]) -> Option<String> {
 fn bare_hint(line: &[OsString]) -> Option<String> {
     let words: Vec<_> = line.iter().map(|word| word.to_string_lossy()).collect();
     let verb = words.get(1)?;
-    let (_, option, fits) = BARE.iter().find(|(verbs, ..)| verbs.contains(&verb.as_ref()))?;
+    let (_, option, fits) = BARE.iter().find(|(of, ..)| verb == of)?;
     if words.iter().any(|word| word.starts_with(option)) {
         return None;
     }

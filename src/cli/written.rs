@@ -30,7 +30,15 @@ pub(crate) struct Written<'a> {
 impl<'a> Written<'a> {
     /// A mesh in the colours of its materials.
     pub(crate) fn new(mesh: &'a Mesh, options: WriteOptions, format: Option<Format>) -> Self {
-        Self { mesh, options, format, usual: Colours::Material, operand: &|_| 0, outcome: None, documents: &[] }
+        Self {
+            mesh,
+            options,
+            format,
+            usual: Colours::Material,
+            operand: &|_| 0,
+            outcome: None,
+            documents: &[],
+        }
     }
 
     /// Writes it; returns what the report says of the files.
