@@ -7,8 +7,8 @@ use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
-use trisect::field::{Expression, Extraction, Formula, Grid, SignedDistance, System};
-use trisect::model::{Evaluation, Model};
+use trisect::field::{Expression, Extracted, Extraction, Formula, Grid, SignedDistance, System};
+use trisect::model::{Evaluation, ExtractionReport, Model};
 use trisect::{Control, Error, Solid};
 
 use crate::running::WATCHED_FROM;
@@ -210,7 +210,7 @@ impl Field {
     }
 }
 
-/// The solid where a field is positive, and the largest deviation found.
+/// The solid where a field is positive, with what its extraction reports.
 #[pyfunction]
 #[pyo3(signature = (field, low, high, tolerance, clip=false, resolution=None, settings=None))]
 #[allow(clippy::too_many_arguments, reason = "they are Python's keywords")]
@@ -223,15 +223,17 @@ pub(crate) fn extract(
     clip: bool,
     resolution: Option<f64>,
     settings: Option<&Bound<'_, PyDict>>,
-) -> PyResult<(Core, f64)> {
+) -> PyResult<Core> {
     let expression = Arc::clone(&field.expression);
-    let (solid, deviation) = limits(settings)?.run(py, WATCHED_FROM, |control| {
+    let (solid, report) = limits(settings)?.run(py, WATCHED_FROM, |control| {
         let mut extraction = Extraction::new(low, high, tolerance).clip(clip).control(control.clone());
         if let Some(resolution) = resolution {
             extraction = extraction.resolution(resolution);
         }
-        let extracted = extraction.run(&expression)?;
-        Ok((Solid::try_from(extracted.mesh)?, extracted.deviation))
+        let Extracted { mesh, cells, divided_cells, deviation, normal_deviation, .. } =
+            extraction.run(&expression)?;
+        let report = ExtractionReport { tolerance, deviation, normal_deviation, cells, divided_cells };
+        Ok((Solid::try_from(mesh)?, report))
     })?;
-    Ok((solid.into(), deviation))
+    Ok(Core::extracted(solid, Some(report)))
 }

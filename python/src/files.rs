@@ -103,7 +103,7 @@ pub(crate) fn model(
     tolerance: Option<f64>,
     settings: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<(Core, Vec<String>)> {
-    let (solid, warnings) = limits(settings)?.run(py, WATCHED_FROM, |control| {
+    let (core, warnings) = limits(settings)?.run(py, WATCHED_FROM, |control| {
         let model = Model::parse(text, &folder)?;
         let mut evaluation = Evaluation::new().control(control.clone());
         if let Some(tolerance) = tolerance {
@@ -111,7 +111,7 @@ pub(crate) fn model(
         }
         let evaluated = evaluation.run(&model)?;
         let solid = Gate::new().solid(evaluated.mesh).map_err(Error::from)?;
-        Ok((solid, evaluated.warnings))
+        Ok((Core::extracted(solid, evaluated.extraction), evaluated.warnings))
     })?;
-    Ok((solid.into(), warnings))
+    Ok((core, warnings))
 }

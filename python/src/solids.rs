@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rustc_hash::FxHasher;
 use trisect::mesh::{Gate, Welding};
+use trisect::model::ExtractionReport;
 use trisect::{Certificate, Error, Mesh, Outcome, Solid};
 
 use crate::failures;
@@ -43,6 +44,8 @@ impl Made {
 #[pyclass(frozen, module = "trisect._trisect")]
 pub(crate) struct Core {
     pub(crate) made: Arc<Made>,
+    /// Of a surface extracted from a field.
+    extraction: Option<ExtractionReport>,
     hash: OnceLock<u64>,
 }
 
@@ -51,17 +54,22 @@ type OriginTables<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>, 
 
 impl From<Solid> for Core {
     fn from(solid: Solid) -> Self {
-        Self { made: Arc::new(Made::Solid(Box::new(solid))), hash: OnceLock::new() }
+        Self::extracted(solid, None)
     }
 }
 
 impl From<Outcome> for Core {
     fn from(outcome: Outcome) -> Self {
-        Self { made: Arc::new(Made::Outcome(Box::new(outcome))), hash: OnceLock::new() }
+        Self { made: Arc::new(Made::Outcome(Box::new(outcome))), extraction: None, hash: OnceLock::new() }
     }
 }
 
 impl Core {
+    /// A solid with what its extraction reports, if it comes from one.
+    pub(crate) fn extracted(solid: Solid, extraction: Option<ExtractionReport>) -> Self {
+        Self { made: Arc::new(Made::Solid(Box::new(solid))), extraction, hash: OnceLock::new() }
+    }
+
     pub(crate) fn solid(&self) -> &Solid {
         self.made.solid()
     }
@@ -254,6 +262,20 @@ impl Core {
         let (cleaning, mending) = (self.solid().cleaning(), self.solid().mending());
         let of = |value: Result<String, serde_json::Error>| value.unwrap_or_default();
         (of(serde_json::to_string(&cleaning)), of(serde_json::to_string(mending)), mending.to_string())
+    }
+
+    /// What the extraction reports as JSON, if the surface is one of a field.
+    fn extraction(&self) -> Option<String> {
+        let ExtractionReport { tolerance, deviation, normal_deviation, cells, divided_cells } =
+            self.extraction?;
+        let report = serde_json::json!({
+            "tolerance": tolerance,
+            "deviation": deviation,
+            "normal_deviation": normal_deviation,
+            "cells": cells,
+            "divided_cells": divided_cells,
+        });
+        Some(report.to_string())
     }
 
     /// Where the surface crosses itself, as JSON.

@@ -214,11 +214,26 @@ def test_fields(pair: Any) -> None:
     ball = trisect.fields.Field("r^2 - x^2 - y^2 - z^2", r=1.0)
     assert ball([[0, 0, 0], [2, 0, 0]]).tolist() == [1.0, -3.0]
     assert ball.solid([[-2] * 3, [2] * 3], tolerance=0.02).volume == pytest.approx(4.19, abs=0.1)
+    made = ball.solid([[-2] * 3, [2] * 3], tolerance=0.02)
+    report = made.extraction
+    assert report is not None and report.tolerance == 0.02
+    # Beside what is measured here: vertices and middles of faces from the unit sphere, faces from its normals.
+    corners = made.vertices[made.faces]
+    middles = corners.mean(axis=1)
+    farthest = abs(np.linalg.norm(np.vstack([made.vertices, middles]), axis=1) - 1).max()
+    assert 0.5 * farthest < report.deviation <= 0.02
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    cosines = (normals * middles).sum(axis=1) / np.linalg.norm(normals, axis=1) / np.linalg.norm(middles, axis=1)
+    turned = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
+    assert 0.5 * np.percentile(turned, 90) < report.normal_deviation <= 5 and report.cells > report.divided_cells >= 0
+    assert made.translated([1, 0, 0]).extraction is None and (made - a).extraction is None and a.extraction is None
     hollow = trisect.fields.Field("min(f(x,y,z), -f(2*x,2*y,2*z))", f=ball)
     assert hollow([[0, 0, 0], [0.75, 0, 0]]).tolist() == [-1.0, 0.4375]
     assert ball.grid([[0, 0, 0], [1, 1, 1]], 0.5).values.shape == (3, 3, 3)
     modelled = trisect.fields.Field.of_model({"kind": "sphere", "radius": 2})
     assert modelled([[0, 0, 0]])[0] > 0 > modelled([[3, 0, 0]])[0]
+    blended = trisect.evaluate_model({"kind": "formula", "formula": "sphere(x, y, z, 2)", "bounds": [[-3] * 3, [3] * 3]}, tolerance=0.05)
+    assert blended.extraction is not None and 0 < blended.extraction.deviation <= blended.extraction.tolerance == 0.05
     with pytest.raises(trisect.FormulaError) as raised:
         trisect.fields.Field("x +* y")
     assert raised.value.line == 1 and raised.value.column is not None

@@ -108,6 +108,22 @@ class Cleaning(Record):
 
 
 @dataclass(frozen=True)
+class Extraction(Record):
+    """How well a surface follows the field that it was extracted from.
+
+    ``tolerance`` is what was asked for and ``deviation`` the largest distance found, in units of the coordinates; 95 of a hundred
+    faces are within ``normal_deviation`` degrees of the field's gradient. ``cells`` counts the cubes that the surface was sought
+    in, ``divided_cells`` those of the least size in which it had several pieces.
+    """
+
+    tolerance: float = 0.0
+    deviation: float = 0.0
+    normal_deviation: float = 0.0
+    cells: int = 0
+    divided_cells: int = 0
+
+
+@dataclass(frozen=True)
 class Diagnosis(Record):
     """All that is known of a mesh as a surface. ``str()`` of it is short and has the first places."""
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _convert, _trisect
 from ._errors import ArgumentError, TrisectWarning
-from ._records import Certificate, Cleaning, Diagnosis, Mending, SelfCrossings
+from ._records import Certificate, Cleaning, Diagnosis, Extraction, Mending, SelfCrossings
 from ._settings import Limits, Settings, settings
 
 TYPE_CHECKING = False
@@ -437,6 +437,12 @@ class Solid(_Surface):
     def cleaning(self) -> Cleaning:
         """What was left out or joined when the solid was made; false if nothing was."""
         return Cleaning.of(json.loads(self._core.mending()[0]))
+
+    @property
+    def extraction(self) -> Optional[Extraction]:
+        """How well the surface follows the field it was extracted from (``Field.solid``, a model that is a field); ``None`` if from none."""
+        report = self._core.extraction()
+        return None if report is None else Extraction.of(json.loads(report))
 
     def self_crossings(self, **limits: "Unpack[Limits]") -> SelfCrossings:
         """Where the surface crosses itself; false if nowhere. Remembered."""

@@ -16,6 +16,7 @@ use super::scenes;
 use super::selection;
 use super::session::Session;
 use super::surface;
+use super::verbs;
 use super::words;
 
 /// Cuts an input.
@@ -87,6 +88,9 @@ pub(crate) fn run(arguments: &Cut, matches: &ArgMatches, session: &mut Session<'
 /// What somebody may have meant who gave no plane.
 fn without_plane(requests: &[requests::Request]) -> Fault {
     let names: Vec<String> = requests.iter().map(requests::Request::name).collect();
+    if let Some(plane) = names.iter().find(|name| verbs::is_plane(name)) {
+        return Fault::usage(format!("'{plane}' is no file: say --plane {plane}"));
+    }
     Fault::usage(if names.len() > 1 {
         format!(
             "cut cuts at planes (--plane z=12.5); to take files off the first one: `trisect difference {} -o OUTPUT`",

@@ -51,15 +51,40 @@ const MEANT_OPTIONS: &[(&[&str], &str)] = &[
         &["--tolerance", "--epsilon", "--eps"],
         "it is exact; --snap UNITS of booleans makes the same what is no further apart",
     ),
+    (
+        &["-a", "-b", "-i", "--a", "--b", "--input", "--tool", "--with", "--operand"],
+        "inputs stand by themselves, in their order, as in `trisect difference BODY TOOL -o RESULT`",
+    ),
+    (
+        &["--layer", "--layers", "--layer-height", "--every", "--step"],
+        "`trisect section FILE --heights 0:0.2:10 -o layers.svg` draws the outlines at the heights from 0 to 10, every 0.2",
+    ),
 ];
+
+/// Whether a word can be a value.
+type Fits = fn(&str) -> bool;
+
+/// Values that people give by themselves, without the option they belong to: of which verb, of which option.
+const BARE: &[(&str, &str, Fits)] =
+    &[("offset", "--distance", is_number), ("hollow", "--wall", is_number), ("section", "--plane", is_plane)];
+
+fn is_number(word: &str) -> bool {
+    word.parse::<f64>().is_ok()
+}
+
+/// Whether a word is a plane across an axis, such as `z=12.5`.
+pub(super) fn is_plane(word: &str) -> bool {
+    word.split_once('=').is_some_and(|(axis, at)| matches!(axis, "x" | "y" | "z") && is_number(at))
+}
 
 /// One line for a verb or an option that does not exist but is meant to; `None` for other errors.
 pub(super) fn hint(error: &clap::Error, line: &[OsString]) -> Option<String> {
-    if error.kind() == ErrorKind::UnknownArgument {
-        return option_hint(error, line);
-    }
-    if error.kind() != ErrorKind::InvalidSubcommand {
-        return None;
+    match error.kind() {
+        ErrorKind::UnknownArgument => return bare_hint(line).or_else(|| option_hint(error, line)),
+        ErrorKind::MissingRequiredArgument => return bare_hint(line),
+        ErrorKind::InvalidValue => return output_hint(error),
+        ErrorKind::InvalidSubcommand => {}
+        _ => return None,
     }
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidSubcommand) else { return None };
     if let Some((_, meant)) = MEANT.iter().find(|(words, _)| words.contains(&word.to_lowercase().as_str())) {
@@ -73,6 +98,35 @@ pub(super) fn hint(error: &clap::Error, line: &[OsString]) -> Option<String> {
             "'{word}' is a file, and a verb comes first: `trisect union {word} ... -o OUTPUT`, or difference, intersection, convert, \
              info, check (`trisect --help` lists all)"
         )
+    })
+}
+
+/// A value that stands without its option.
+fn bare_hint(line: &[OsString]) -> Option<String> {
+    let words: Vec<_> = line.iter().map(|word| word.to_string_lossy()).collect();
+    let verb = words.get(1)?;
+    let (_, option, fits) = BARE.iter().find(|(of, ..)| verb == of)?;
+    if words.iter().any(|word| word.starts_with(option)) {
+        return None;
+    }
+    // (What stands after an option is the value of that one.)
+    let is_option = |word: &str| word.starts_with('-') && !is_number(word);
+    let bare = words.windows(2).skip(1).find(|pair| fits(&pair[1]) && !is_option(&pair[0]))?;
+    Some(format!("'{0}' is no file: say {option} {0} (`trisect {verb} --help` lists all)", bare[1]))
+}
+
+/// An output without a name.
+fn output_hint(error: &clap::Error) -> Option<String> {
+    let of = |kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => text.as_str(),
+        _ => "",
+    };
+    let is_nameless =
+        of(ContextKind::InvalidArg).starts_with("--output <") && of(ContextKind::InvalidValue).is_empty();
+    is_nameless.then(|| {
+        "after -o the name of the file to write is missing, such as `-o result.stl`; its ending tells the format (`trisect info \
+         --formats` lists all)"
+            .to_owned()
     })
 }
 
@@ -108,7 +162,29 @@ mod tests {
         assert!(hint_for("trisect -o c.stl a.stl b.stl").unwrap().contains("the verb comes first"));
         assert!(hint_for("trisect cut a.stl --at 3").unwrap().contains("--plane"));
         assert!(hint_for("trisect union a.stl b.stl --eps 1").unwrap().contains("--snap"));
+        assert!(hint_for("trisect subtract a.stl -b b.stl -o c.stl").unwrap().contains("by themselves"));
+        assert!(hint_for("trisect slice a.stl --layer 0.2").unwrap().contains("trisect section"));
         assert_eq!(hint_for("trisect union a.stl --ouput b.stl"), None);
+    }
+
+    #[test]
+    fn values_without_their_options_and_options_without_values_get_a_hint() {
+        let hint_for = |line: &str| {
+            let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
+            hint(&Arguments::command().try_get_matches_from(&words).unwrap_err(), &words)
+        };
+        for (line, meant) in [
+            ("trisect offset a.stl 0.1 -o b.stl", "--distance 0.1 "),
+            ("trisect offset a.stl -0.1 -o b.stl", "--distance -0.1 "),
+            ("trisect offset a.stl --tolerance 0.1 2 -o b.stl", "--distance 2 "),
+            ("trisect hollow a.stl 2 -o b.stl", "--wall 2 "),
+            ("trisect section a.stl z=2 -o b.svg", "--plane z=2 "),
+            ("trisect union a.stl b.stl -o", "-o result.stl"),
+        ] {
+            assert!(hint_for(line).expect(line).contains(meant), "{line}");
+        }
+        assert_eq!(hint_for("trisect offset a.stl --tolerance 0.1 -o b.stl"), None);
+        assert_eq!(hint_for("trisect offset a.stl --distance 0.1 --tolerence 1"), None);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::common::program::Folder;
 
 /// A command line, its exit code, and what it says on either stream.
-const LINES: [(&str, i32, &str); 42] = [
+const LINES: [(&str, i32, &str); 50] = [
     // Help in odd places.
     ("", 1, "Usage"),
     ("--help", 0, "Usage"),
@@ -48,6 +48,14 @@ const LINES: [(&str, i32, &str); 42] = [
     ("section a.off --plane z=0.5 -o s.png", 1, "svg"),
     ("grid a.off --spacing 0.5 -o g.vti", 1, "*.npy"),
     ("convert a.off --rotate 45 --scale 200% -o c.stl", 0, "c.stl"),
+    ("subtract a.off -b b.off -o c.off", 1, "trisect difference BODY TOOL"),
+    ("slice a.off --layer 0.2", 1, "trisect section"),
+    ("offset a.off 0.1 -o c.off", 1, "--distance 0.1"),
+    ("offset a.off -0.1 -o c.off", 1, "--distance -0.1"),
+    ("hollow a.off 0.1 -o c.off", 1, "--wall 0.1"),
+    ("cut a.off z=0.5 -o c.off", 1, "--plane z=0.5"),
+    ("intersection a.off b.off -o", 1, "-o result.stl"),
+    ("union a.off b.off --output", 1, "-o result.stl"),
     ("union --translate 1,0,0 a.off b.off -o c.off", 1, "before the first input"),
 ];
 

@@ -216,7 +216,7 @@ fn states(
     };
     let states: Vec<OperandState> =
         (0..).zip(operands).zip(counts).map(state).collect::<Result<_, Error>>()?;
-    Ok(first.iter().map(|&first| states[first].clone()).collect())
+    Ok(first.iter().map(|&first| states[first]).collect())
 }
 
 /// The volume of what an operand winds around more often inwards than outwards.

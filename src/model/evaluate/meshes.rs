@@ -44,9 +44,17 @@ struct Leaves {
 /// bound. What is left is evaluated by itself first.
 const MOST_OPERATIONS: usize = 4096;
 
+/// What to do with half-spaces, which have no end.
+const INSTEAD_OF_HALF_SPACES: &str = "use it in an `intersection`, take it off in a `difference`";
+
 /// The error of a node that has no end, and what to do with it instead.
 fn unbounded(what: &str, instead: &str) -> Error {
     Error::Model(format!("{what} is unbounded and has no mesh: {instead}, or evaluate it as a field"))
+}
+
+/// The error of a kind of nodes that the program at hand does not know.
+fn unknown(kind: &str) -> Error {
+    Error::Model(format!("nodes of the kind `{kind}` cannot be evaluated here"))
 }
 
 impl State<'_> {
@@ -81,8 +89,7 @@ impl State<'_> {
                     return Err(unbounded("a complement", "use `difference`").in_node(label));
                 }
                 Kind::HalfSpace(_) => {
-                    let instead = "use it in an `intersection`, take it off in a `difference`";
-                    return Err(unbounded("a half-space", instead).in_node(label));
+                    return Err(unbounded("a half-space", INSTEAD_OF_HALF_SPACES).in_node(label));
                 }
                 Kind::Reference(_, target) => (*self.operand_solid(*target)?).mesh().clone(),
                 Kind::Mesh(file) => self.mesh_file(node, file)?,
@@ -101,8 +108,7 @@ impl State<'_> {
                 Kind::Cage(none) => match **none {},
                 Kind::Custom { kind, value } => {
                     let Some(handler) = self.settings.kinds.get(kind) else {
-                        let what = format!("nodes of the kind `{kind}` cannot be evaluated here");
-                        return Err(Error::Model(what).in_node(label));
+                        return Err(unknown(kind).in_node(label));
                     };
                     let tolerance = self.given_tolerance(node);
                     handler.mesh(value, tolerance, &self.model.folder, control).map_err(within)?
