@@ -94,18 +94,6 @@ impl Trial {
         self.failures.push(format!("{context} {operation:?}: {faults}"));
     }
 
-    /// As [`finish`](Self::finish), where the failures are just these known ones (beginnings of their texts): each is a
-    /// fault of the engine that `docs/proof.md` lists. Panics as well if one of them does not fail any more.
-    pub(crate) fn finish_but(mut self, at_least: usize, known: &[&str]) {
-        // More cases than usual may hold more of the kind; those are told.
-        for known in known {
-            let at = self.failures.iter().position(|failure| failure.starts_with(known));
-            let at = at.unwrap_or_else(|| panic!("{known} is right now: take it off the list"));
-            self.failures.remove(at);
-        }
-        self.finish(at_least);
-    }
-
     /// Panics if anything failed, naming the first few; and if too little was tried.
     pub(crate) fn finish(self, at_least: usize) {
         let mut text = String::new();

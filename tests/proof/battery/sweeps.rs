@@ -121,5 +121,5 @@ fn round_bodies_nearly_the_same() {
             run(&mut trial, &format!("moved by {amount:e}"), &a, &b, shared, 1e-14);
         }
     }
-    trial.finish_but(800, &["moved by 5e-17 SymmetricDifference: 4 triangles without area"]);
+    trial.finish(800);
 }

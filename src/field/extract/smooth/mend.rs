@@ -204,7 +204,7 @@ mod tests {
         let mut net = Net::new(vertices, triangles, sides);
         let off = |net: &Net| net.present().filter(|&(triangle, _)| is_off(net, triangle)).count();
         assert!(off(&net) > 0);
-        mend(&mut net, Limits { sag: 0.1, angle: 0.1 }, 0.1);
+        mend(&mut net, Limits { sag: 0.1, angle: 0.1 }, 0.1, &mut Hopeless::default());
         assert_eq!(off(&net), 0);
     }
 }
