@@ -12,6 +12,8 @@ use super::net::{Kind, Net};
 const ROUNDS: usize = 4;
 /// Of so many triangles one may be to be mended: each takes as long as a hundred others.
 const MOST: usize = 50;
+/// So many may be in any case.
+const FEW: usize = 100;
 /// What a triangle counts that faces another way by `MENDED`; turned over it counts eighty times that.
 const OFF: f64 = 20.0;
 /// What a thin triangle counts, at most.
@@ -38,7 +40,7 @@ pub(super) fn mend(net: &mut Net, limits: Limits, short: f64, hopeless: &mut Hop
         let is_bad = |&triangle: &u32| is_off(net, triangle) && !hopeless.contains(&net.corners(triangle));
         let bad: Vec<u32> = net.present().map(|(triangle, _)| triangle).filter(is_bad).collect();
         // Where so many face another way, it is not for a few vertices to mend: the field is not smooth there.
-        if bad.len() * MOST > net.present().count() {
+        if bad.len() > FEW.max(net.present().count() / MOST) {
             break;
         }
         let mut mended = 0;
