@@ -70,7 +70,7 @@ pub(super) fn run(
         )));
     }
     // 1. One arrangement for all; copies of others have no triangles in it.
-    let (first, nothing) = (first_copies(operands), Solid::default());
+    let (first, nothing) = (first_copies(operands, runner.control)?, Solid::default());
     let is_first = |(i, solid)| if first[i] == i { solid } else { &nothing };
     let distinct: Vec<&Solid> = operands.iter().copied().enumerate().map(is_first).collect();
     let groups = merged_groups(operands);

@@ -71,7 +71,8 @@ pub(super) fn run(
     // 1. Every operand as a 2-manifold, with the origins and groups of its triangles.
     let groups = merged_groups(operands);
     let mut partials = manifold_partials(operands, &groups);
-    if let Some(nothing) = without_copies(operation, operands, &mut partials) {
+    let first = first_copies(operands, runner.control)?;
+    if let Some(nothing) = without_copies(operation, &first, &mut partials) {
         partials = vec![nothing];
     }
     // 2. Pair by pair.
@@ -118,13 +119,12 @@ pub(super) fn run(
     made.finish(policy, operands, runner)
 }
 
-/// Leaves copies of others out, which change nothing; or returns the empty result where something is taken off itself.
+/// Leaves copies of the `first` of their kind out, which change nothing; or returns the empty result where something is taken off itself.
 fn without_copies<'a>(
     operation: Operation,
-    operands: &[&Solid],
+    first: &[usize],
     partials: &mut Vec<Partial<'a>>,
 ) -> Option<Partial<'a>> {
-    let first = first_copies(operands);
     let takes_off = matches!(operation, Operation::Difference | Operation::SymmetricDifference);
     if takes_off && first[1..].contains(&0) {
         return Some(Partial::new(Cow::Owned(Solid::default()), Origins::default(), Vec::new()));

@@ -1,49 +1,76 @@
 //! Operands that are copies of others: they are left out before anything is computed.
 
-use rustc_hash::FxHashMap;
+use std::hash::BuildHasher;
 
-use crate::{Mesh, Solid};
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
-/// For each solid the first one that has its surface: the same triangles over the same coordinates, in whatever order. O(n), and
-/// O(k log k) for k triangles where solids have the same box and as many triangles, but not the same arrays.
-pub(super) fn first_copies(solids: &[&Solid]) -> Vec<usize> {
+use crate::control::Limit;
+use crate::{Control, Mesh, Solid};
+
+/// The corners of a triangle as bits, the lowest first.
+type Corners = [[u64; 3]; 3];
+
+/// For each solid the first one that has its surface: the same triangles over the same coordinates, in whatever order. O(1) for a
+/// solid whose box or number of triangles no other has, else O(n), and O(n log n) for copies that are numbered otherwise.
+///
+/// # Errors
+/// Limits.
+pub(super) fn first_copies(solids: &[&Solid], control: &Control) -> Result<Vec<usize>, Limit> {
     let mut alike: FxHashMap<(usize, [u64; 6]), Vec<usize>> = FxHashMap::default();
-    let mut first = Vec::with_capacity(solids.len());
     for (i, solid) in solids.iter().enumerate() {
-        let Some(bounds) = solid.bounds() else {
-            first.push(i);
-            continue;
-        };
+        let Some(bounds) = solid.bounds() else { continue };
         let corners = std::array::from_fn(|k| if k < 3 { bounds.low[k] } else { bounds.high[k - 3] });
         let key = (solid.mesh().triangles.len(), corners.map(|x: f64| (x + 0.0).to_bits()));
-        let others = alike.entry(key).or_default();
-        match others.iter().find(|&&other| have_one_surface(solids[other].mesh(), solid.mesh())) {
-            Some(&other) => first.push(other),
-            None => {
-                others.push(i);
-                first.push(i);
+        alike.entry(key).or_default().push(i);
+    }
+    let mut first: Vec<usize> = (0..solids.len()).collect();
+    for group in alike.into_values().filter(|group| group.len() > 1) {
+        // Sums that do not depend on the order of triangles tell most apart.
+        let mut by_sum: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
+        for i in group {
+            control.check()?;
+            let mesh = solids[i].mesh();
+            let others = by_sum.entry(sum(mesh)).or_default();
+            let mut found = None;
+            for &other in others.iter() {
+                if have_one_surface(solids[other].mesh(), mesh, control)? {
+                    found = Some(other);
+                    break;
+                }
+            }
+            match found {
+                Some(other) => first[i] = other,
+                None => others.push(i),
             }
         }
     }
-    first
+    Ok(first)
 }
 
-fn have_one_surface(a: &Mesh, b: &Mesh) -> bool {
-    a.triangles.len() == b.triangles.len()
-        && (a.triangles == b.triangles && a.positions == b.positions || sorted(a) == sorted(b))
-}
-
-/// The corners of all triangles, the lowest first, in order.
-fn sorted(mesh: &Mesh) -> Vec<[[u64; 3]; 3]> {
+fn corners(mesh: &Mesh) -> impl Iterator<Item = Corners> {
     // (Adding zero makes both zeros one.)
     let corner = |v: u32| mesh.positions[v as usize].map(|x| (x + 0.0).to_bits());
-    let turned = |&[a, b, c]: &[u32; 3]| {
+    mesh.triangles.iter().map(move |&[a, b, c]| {
         let [a, b, c] = [a, b, c].map(corner);
         [[a, b, c], [b, c, a], [c, a, b]].into_iter().min().unwrap_or([a, b, c])
+    })
+}
+
+fn sum(mesh: &Mesh) -> u64 {
+    corners(mesh).map(|corners| FxBuildHasher.hash_one(corners)).fold(0, u64::wrapping_add)
+}
+
+fn have_one_surface(a: &Mesh, b: &Mesh, control: &Control) -> Result<bool, Limit> {
+    if a.triangles == b.triangles && a.positions == b.positions {
+        return Ok(true);
+    }
+    let _both = control.reserve((2 * a.triangles.len() * size_of::<Corners>()) as u64)?;
+    let sorted = |mesh: &Mesh| {
+        let mut all: Vec<Corners> = corners(mesh).collect();
+        all.sort_unstable();
+        all
     };
-    let mut all: Vec<_> = mesh.triangles.iter().map(turned).collect();
-    all.sort_unstable();
-    all
+    Ok(sorted(a) == sorted(b))
 }
 
 #[cfg(test)]
@@ -67,8 +94,9 @@ mod tests {
         let far = mesh.clone().translated([5.0, 0.0, 0.0]);
         let solids = [mesh.clone(), mirrored.clone(), renumbered, far, mesh, mirrored]
             .map(|mesh| Solid::try_from(mesh).unwrap());
-        assert_eq!(first_copies(&solids.iter().collect::<Vec<_>>()), [0, 1, 0, 3, 0, 1]);
+        let first = first_copies(&solids.iter().collect::<Vec<_>>(), &Control::new());
+        assert_eq!(first, Ok(vec![0, 1, 0, 3, 0, 1]));
         let nothing = Solid::default();
-        assert_eq!(first_copies(&[&nothing, &nothing]), [0, 1]);
+        assert_eq!(first_copies(&[&nothing, &nothing], &Control::new()), Ok(vec![0, 1]));
     }
 }

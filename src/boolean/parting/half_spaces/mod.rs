@@ -141,12 +141,7 @@ struct Space(Bounds);
 impl Space {
     fn around(leaves: &[Leaf<'_>]) -> Self {
         let bounds = leaves.iter().filter_map(Leaf::solid).filter_map(Solid::bounds);
-        let mut all = bounds
-            .reduce(|all, one| Bounds {
-                low: std::array::from_fn(|k| all.low[k].min(one.low[k])),
-                high: std::array::from_fn(|k| all.high[k].max(one.high[k])),
-            })
-            .unwrap_or(Bounds { low: [0.0; 3], high: [0.0; 3] });
+        let mut all = bounds.reduce(Bounds::united).unwrap_or(Bounds { low: [0.0; 3], high: [0.0; 3] });
         let size = (0..3).map(|axis| all.high[axis] - all.low[axis]).fold(1.0f64, f64::max);
         all.low = all.low.map(|x| x - size);
         all.high = all.high.map(|x| x + size);
