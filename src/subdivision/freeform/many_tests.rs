@@ -58,7 +58,7 @@ fn tools_at_once_are_no_worse_than_one_by_one() {
 /// A tube along a figure of eight goes through itself.
 #[test]
 fn a_cage_that_crosses_itself_becomes_one_that_does_not() {
-    let eight = tube(40, 10, 0.16, |t| DVec3::new(t.sin(), t.sin() * t.cos(), 0.04 * (2.0 * t).cos()));
+    let eight = tube(40, 10, 0.16, |t| DVec3::new(t.sin(), t.sin() * t.cos(), 0.05 * t.cos()));
     let outcome = FreeForm::new().attempts(1).run_all(Operation::Union, &[&eight]).expect("a cage");
     check(&outcome, &[&eight], "eight");
     let report = outcome.report();
