@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::{Value, json};
-use trisect::{Error, Operation};
 use trisect::subdivision::{Cage, ControlMesh, FreeForm, FreeFormOutcome, FreeFormReport, Scheme};
+use trisect::{Error, Operation};
 
 use super::argument_groups::{Drawing, Writing};
 use super::cage_arguments::FreeFormVerb;

@@ -8,7 +8,9 @@ use rustc_hash::FxHashMap;
 use super::arrangement::{Crossed, General};
 use super::evaluate::{Finish, evaluate};
 use super::labels::winding;
+use crate::boolean::arrangement::pairs_of_some::pairs_with;
 use crate::boolean::complex::origin::Origin;
+use crate::boolean::result::assemble::Assembled;
 use crate::mesh::compact;
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
@@ -61,6 +63,9 @@ const GROWTH: usize = 2;
 /// Triangles that there may be in any case.
 const ALWAYS_ALLOWED: usize = 256;
 
+/// If more than one in so many triangles changed, crossings are looked for everywhere, which is then faster.
+const MOSTLY: usize = 4;
+
 /// A result that is to be freed of crossings: for each triangle where it came from and its group.
 #[derive(Clone, Debug)]
 pub(crate) struct Parts {
@@ -69,6 +74,8 @@ pub(crate) struct Parts {
     pub(crate) origins: Vec<Origin>,
     /// Empty if there are no groups.
     pub(crate) groups: Vec<u32>,
+    /// For each triangle whether crossings are looked for there; nothing if they are everywhere.
+    pub(crate) changed: Option<Vec<bool>>,
 }
 
 /// Rounds a result to a grid and resolves what crosses, until nothing does.
@@ -91,11 +98,18 @@ pub(crate) fn embed(
         if grid == Grid::Single || coarser(report.rounds) > 0 {
             merge(&mut parts);
         }
-        // 2. What crosses.
+        // 2. What crosses: everywhere, or where something changed.
         let positions = std::mem::take(&mut parts.positions);
         let mut triangles = std::mem::take(&mut parts.triangles);
         let positions = compact(&positions, &mut triangles);
         let solid = Solid::from_closed_unchecked(Mesh::new(positions, triangles));
+        if let Some(pairs) = near_changes(&parts, &solid, runner)? {
+            if pairs.is_empty() && best.is_none() {
+                let Mesh { positions, triangles, .. } = solid.into_mesh();
+                return Ok((Parts { positions, triangles, ..parts }, report));
+            }
+            solid.remember_near_pairs(pairs);
+        }
         let crossed = Crossed::new(&[&solid], runner)?;
         troubled = crossed.troubled();
         report.left = troubled.len();
@@ -106,7 +120,7 @@ pub(crate) fn embed(
         if report.left < fewest {
             let Mesh { positions, triangles, .. } = solid.mesh().clone();
             let (origins, groups) = (parts.origins.clone(), parts.groups.clone());
-            best = Some((Parts { positions, triangles, origins, groups }, report));
+            best = Some((Parts { positions, triangles, origins, groups, changed: None }, report));
         }
         if report.left == 0 || is_hopeless {
             return Ok(best.expect("the first round is better than none"));
@@ -120,21 +134,44 @@ pub(crate) fn embed(
         let arrays =
             evaluate(&general, &inside, Finish { remove_vertices, unit, find_low: false }, runner)?.arrays;
         let before = &parts;
+        let sources: Vec<u32> = arrays.origins.iter().map(|origin| origin.triangle).collect();
         let origins = arrays.origins.iter().map(|origin| {
             let source = before.origins[origin.triangle as usize];
             Origin { reversed: source.reversed != origin.reversed, ..source }
         });
         let groups = |origin: Origin| before.groups.get(origin.triangle as usize).copied();
+        let changed = before.changed.is_some().then(|| changes(&arrays, solid.mesh()));
         let made = Parts {
             origins: origins.collect(),
             groups: arrays.origins.iter().filter_map(groups).collect(),
             positions: arrays.positions,
             triangles: arrays.triangles,
+            changed,
         };
-        let sources: Vec<u32> = arrays.origins.iter().map(|origin| origin.triangle).collect();
         troubled = descendants(&troubled, &sources);
         parts = made;
     }
+}
+
+/// The pairs that may cross where something changed; nothing if they are to be looked for everywhere, or nearly so.
+fn near_changes(parts: &Parts, solid: &Solid, runner: Runner<'_>) -> Result<Option<Vec<[u32; 2]>>, Error> {
+    let Some(changed) = &parts.changed else { return Ok(None) };
+    let count = changed.iter().filter(|&&is_changed| is_changed).count();
+    if count > changed.len() / MOSTLY {
+        return Ok(None);
+    }
+    pairs_with(solid.mesh(), changed, runner).map(Some)
+}
+
+/// For each triangle of a resolved surface whether it is none of those that it was made of.
+fn changes(arrays: &Assembled, before: &Mesh) -> Vec<bool> {
+    let corners = |of: &[u32; 3], positions: &[[f64; 3]]| of.map(|v| positions[v as usize]);
+    let is_new = |(own, origin): (&[u32; 3], Origin)| {
+        let own = corners(own, &arrays.positions);
+        let [a, b, c] = corners(&before.triangles[origin.triangle as usize], &before.positions);
+        !(0..3).any(|turn| [0, 1, 2].map(|k| own[(turn + k) % 3]) == [a, b, c])
+    };
+    arrays.triangles.iter().zip(arrays.origins.iter()).map(is_new).collect()
 }
 
 /// Triangles that come from some others.
@@ -157,7 +194,8 @@ fn round(parts: &mut Parts, grid: Grid, coarser: u32, troubled: &[u32]) -> f64 {
         }
     }
     let mut furthest = 0.0f64;
-    for (position, bits) in parts.positions.iter_mut().zip(bits) {
+    let mut has_moved = vec![false; if parts.changed.is_some() { parts.positions.len() } else { 0 }];
+    for (v, (position, bits)) in parts.positions.iter_mut().zip(bits).enumerate() {
         let old = *position;
         let largest = old.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
         *position = old.map(|x| {
@@ -169,6 +207,12 @@ fn round(parts: &mut Parts, grid: Grid, coarser: u32, troubled: &[u32]) -> f64 {
         });
         let moved = (0..3).map(|k| (position[k] - old[k]).powi(2)).sum::<f64>().sqrt();
         furthest = furthest.max(moved);
+        if let Some(has_moved) = has_moved.get_mut(v) {
+            *has_moved = *position != old;
+        }
+    }
+    for (corners, changed) in parts.triangles.iter().zip(parts.changed.iter_mut().flatten()) {
+        *changed |= corners.iter().any(|&v| has_moved[v as usize]);
     }
     furthest
 }
@@ -206,10 +250,16 @@ fn merge(parts: &mut Parts) {
             if !parts.groups.is_empty() {
                 parts.groups[kept] = parts.groups[t];
             }
+            if let Some(changed) = &mut parts.changed {
+                changed[kept] = changed[t];
+            }
             kept += 1;
         }
     }
     parts.triangles.truncate(kept);
     parts.origins.truncate(kept);
     parts.groups.truncate(kept);
+    if let Some(changed) = &mut parts.changed {
+        changed.truncate(kept);
+    }
 }

@@ -58,7 +58,8 @@ impl State<'_> {
             cages.push(cage);
         }
         let cages: Vec<&ControlMesh> = cages.iter().collect();
-        let outcome = settings.run_all(*operation, &cages).map_err(|error| error.in_node(self.label(node)))?;
+        let outcome =
+            settings.run_all(*operation, &cages).map_err(|error| error.in_node(self.label(node)))?;
         for warning in &outcome.report().warnings {
             self.warnings.push(format!("node {}: {warning}", self.label(node)));
         }

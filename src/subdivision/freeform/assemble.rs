@@ -185,12 +185,7 @@ fn ordered_faces(work: &Work, operands: &[Operand], reversed: &[bool]) -> Vec<(u
 }
 
 /// Which vertices are new, or have other faces than before.
-fn changed(
-    operands: &[Operand],
-    origins: &[VertexOrigin],
-    faces: &[[u32; 3]],
-    whole: &[bool],
-) -> Vec<bool> {
+fn changed(operands: &[Operand], origins: &[VertexOrigin], faces: &[[u32; 3]], whole: &[bool]) -> Vec<bool> {
     let mut count = vec![0usize; origins.len()];
     let mut changed = vec![false; origins.len()];
     for (corners, &whole) in faces.iter().zip(whole) {

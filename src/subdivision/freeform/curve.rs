@@ -54,8 +54,8 @@ pub(super) fn polished(
     let mut point = x;
     let mut sine = 1.0;
     for _ in 0..ROUNDS {
-        let [a, b] = sheets
-            .map(|sheet| operands[usize::from(sheet.operand)].foot(point, Some(sheet.triangle)));
+        let [a, b] =
+            sheets.map(|sheet| operands[usize::from(sheet.operand)].foot(point, Some(sheet.triangle)));
         let (Some(a), Some(b)) = (a, b) else {
             return (x, sine);
         };
@@ -214,7 +214,10 @@ impl Chain {
             let distance = x.distance_squared(point);
             if best.is_none_or(|(least, _)| distance < least) {
                 let length = self.lengths[i - 1] + t * 2.0 * half;
-                best = Some((distance, Near { length, point, along: along.normalize_or_zero(), stretch: i - 1 }));
+                best = Some((
+                    distance,
+                    Near { length, point, along: along.normalize_or_zero(), stretch: i - 1 },
+                ));
             }
         }
         let none = || Near { length: near, point: self.at(near), along: DVec3::ZERO, stretch: 0 };

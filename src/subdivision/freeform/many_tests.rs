@@ -24,7 +24,11 @@ fn three_balls_meet_in_two_corners() {
         assert_eq!((report.chains, report.junctions), (chains, 2), "{operation}");
         assert_eq!(outcome.exact().solid().euler_characteristic(), 2 - 2 * genus);
         let d = diagonal(&outcome);
-        assert!(report.errors.largest() < 6e-3 * d, "{operation}: {:e} of {report:?}", report.errors.largest() / d);
+        assert!(
+            report.errors.largest() < 6e-3 * d,
+            "{operation}: {:e} of {report:?}",
+            report.errors.largest() / d
+        );
         let found = sampled(&outcome, &mut seeded(7));
         assert!(found <= report.errors.largest() + report.errors.allowance, "{operation}: {found}");
         let corners: &[Corner] = &outcome.surface().tags().corners;

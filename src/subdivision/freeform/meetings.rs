@@ -93,7 +93,9 @@ fn edges(operands: &[Operand], outcome: &Outcome) -> Vec<Edge> {
         for k in 0..3 {
             let (u, v) = (corners[k], corners[(k + 1) % 3]);
             match beside.remove(&(v, u)) {
-                Some(other) if other.operand != own.operand || !operand.continues(other.triangle, triangle) => {
+                Some(other)
+                    if other.operand != own.operand || !operand.continues(other.triangle, triangle) =>
+                {
                     let sheets = if other.operand <= own.operand { [other, own] } else { [own, other] };
                     edges.push(Edge { ends: [u.min(v), u.max(v)], sheets });
                 }

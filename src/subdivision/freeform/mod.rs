@@ -20,10 +20,10 @@ mod curve;
 mod details;
 mod fan;
 mod fit;
-mod measure;
-mod meetings;
 #[cfg(test)]
 mod many_tests;
+mod measure;
+mod meetings;
 mod operand;
 mod relax;
 mod report;

@@ -172,7 +172,10 @@ impl<'s> Run<'s> {
         self.report.chains = chains.len();
         self.report.features = chains.iter().map(|chain| chain.features.len()).sum();
         let open = chains.iter().filter(|chain| !chain.closed);
-        let mut ends: Vec<u32> = open.filter_map(|chain| Some([*chain.vertices.first()?, *chain.vertices.last()?])).flatten().collect();
+        let mut ends: Vec<u32> = open
+            .filter_map(|chain| Some([*chain.vertices.first()?, *chain.vertices.last()?]))
+            .flatten()
+            .collect();
         ends.sort_unstable();
         self.report.junctions = ends.chunk_by(|a, b| a == b).filter(|same| same.len() > 2).count();
         if self.report.crossing < LEAST_CROSSING {
