@@ -20,7 +20,7 @@ mod height_fields;
 pub(super) mod identify;
 pub(super) mod location;
 mod neighbours;
-pub(in crate::boolean) mod pairs_of_some;
+mod pairs_of_some;
 mod penetration;
 pub(super) mod plane_faces;
 pub(super) mod points;

@@ -16,11 +16,7 @@ const TRIANGLES_AT_ONCE: usize = 1 << 14;
 ///
 /// # Errors
 /// Only limits.
-pub(in crate::boolean) fn pairs_with(
-    mesh: &Mesh,
-    some: &[bool],
-    runner: Runner<'_>,
-) -> Result<Vec<[u32; 2]>, Error> {
+pub(super) fn pairs_with(mesh: &Mesh, some: &[bool], runner: Runner<'_>) -> Result<Vec<[u32; 2]>, Error> {
     let chosen: Vec<u32> = (0..).zip(some).filter(|(_, is_one)| **is_one).map(|(t, _)| t).collect();
     let Some(bounds) = mesh.bounds().filter(|_| !chosen.is_empty()) else { return Ok(Vec::new()) };
     // 1. What is known of neighbours: nothing of the vertices of those triangles, and of others it is not asked.

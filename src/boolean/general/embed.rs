@@ -8,9 +8,8 @@ use rustc_hash::FxHashMap;
 use super::arrangement::{Crossed, General};
 use super::evaluate::{Finish, evaluate};
 use super::labels::winding;
-use crate::boolean::arrangement::pairs_of_some::pairs_with;
+use crate::boolean::arrangement::self_crossings::crosses_at;
 use crate::boolean::complex::origin::Origin;
-use crate::boolean::result::assemble::Assembled;
 use crate::mesh::compact;
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
@@ -63,9 +62,6 @@ const GROWTH: usize = 2;
 /// Triangles that there may be in any case.
 const ALWAYS_ALLOWED: usize = 256;
 
-/// If more than one in so many triangles changed, crossings are looked for everywhere, which is then faster.
-const MOSTLY: usize = 4;
-
 /// A result that is to be freed of crossings: for each triangle where it came from and its group.
 #[derive(Clone, Debug)]
 pub(crate) struct Parts {
@@ -74,7 +70,7 @@ pub(crate) struct Parts {
     pub(crate) origins: Vec<Origin>,
     /// Empty if there are no groups.
     pub(crate) groups: Vec<u32>,
-    /// For each triangle whether crossings are looked for there; nothing if they are everywhere.
+    /// For each triangle whether crossings are looked for there at first; nothing if they are everywhere.
     pub(crate) changed: Option<Vec<bool>>,
 }
 
@@ -98,17 +94,17 @@ pub(crate) fn embed(
         if grid == Grid::Single || coarser(report.rounds) > 0 {
             merge(&mut parts);
         }
-        // 2. What crosses: everywhere, or where something changed.
+        // 2. What crosses: everywhere, unless there is nothing where something changed. (What is near each other has to be known
+        // of all to be resolved: what merely touches is moved apart.)
         let positions = std::mem::take(&mut parts.positions);
         let mut triangles = std::mem::take(&mut parts.triangles);
         let positions = compact(&positions, &mut triangles);
         let solid = Solid::from_closed_unchecked(Mesh::new(positions, triangles));
-        if let Some(pairs) = near_changes(&parts, &solid, runner)? {
-            if pairs.is_empty() && best.is_none() {
-                let Mesh { positions, triangles, .. } = solid.into_mesh();
-                return Ok((Parts { positions, triangles, ..parts }, report));
-            }
-            solid.remember_near_pairs(pairs);
+        if let Some(changed) = parts.changed.take()
+            && !crosses_at(solid.mesh(), &changed, runner)?
+        {
+            let Mesh { positions, triangles, .. } = solid.into_mesh();
+            return Ok((Parts { positions, triangles, ..parts }, report));
         }
         let crossed = Crossed::new(&[&solid], runner)?;
         troubled = crossed.troubled();
@@ -140,38 +136,16 @@ pub(crate) fn embed(
             Origin { reversed: source.reversed != origin.reversed, ..source }
         });
         let groups = |origin: Origin| before.groups.get(origin.triangle as usize).copied();
-        let changed = before.changed.is_some().then(|| changes(&arrays, solid.mesh()));
         let made = Parts {
             origins: origins.collect(),
             groups: arrays.origins.iter().filter_map(groups).collect(),
             positions: arrays.positions,
             triangles: arrays.triangles,
-            changed,
+            changed: None,
         };
         troubled = descendants(&troubled, &sources);
         parts = made;
     }
-}
-
-/// The pairs that may cross where something changed; nothing if they are to be looked for everywhere, or nearly so.
-fn near_changes(parts: &Parts, solid: &Solid, runner: Runner<'_>) -> Result<Option<Vec<[u32; 2]>>, Error> {
-    let Some(changed) = &parts.changed else { return Ok(None) };
-    let count = changed.iter().filter(|&&is_changed| is_changed).count();
-    if count > changed.len() / MOSTLY {
-        return Ok(None);
-    }
-    pairs_with(solid.mesh(), changed, runner).map(Some)
-}
-
-/// For each triangle of a resolved surface whether it is none of those that it was made of.
-fn changes(arrays: &Assembled, before: &Mesh) -> Vec<bool> {
-    let corners = |of: &[u32; 3], positions: &[[f64; 3]]| of.map(|v| positions[v as usize]);
-    let is_new = |(own, origin): (&[u32; 3], Origin)| {
-        let own = corners(own, &arrays.positions);
-        let [a, b, c] = corners(&before.triangles[origin.triangle as usize], &before.positions);
-        !(0..3).any(|turn| [0, 1, 2].map(|k| own[(turn + k) % 3]) == [a, b, c])
-    };
-    arrays.triangles.iter().zip(arrays.origins.iter()).map(is_new).collect()
 }
 
 /// Triangles that come from some others.
