@@ -254,7 +254,7 @@ fn embedding(arguments: &Combine, targets: &[Target]) -> Embed {
         return Embed::OnGrid(if single { Grid::Single } else { Grid::Double });
     }
     // What writing in single precision loses is told when it is written, and embedding on that grid would lose it before.
-    Embed::NearCut(Grid::Double)
+    Embed::NearCut
 }
 
 /// The inputs, one for each part of a file that is asked for; in expressions, whose operands are numbered, one for all parts
