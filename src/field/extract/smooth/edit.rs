@@ -14,7 +14,7 @@ pub(super) struct Limits {
 
 /// Triangles whose normal is farther off than this, in radians, are never made: 50 degrees. Together with fixed outlines this is what
 /// keeps a patch from folding over.
-const TURNED: f64 = 50.0 * std::f64::consts::PI / 180.0;
+pub(super) const TURNED: f64 = 50.0 * std::f64::consts::PI / 180.0;
 /// Of the costs before: a flip must bring at least this, so that no two of equal worth alternate.
 const GAIN: f64 = 1e-3;
 /// Times over the edges in search of flips; nearly all are found in the first three.

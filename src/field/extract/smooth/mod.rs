@@ -20,6 +20,7 @@
 
 mod care;
 mod check;
+mod clear;
 mod cost;
 mod edit;
 mod features;
@@ -46,6 +47,8 @@ use crate::{Control, Error, Mesh, Solid};
 /// Of the tolerance: how far the surface may bulge out of an edge that a flip or a collapse makes. The middle of a triangle is up to
 /// four thirds as far from the surface as the middles of its edges, and the estimate from the normals of two ends is no bound.
 const SAG: f64 = 0.4;
+/// Of the tolerance: vertices no farther apart than this are on top of each other.
+const ON_TOP: f64 = 0.1;
 /// Degrees that the normals of triangles may be off after a collapse.
 const COLLAPSED_ANGLE: f64 = 3.0;
 /// Degrees off above which triangles are divided.
@@ -186,6 +189,7 @@ impl Work<'_> {
     fn improve(&self, net: &mut Net, scratch: &mut Scratch) -> Result<(), Error> {
         let Self { nearby, tolerance, control, .. } = *self;
         let limits = Limits { sag: SAG * tolerance, angle: COLLAPSED_ANGLE.to_radians() };
+        clear::clear(net, ON_TOP * tolerance);
         sharpen::sharpen(net, nearby, scratch);
         edit::flip_all(net, limits);
         edit::collapse_all(net, limits);

@@ -192,9 +192,9 @@ pub(super) fn joined<'p>(
 mod tests {
     use super::*;
 
-    /// A strip of squares around a tube, closed at both ends: closed and large enough for pieces.
+    /// A ball, to be blown up by half.
     fn surface() -> Surface {
-        let mesh = crate::primitives::sphere(1.0, 32).expect("a sphere");
+        let mesh = crate::primitives::uv_sphere(1.0, 32, 16).expect("a sphere");
         let vertex = |p: &[f64; 3]| Vertex::free(DVec3::from_array(*p) * 1.5, DVec3::from_array(*p));
         let vertices = mesh.positions.iter().map(vertex).collect();
         let sides = mesh.triangles.iter().map(|t| DVec3::from_array(mesh.positions[t[0] as usize])).collect();
