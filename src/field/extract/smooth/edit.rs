@@ -21,6 +21,8 @@ const GAIN: f64 = 1e-3;
 const FLIP_ROUNDS: usize = 8;
 /// Times over the edges in search of collapses. Each takes at most a third of the vertices.
 const COLLAPSE_ROUNDS: usize = 12;
+/// When one in so many triangles goes, or fewer, the search ends.
+const LAST: usize = 1000;
 /// Triangles thinner than this quality do not come of a collapse, unless there were thinner ones before.
 const QUALITY: f64 = 0.3;
 /// Radians that a triangle is off when anything better will do: 20 degrees.
@@ -110,7 +112,7 @@ pub(super) fn collapse_all(net: &mut Net, limits: Limits) {
             net.neighbours(to).for_each(|vertex| changed[vertex as usize] = true);
             collapses += 1;
         }
-        if collapses * 100 <= net.present().count() {
+        if collapses * LAST <= net.present().count() {
             break;
         }
     }

@@ -63,7 +63,7 @@ const MENDINGS: usize = 3;
 /// Times that a piece is tried, at most, each with more vertices left as they were than before; then the piece is left as it was.
 const ATTEMPTS: usize = 5;
 /// Triangles of a piece, at most.
-const MOST: usize = 3000;
+const MOST: usize = 8000;
 /// Where pieces are halved, each time that the surface is worked over: seams of one time are within the pieces of the next.
 const PARTS: [f64; 3] = [0.5, 0.31, 0.42];
 
