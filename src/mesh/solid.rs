@@ -204,6 +204,14 @@ impl Solid {
         self.made_clean || self.self_crossings.get().is_some_and(SelfCrossings::is_simple)
     }
 
+    /// Whether it is known, without a look, that operations may take it as it is: it crosses itself no deeper than rounding, does not
+    /// touch itself, and no shell faces the wrong way. So are results of such operands, and operands that were looked through.
+    /// [`Gate::proven_clean`](super::Gate::proven_clean) gives a copy of it the same knowledge.
+    #[must_use]
+    pub fn is_proven_clean(&self) -> bool {
+        self.made_clean || (self.is_known_clean() && self.is_well_nested())
+    }
+
     /// Whether no shell faces the wrong way: outwards inside another, or inwards by itself. Computed once; O(n).
     pub(crate) fn is_well_nested(&self) -> bool {
         self.made_clean || self.inside_out().is_none()
