@@ -313,6 +313,12 @@ impl Core {
         })
     }
 
+    /// Whether it has neither attributes nor groups nor polygons.
+    fn is_plain(&self) -> bool {
+        let mesh = self.solid().mesh();
+        mesh.attributes.is_empty() && mesh.groups.is_empty() && mesh.polygons.is_empty()
+    }
+
     /// Whether it is known, without a look, that operations may take it as it is.
     fn is_proven_clean(&self) -> bool {
         self.solid().is_proven_clean()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -18,7 +18,7 @@ import ray.exceptions
 from . import _operations
 from ._errors import ArgumentError
 from ._jobs import Job, Report, run_on_one_thread
-from ._surfaces import Solid, SolidLike
+from ._surfaces import Solid, SolidLike, _solid_of_parts
 from .batch import Reports, Summary, _folder_of, _progress, _waiting, failure, numbered_jobs
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -126,6 +126,8 @@ class Tiled:
     """Bytes of vertices and faces that tasks were given."""
     seconds: float
     """How long it took."""
+    steps: Dict[str, float] = field(default_factory=dict)
+    """Seconds of it: until the tasks were given out (here), until they were done, and until the result was here."""
 
 
 @dataclass
@@ -142,8 +144,35 @@ def _bytes(solids: Sequence[Solid]) -> int:
     return sum(solid.vertices.nbytes + solid.faces.nbytes for solid in solids)
 
 
-def _unite(settings: Dict[str, Any], solids: List[Solid]) -> Tuple[Solid, int]:
+class _Pack:
+    """Solids on their way, all arrays of those that have nothing but vertices and faces in two. (Of a hundred thousand small solids
+    most of the time would go into pickling each by itself.)"""
+
+    def __init__(self, solids: Sequence[Solid]) -> None:
+        plain = [solid for solid in solids if solid._core.is_plain()]
+        self._others = [solid for solid in solids if not solid._core.is_plain()]
+        self._vertices = np.concatenate([solid.vertices for solid in plain]) if plain else np.zeros((0, 3))
+        self._faces = np.concatenate([solid.faces for solid in plain]) if plain else np.zeros((0, 3), dtype=np.uint32)
+        self._counts = np.array([solid._core.counts() for solid in plain], dtype=np.int64).reshape(-1, 2)
+        self._proofs = [solid._core.hash() if solid._core.is_proven_clean() else None for solid in plain]
+
+    def solids(self) -> List[Solid]:
+        """They again."""
+        solids, vertex, face = list(self._others), 0, 0
+        for (vertices, faces), proof in zip(self._counts.tolist(), self._proofs):
+            arrays = self._vertices[vertex : vertex + vertices], self._faces[face : face + faces]
+            solids.append(_solid_of_parts(*arrays, _NOTHING_ELSE, proof))
+            vertex, face = vertex + vertices, face + faces
+        return solids
+
+
+# Neither attributes nor groups nor polygons, as `Core.parts` has them.
+_NOTHING_ELSE = Solid.empty()._core.parts()
+
+
+def _unite(settings: Dict[str, Any], pack: _Pack) -> Tuple[Solid, int]:
     """United, and the bytes it was made of."""
+    solids = pack.solids()
     return _operations.union(solids, **settings), _bytes(solids)
 
 
@@ -189,19 +218,23 @@ def union(
     options: Dict[str, Any] = {"num_cpus": threads, **(task or {})}
     unite: Any = ray.remote(**options)(_unite)
     leaves = [
-        _Piece(unite.remote(given, ray.put(members)), place) for place, members in sorted(_by_tile(solids, grid).items())
+        _Piece(unite.remote(given, ray.put(_Pack(members))), place) for place, members in sorted(_by_tile(solids, grid).items())
     ]
     return _finish(leaves, _merge, given, options, start)
 
 
 def _finish(leaves: List[_Piece], how: Callable[..., Any], given: Any, options: Any, start: float) -> Tiled:
     merge: Any = ray.remote(**options)(how)
-    row, merges = leaves, 0
+    row, merges, given_out = leaves, 0, time.perf_counter()
     while len(row) > 1:
         row, made = _halved(row, merge, given)
         merges += made
+    ray.wait([row[0].reference])
+    done = time.perf_counter()
     solid, moved = ray.get(row[0].reference)
-    return Tiled(solid, len(leaves), merges, moved, time.perf_counter() - start)
+    here = time.perf_counter()
+    steps = {"given out": given_out - start, "done": done - given_out, "here": here - done}
+    return Tiled(solid, len(leaves), merges, moved, here - start, steps)
 
 
 def _halved(row: List[_Piece], merge: Any, given: Any) -> Tuple[List[_Piece], int]:
@@ -233,7 +266,8 @@ def _grid(count: int) -> Tuple[int, int, int]:
 
 def _by_tile(solids: Sequence[Solid], grid: Tuple[int, ...]) -> Dict[Tuple[int, ...], List[Solid]]:
     """The solids whose middle is in each tile."""
-    middles = np.array([solid.bounds.mean(axis=0) for solid in solids])
+    nowhere = [[np.nan] * 3] * 2
+    middles = np.array([solid._core.bounds() or nowhere for solid in solids]).mean(axis=1)
     full = ~np.isnan(middles).any(axis=1)
     low = middles[full].min(axis=0) if full.any() else np.zeros(3)
     size = (middles[full].max(axis=0) - low) if full.any() else np.zeros(3)
@@ -277,7 +311,7 @@ def combine_large(
     options: Dict[str, Any] = {"num_cpus": threads, **(task or {})}
     work: Any = ray.remote(**options)(_slab)
     axis, marks = _planes(operands, slabs)
-    cut = [_slabs(operand, axis, marks) for operand in operands]
+    cut = [_slabs(operand, axis, marks, {}) for operand in operands]
     leaves = [
         _Piece(work.remote(operation, given, first, second), (place, 0, 0))
         for place, (first, second) in enumerate(zip(*cut))
@@ -297,9 +331,10 @@ def _planes(operands: Sequence[Solid], slabs: int) -> Tuple[int, List[float]]:
     return axis, sorted({float(np.float32(mark)) for mark in marks})
 
 
-def _slabs(solid: Solid, axis: int, marks: Sequence[float]) -> List[Solid]:
-    slabs = []
-    for mark in marks:
-        solid, below = _operations.cut(solid, ("xyz"[axis], mark))
-        slabs.append(below)
-    return [*slabs, solid]
+def _slabs(solid: Solid, axis: int, marks: Sequence[float], given: Dict[str, Any]) -> List[Solid]:
+    """The solid between planes, in their order: halved, and the halves again."""
+    if not marks:
+        return [solid]
+    middle = len(marks) // 2
+    above, below = _operations.cut(solid, ("xyz"[axis], marks[middle]), **given)
+    return [*_slabs(below, axis, marks[:middle], given), *_slabs(above, axis, marks[middle + 1 :], given)]
