@@ -403,6 +403,27 @@ mod tests {
     }
 
     #[test]
+    fn what_is_proven_goes_along_with_a_copy() {
+        use crate::mesh::Gate;
+        let mesh = primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
+        let solid = Solid::try_from(mesh.clone()).unwrap();
+        assert!(!solid.is_proven_clean(), "nobody has looked");
+        assert!(solid.self_crossings(&crate::Control::new()).unwrap().is_simple() && solid.is_proven_clean());
+        let copy = |gate: Gate, mesh: &Mesh| gate.as_is(true).solid(mesh.clone()).unwrap();
+        assert!(copy(Gate::new().proven_clean(true), &mesh).is_proven_clean());
+        assert!(!copy(Gate::new(), &mesh).is_proven_clean());
+        // Two bodies that cross.
+        let other = primitives::cuboid([0.5; 3], [1.5; 3]).unwrap();
+        let both = Solid::try_from(Mesh::merged([&mesh, &other]).unwrap()).unwrap();
+        assert!(!both.self_crossings(&crate::Control::new()).unwrap().is_clean() && !both.is_proven_clean());
+        // Of what has to be mended nothing is known.
+        let mut open = mesh;
+        open.triangles.pop();
+        let filled = Gate::new().fill_holes(9).proven_clean(true).solid(open).unwrap();
+        assert!(!filled.mending().is_none() && !filled.is_proven_clean());
+    }
+
+    #[test]
     #[cfg(feature = "serde")]
     fn solids_are_read_through_the_gate() {
         let mesh = primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
