@@ -28,10 +28,7 @@ fn spent() -> f64 {
 
 fn measured() -> Result<(), trisect::Error> {
     // 1. Two cubes.
-    let cubes = [
-        primitives::cuboid([0.0; 3], [1.0; 3])?,
-        primitives::cuboid([0.5; 3], [1.5; 3])?,
-    ];
+    let cubes = [primitives::cuboid([0.0; 3], [1.0; 3])?, primitives::cuboid([0.5; 3], [1.5; 3])?];
     let default = BooleanOptions::new();
     let mut small = f64::INFINITY;
     for _ in 0..ROUNDS {
@@ -52,7 +49,7 @@ fn measured() -> Result<(), trisect::Error> {
             let pair = [ball.clone(), other.clone()];
             let start = spent();
             black_box(united(options, pair)?);
-            *least = least.min((spent() - start));
+            *least = least.min(spent() - start);
         }
     }
     println!("{{\"cubes\": {small:e}, \"balls_clean\": {:e}, \"balls\": {:e}}}", large[0], large[1]);

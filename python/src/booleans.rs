@@ -97,8 +97,8 @@ pub(crate) fn part(
     let (limits, settings) = (limits(settings)?, Settings::read(settings)?);
     let made = Arc::clone(&core.made);
     let sheets: Vec<Arc<Mesh>> = surfaces.iter().map(|surface| Arc::clone(&surface.mesh)).collect();
-    let size = made.solid().mesh().triangles.len()
-        + sheets.iter().map(|sheet| sheet.triangles.len()).sum::<usize>();
+    let size =
+        made.solid().mesh().triangles.len() + sheets.iter().map(|sheet| sheet.triangles.len()).sum::<usize>();
     let cells = limits.run(py, size, |control| {
         let listed: Vec<&Mesh> = sheets.iter().map(|sheet| &**sheet).collect();
         settings.options(control).split(made.solid(), &listed)

@@ -91,7 +91,11 @@ impl Cage {
             "obj" => AnyCage::from_obj(bytes, rules(weights)?, scheme(named)?),
             "json" => AnyCage::from_json(bytes).map(|cage| (cage, Vec::new())),
             "glb" | "gltf" => AnyCage::from_gltf(bytes).map(|cage| (cage, Vec::new())),
-            other => return Err(failures::argument(&format!("a cage is no *.{other}: read *.obj, *.json or *.glb"))),
+            other => {
+                return Err(failures::argument(&format!(
+                    "a cage is no *.{other}: read *.obj, *.json or *.glb"
+                )));
+            }
         };
         let (cage, warnings) = read.map_err(|error| failures::exception(&error))?;
         Ok((cage.into(), warnings))
@@ -106,7 +110,9 @@ impl Cage {
                 self.levels()
             ))),
             "obj" => Ok(self.cage.to_obj()),
-            other => Err(failures::argument(&format!("a cage is no *.{other}: write *.obj, *.json or *.glb"))),
+            other => {
+                Err(failures::argument(&format!("a cage is no *.{other}: write *.obj, *.json or *.glb")))
+            }
         }
     }
 
@@ -236,7 +242,10 @@ fn setting<'py, T: for<'a> FromPyObject<'a, 'py>>(
     let Some(value) = options.map(|options| options.get_item(key)).transpose()?.flatten() else {
         return Ok(None);
     };
-    value.extract::<T>().map(Some).map_err(|_| failures::argument(&format!("{key} has no such value: {value}")))
+    value
+        .extract::<T>()
+        .map(Some)
+        .map_err(|_| failures::argument(&format!("{key} has no such value: {value}")))
 }
 
 fn read(options: Option<&Bound<'_, PyDict>>) -> PyResult<FreeForm> {
@@ -266,8 +275,7 @@ pub(crate) fn combine_cages<'py>(
     options: Option<&Bound<'py, PyDict>>,
     settings: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Combined<'py>> {
-    let operation: Operation =
-        operation.parse().map_err(|error| failures::argument(&format!("{error}")))?;
+    let operation: Operation = operation.parse().map_err(|error| failures::argument(&format!("{error}")))?;
     let (form, tolerance) = (read(options)?, setting::<f64>(options, "tolerance")?);
     let cages = [Arc::clone(&a.cage), Arc::clone(&b.cage)];
     let (outcome, distances) = limits(settings)?.run(py, WATCHED_FROM, move |control| {
@@ -293,11 +301,8 @@ pub(crate) fn combine_cages<'py>(
         table.1.push(vertex);
         table.2.push(moved);
     }
-    let origins = (
-        PyArray1::from_vec(py, table.0),
-        PyArray1::from_vec(py, table.1),
-        PyArray1::from_vec(py, table.2),
-    );
+    let origins =
+        (PyArray1::from_vec(py, table.0), PyArray1::from_vec(py, table.1), PyArray1::from_vec(py, table.2));
     let report = described(outcome.report()).to_string();
     let exact = Core::from(outcome.exact().clone());
     Ok((AnyCage::from(outcome.into_surface()).into(), exact, report, origins, distances))

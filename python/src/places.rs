@@ -12,10 +12,17 @@ pub(crate) fn moved(mesh: Mesh, how: &str, numbers: &[f64]) -> Result<Mesh, Erro
             mesh.rotated([1.0, 0.0, 0.0], x)?.rotated([0.0, 1.0, 0.0], y)?.rotated([0.0, 0.0, 1.0], z)?
         }
         ("matrix", rows) => mesh.transformed(rows)?,
-        _ => return Err(Error::InvalidArgument(format!("there is no transform {how} of {} numbers", numbers.len()))),
+        _ => {
+            return Err(Error::InvalidArgument(format!(
+                "there is no transform {how} of {} numbers",
+                numbers.len()
+            )));
+        }
     };
     if moved.positions.as_flattened().iter().any(|x| !x.is_finite()) {
-        return Err(Error::InvalidArgument("its transforms move vertices out of the range of numbers".into()));
+        return Err(Error::InvalidArgument(
+            "its transforms move vertices out of the range of numbers".into(),
+        ));
     }
     Ok(moved)
 }

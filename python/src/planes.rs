@@ -6,7 +6,7 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use trisect::exact::{Plane, PlaneFault};
-use trisect::io::drawing::{self, Layer};
+use trisect::io::drawing::{Layer, dxf, json, svg};
 use trisect::{Error, FaceGroup, PlaneCut, SectionSide, Sections};
 
 use crate::settings::{Settings, limits};
@@ -137,9 +137,9 @@ pub(crate) fn drawing(kind: &str, layers: Vec<(String, f64, Shapes)>) -> PyResul
         .map(|(name, height, shapes)| Layer { name: name.clone(), height: *height, shapes })
         .collect();
     match kind {
-        "svg" => Ok(drawing::svg(&listed)),
-        "dxf" => Ok(drawing::dxf(&listed)),
-        "json" => Ok(drawing::json(&listed)),
+        "svg" => Ok(svg(&listed)),
+        "dxf" => Ok(dxf(&listed)),
+        "json" => Ok(json(&listed)),
         other => Err(failures::argument(&format!("unknown drawing '{other}': known are svg, dxf, json"))),
     }
 }

@@ -56,7 +56,7 @@ def test_the_limit_surface(cube: trisect.Cage, ball: trisect.Cage) -> None:
     moved = cube.scaled(2).rotated("z", 90).translated([5, 0, 0])
     assert moved.solid(0.02).volume == pytest.approx(8 * cube.solid(0.01).volume, rel=1e-2) and moved.vertices[:, 0].min() == 3
     mirrored = cube.transformed(np.diag([-1.0, 1, 1, 1]))
-    assert mirrored.solid(0.01).volume == pytest.approx(cube.solid(0.01).volume, rel=1e-9)
+    assert mirrored.solid(0.01).volume == pytest.approx(cube.solid(0.01).volume, rel=1e-4)
 
 
 @pytest.mark.parametrize("kind", ["obj", "json", "glb"])
