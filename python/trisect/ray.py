@@ -312,9 +312,9 @@ def combine_large(
     work: Any = ray.remote(**options)(_slab)
     axis, marks = _planes(operands, slabs)
     # Nobody looks for crossings here, where one process would: every task looks through its slab. A surface that crosses itself is cut as
-    # the chain that it is, its walls as often as it encloses them, and resolved in the task.
-    clean = {"assume_clean": True}
-    cut = [_slabs(operand, axis, marks, clean) for operand in operands]
+    # the chain that it is, its walls as often as it encloses them, and resolved in the task; unless it is known to, and resolved here.
+    rules = settings.get("rules") or [settings.get("rule", "positive")] * 2
+    cut = [_slabs(operand, axis, marks, {"assume_clean": True, "rule": rule}) for operand, rule in zip(operands, rules)]
     leaves = [
         _Piece(work.remote(operation, given, first, second), (place, 0, 0))
         for place, (first, second) in enumerate(zip(*cut))
