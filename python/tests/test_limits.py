@@ -83,7 +83,9 @@ def run_python(code: str, **given: Any) -> "subprocess.Popen[str]":
 def test_ctrl_c_cancels() -> None:
     process = run_python(
         """
-        import trisect
+        import signal, trisect
+        # (Where shells start tests in the background, they have Ctrl-C ignored.)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         ball = trisect.icosphere(1.0, level=6)
         other = ball.rotated([1, 2, 3], 40).translated([0.5, 0, 0])
         print("ready", flush=True)
@@ -94,10 +96,13 @@ def test_ctrl_c_cancels() -> None:
             print("interrupted", (trisect.cuboid([0, 0, 0], [1, 1, 1]) | trisect.cuboid([0, 0, 0], [1, 1, 2])).volume, flush=True)
         """
     )
-    assert process.stdout is not None and process.stdout.readline() == "ready\n"
-    time.sleep(0.3)
-    process.send_signal(signal.SIGINT)
-    output, errors = process.communicate(timeout=300)
+    try:
+        assert process.stdout is not None and process.stdout.readline() == "ready\n"
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        output, errors = process.communicate(timeout=300)
+    finally:
+        process.kill()
     assert output == "interrupted 2.0\n", errors
 
 
