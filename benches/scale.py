@@ -336,7 +336,8 @@ def main() -> None:
             from trisect import ray as many
 
             ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
-            run(folder, "ray", many.batch, "ray::")
+            # (Not Ray's own processes, without which it is none.)
+            run(folder, "ray", many.batch, "ray::run_on_one_thread")
         elif what == "program":
             program(folder, sys.argv[3])
         elif what == "same":
