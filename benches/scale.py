@@ -119,7 +119,8 @@ def run(folder: pathlib.Path, kind: str, batch: Callable[..., Any], mark: str) -
 
     def on_progress(done: int, of: Any, failed: int, left: Any) -> None:
         if done % max(1, total // 20) == 0:
-            memory.append(max((resident(process) for process in processes(mark)), default=0.0))
+            # (A worker of Ray is called so only while it has a task.)
+            memory.extend(sorted(filter(None, map(resident, processes(mark))))[-1:])
         if done == total // 2:
             victims = processes(mark)
             if victims:
@@ -145,7 +146,7 @@ def program(folder: pathlib.Path, path: str) -> None:
     total = sum(1 for _ in of_kind(folder, "program"))
     memory, killed = [], []
     while process.poll() is None:
-        memory.append(resident(process.pid))
+        memory.extend(filter(None, [resident(process.pid)]))
         if not killed and out.exists() and sum(1 for _ in open(out, "rb")) >= total // 2:
             victims = [entry for entry in processes(os.path.basename(path)) if parent(entry) == process.pid]
             for victim in victims[:1]:
