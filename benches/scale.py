@@ -313,7 +313,7 @@ def _alone(name: str, tiled: Any, union: Callable[[], trisect.Solid]) -> None:
         f"{seconds:.2f} s ({process:.2f} s of the processor): {seconds / tiled.seconds:.2f} times as fast; {tiled.moved / 1e6:.1f} MB moved; "
         f"volumes differ by {relative:.1e} relative; closed: {closed}; components {tiled.solid.components} and "
         f"{alone.components}, genus {tiled.solid.genus} and {alone.genus}, {len(tiled.solid.faces)} and {len(alone.faces)} triangles; "
-        f"tasks took {tiled.processor:.2f} s of processors; steps {tiled.steps}; load {os.getloadavg()[0]:.1f}"
+        f"tasks took {tiled.processor:.2f} s of processors, {tiled.path:.2f} s of that one after the other; steps {tiled.steps}; load {os.getloadavg()[0]:.1f}"
     )
 
 

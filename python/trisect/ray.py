@@ -128,6 +128,8 @@ class Tiled:
     """How long it took."""
     processor: float = 0.0
     """Seconds of processors that its tasks took."""
+    path: float = 0.0
+    """Those of them that had to be one after the other: with any number of workers the tasks take as long."""
     steps: Dict[str, float] = field(default_factory=dict)
     """Seconds of it: until the tasks were given out (here), until they were done, and until the result was here."""
 
@@ -139,13 +141,16 @@ class _Made:
     solid: Solid
     moved: int
     processor: float
+    path: float
 
 
 def _made(start: float, before: Sequence[_Made], given: Sequence[Solid], solid: Solid) -> _Made:
     """A task's result: it began at a time of the process, after others, and was given solids."""
     moved = sum(solid.vertices.nbytes + solid.faces.nbytes for solid in given)
     spent = time.process_time() - start
-    return _Made(solid, moved + sum(made.moved for made in before), spent + sum(made.processor for made in before))
+    moved += sum(made.moved for made in before)
+    path = spent + max((made.path for made in before), default=0.0)
+    return _Made(solid, moved, spent + sum(made.processor for made in before), path)
 
 
 @dataclass
@@ -249,7 +254,7 @@ def _finish(leaves: List[_Piece], how: Callable[..., Any], given: Any, options: 
     made: _Made = ray.get(row[0].reference)
     here = time.perf_counter()
     steps = {"given out": given_out - start, "done": done - given_out, "here": here - done}
-    return Tiled(made.solid, len(leaves), merges, made.moved, here - start, made.processor, steps)
+    return Tiled(made.solid, len(leaves), merges, made.moved, here - start, made.processor, made.path, steps)
 
 
 def _halved(row: List[_Piece], merge: Any, given: Any) -> Tuple[List[_Piece], int]:
@@ -337,10 +342,11 @@ def combine_large(
     options: Dict[str, Any] = {"num_cpus": threads, **(task or {})}
     work: Any = ray.remote(**options)(_slab)
     axis, marks = _planes(operands, slabs)
-    # Nobody looks for crossings here, where one process would: every task looks through its slab. A surface that crosses itself is cut as
-    # the chain that it is, its walls as often as it encloses them, and resolved in the task; unless it is known to, and resolved here.
+    # They are looked through here, before they are cut, on all threads: slabs of what is clean are known to be, and looking through
+    # those takes twice as long, since the walls' long triangles have many neighbours. What crosses itself is resolved here.
     rules = settings.get("rules") or [settings.get("rule", "positive")] * 2
-    cut = [_slabs(operand, axis, marks, {"assume_clean": True, "rule": rule}) for operand, rule in zip(operands, rules)]
+    clean = {"assume_clean": bool(settings.get("assume_clean"))}
+    cut = [_slabs(operand, axis, marks, {**clean, "rule": rule}) for operand, rule in zip(operands, rules)]
     leaves = [
         _Piece(work.remote(operation, given, first, second), (place, 0, 0))
         for place, (first, second) in enumerate(zip(*cut))
