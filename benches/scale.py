@@ -233,8 +233,11 @@ def pair(count: int, slabs: int) -> None:
     b = a.rotated([1, 2, 3], 40).translated([0.5, 0.013, -0.007])
     print(f"{len(a.faces) + len(b.faces)} triangles", flush=True)
     _started(many)
+    # (Not the solids that are united in one process afterwards, which would remember what was found out here.)
+    one, two = (trisect.Solid(solid.vertices, solid.faces) for solid in (a, b))
     with Memory() as memory:
-        tiled = many.combine_large("union", a, b, slabs=slabs)
+        tiled = many.combine_large("union", one, two, slabs=slabs)
+    del one, two
     print(f"memory of all processes at most {memory.most / 1e9:.1f} GB", flush=True)
     _alone(f"two rings of {len(a.faces)} triangles", tiled, lambda: trisect.union(a, b, threads=1))
 

@@ -346,6 +346,10 @@ def combine_large(
     # those takes twice as long, since the walls' long triangles have many neighbours. What crosses itself is resolved here.
     rules = settings.get("rules") or [settings.get("rule", "positive")] * 2
     clean = {"assume_clean": bool(settings.get("assume_clean"))}
+    if not clean["assume_clean"]:
+        limits = {key: settings[key] for key in ("deadline", "memory") if key in settings}
+        for operand in operands:
+            operand.self_crossings(**limits)
     cut = [_slabs(operand, axis, marks, {**clean, "rule": rule}) for operand, rule in zip(operands, rules)]
     leaves = [
         _Piece(work.remote(operation, given, first, second), (place, 0, 0))
