@@ -36,10 +36,15 @@ impl Made {
         let has_attributes = operands.iter().any(|solid| !solid.mesh().attributes.is_empty());
         match policy.embed {
             Embed::WhereNeeded if self.may_cross && self.is_clean => {
-                self.embed(Grid::Double, policy, has_attributes, runner)?;
+                self.embed(Grid::Double, None, policy, has_attributes, runner)?;
             }
-            Embed::OnGrid(grid) => self.embed(grid, policy, has_attributes, runner)?,
-            Embed::Never | Embed::WhereNeeded => {}
+            // (What is not known to be clean could be resolved by this where it is not asked for.)
+            Embed::NearCut(grid) if self.is_clean => {
+                let changed = changed(&self.origins, self.solid.mesh(), operands);
+                self.embed(grid, Some(changed), policy, has_attributes, runner)?;
+            }
+            Embed::OnGrid(grid) => self.embed(grid, None, policy, has_attributes, runner)?,
+            Embed::Never | Embed::WhereNeeded | Embed::NearCut(_) => {}
         }
         if self.is_clean {
             self.solid.set_made_clean();
@@ -48,8 +53,10 @@ impl Made {
         let meshes: Vec<&Mesh> = operands.iter().map(|solid| solid.mesh()).collect();
         self.solid.set_polygons(whole_polygons(&self.origins, self.solid.mesh(), &meshes));
         // The attributes last, of the vertices as they are now.
-        let unit =
-            if policy.embed == Embed::OnGrid(Grid::Single) { f32::EPSILON.into() } else { f64::EPSILON };
+        let unit = match policy.embed {
+            Embed::OnGrid(Grid::Single) | Embed::NearCut(Grid::Single) => f32::EPSILON.into(),
+            _ => f64::EPSILON,
+        };
         let attributes = carried(&self.origins, self.solid.mesh(), operands, unit, runner)?;
         self.solid.set_attributes(attributes);
         Ok(Outcome::new(self.solid, self.origins, unit, self.notes))
@@ -58,6 +65,7 @@ impl Made {
     fn embed(
         &mut self,
         grid: Grid,
+        changed: Option<Vec<bool>>,
         policy: Policy,
         has_attributes: bool,
         runner: Runner<'_>,
@@ -72,7 +80,8 @@ impl Made {
         } else {
             (groups, None)
         };
-        let parts = Parts { positions: mesh.positions, triangles: mesh.triangles, groups: classes, origins };
+        let Mesh { positions, triangles, .. } = mesh;
+        let parts = Parts { positions, triangles, groups: classes, origins, changed };
         let (parts, report) = embed(parts, grid, policy.remove_vertices, runner)?;
         self.groups.of_triangle = match group_of_class {
             Some(groups) if groups.is_empty() => Vec::new(),
@@ -84,6 +93,24 @@ impl Made {
         self.notes.embedding = Some(report);
         Ok(())
     }
+}
+
+/// For each triangle of a result whether it is no triangle of an operand as it was.
+fn changed(origins: &Origins, mesh: &Mesh, operands: &[&Solid]) -> Vec<bool> {
+    let corners = |mesh: &Mesh, t: usize| mesh.triangles[t].map(|v| mesh.positions[v as usize]);
+    let mut changed = Vec::with_capacity(mesh.triangles.len());
+    for (origin, count, whole) in origins.stretches() {
+        let given = operands.get(origin.operand as usize).map(|solid| solid.mesh());
+        for triangle in (origin.triangle as usize..).take(count as usize) {
+            let own = changed.len();
+            let is_whole = whole
+                || given.is_some_and(|given| {
+                    is_as_given(corners(mesh, own), corners(given, triangle), origin.reversed)
+                });
+            changed.push(!is_whole);
+        }
+    }
+    changed
 }
 
 /// The polygons of the operands, on the triangles of the result that are as the operands have them.

@@ -23,9 +23,9 @@ const RIDGE: f64 = 1e-5;
 /// Where a sample belongs.
 #[derive(Clone, Copy, Debug)]
 enum Aim {
-    Surface(u8),
+    Surface(u16),
     Curve(u32),
-    Crease(u8),
+    Crease(u16),
     Point(DVec3),
 }
 
@@ -41,10 +41,10 @@ struct Sample {
 
 /// Everything that the fit of one draft needs.
 pub(super) struct Fit<'a> {
-    operands: [&'a Operand; 2],
-    reversed: [bool; 2],
+    operands: &'a [Operand],
+    reversed: &'a [bool],
     chains: &'a [Chain],
-    creases: [CreaseLines; 2],
+    creases: Vec<CreaseLines>,
     samples: Vec<Sample>,
     /// The unknown control points.
     pub(super) unknown: Vec<u32>,
@@ -153,8 +153,8 @@ pub(super) fn unknowns(draft: &Draft, rings: usize) -> Vec<u32> {
 impl<'a> Fit<'a> {
     pub(super) fn new(
         draft: &Draft,
-        operands: [&'a Operand; 2],
-        reversed: [bool; 2],
+        operands: &'a [Operand],
+        reversed: &'a [bool],
         chains: &'a [Chain],
         rings: usize,
         steps: u32,
@@ -162,7 +162,7 @@ impl<'a> Fit<'a> {
         let unknown = unknowns(draft, rings);
         let mut number = vec![u32::MAX; draft.changed.len()];
         unknown.iter().enumerate().for_each(|(i, &v)| number[v as usize] = i as u32);
-        let creases = operands.map(CreaseLines::new);
+        let creases = operands.iter().map(CreaseLines::new).collect();
         let mut fit = Self { operands, reversed, chains, creases, samples: Vec::new(), unknown, number };
         if !fit.unknown.is_empty() {
             fit.take_samples(draft, steps);
@@ -173,7 +173,7 @@ impl<'a> Fit<'a> {
     /// Samples over all faces whose surface depends on an unknown: at the vertices after one or two `steps`.
     fn take_samples(&mut self, draft: &Draft, steps: u32) {
         let mut rows = LimitRows::new(draft.cage.level(), steps);
-        let mut aims: FxHashMap<u32, (Aim, f64)> = FxHashMap::default();
+        let mut aims: FxHashMap<u32, (Aim, (u32, f64))> = FxHashMap::default();
         let faces = draft.cage.faces();
         let mut moves = vec![false; self.number.len()];
         for corners in faces {
@@ -186,7 +186,7 @@ impl<'a> Fit<'a> {
             if corners.iter().any(|&v| moves[v as usize]) {
                 for inner in &rows.last().faces[f << (2 * steps)..(f + 1) << (2 * steps)] {
                     inner.iter().for_each(|&v| {
-                        aims.insert(v, (Aim::Surface(draft.operand_of[f]), 0.0));
+                        aims.insert(v, (Aim::Surface(draft.operand_of[f]), (draft.seeds[f], 0.0)));
                     });
                 }
             }
@@ -201,10 +201,13 @@ impl<'a> Fit<'a> {
             let points = [(u, 0.0), (middle, 0.5), (v, 1.0), (quarter(0), 0.25), (quarter(1), 0.75)];
             for &(point, t) in &points[..if steps > 1 { 5 } else { 3 }] {
                 if let Some(aim) = aims.get_mut(&point) {
-                    *aim = match sharp {
-                        Sharp::Curve => self.curve_aim(draft, u, v, t),
-                        Sharp::Crease(o) => (Aim::Crease(o), 0.0),
+                    let found = match sharp {
+                        Sharp::Curve(c) => Some(self.curve_aim(draft, c, [u, v], t)),
+                        Sharp::Crease(o) => Some((Aim::Crease(o), 0.0)),
                     };
+                    if let Some((sharp, length)) = found {
+                        *aim = (sharp, (0, length));
+                    }
                 }
             }
         }
@@ -213,30 +216,27 @@ impl<'a> Fit<'a> {
             if draft.fixed[v]
                 && let Some(aim) = aims.get_mut(&(v as u32))
             {
-                *aim = (Aim::Point(draft.targets[v]), 0.0);
+                *aim = (Aim::Point(draft.targets[v]), (0, 0.0));
             }
         }
-        let mut all: Vec<(u32, (Aim, f64))> = aims.into_iter().collect();
+        let mut all: Vec<(u32, (Aim, (u32, f64)))> = aims.into_iter().collect();
         all.sort_unstable_by_key(|entry| entry.0);
-        for (v, (aim, length)) in all {
+        for (v, (aim, guess)) in all {
             let row = rows.limit(v);
             if row.iter().any(|&(w, _)| self.number[w as usize] != u32::MAX) {
-                self.samples.push(Sample { row, aim, guess: (0, length), last: None });
+                self.samples.push(Sample { row, aim, guess, last: None });
             }
         }
     }
 
-    /// The chain of an edge of the curve, and the length at `t` of it.
-    fn curve_aim(&self, draft: &Draft, u: u32, v: u32, t: f64) -> (Aim, f64) {
-        // Both ends on one chain; where chains meet, an end may name another.
-        let (Some((c, from)), Some((d, to))) = (draft.on_curve[u as usize], draft.on_curve[v as usize])
-        else {
-            return (Aim::Surface(0), 0.0);
-        };
-        if c != d {
-            return (Aim::Curve(if t < 0.5 { c } else { d }), if t < 0.5 { from } else { to });
-        }
+    /// Where `t` of an edge of the curve belongs: its chain, and the length there.
+    fn curve_aim(&self, draft: &Draft, c: u32, ends: [u32; 2], t: f64) -> (Aim, f64) {
         let chain = &self.chains[c as usize];
+        // Where chains meet, the end may name another.
+        let [from, to] = ends.map(|v| match draft.on_curve[v as usize] {
+            Some((own, length)) if own == c => length,
+            _ => chain.nearest(draft.targets[v as usize], 0.0, f64::INFINITY).length,
+        });
         let mut apart = to - from;
         if chain.closed && chain.length() > 0.0 {
             apart -= chain.length() * (apart / chain.length()).round();
@@ -289,8 +289,7 @@ impl<'a> Fit<'a> {
         match sample.aim {
             Aim::Point(target) => Some((target, glam::DMat3::IDENTITY * (10.0 * SHARP_WEIGHT))),
             Aim::Surface(o) => {
-                let guess = sample.last.map(|_| sample.guess.0);
-                let foot = self.operands[usize::from(o)].foot(point, guess)?;
+                let foot = self.operands[usize::from(o)].foot(point, Some(sample.guess.0))?;
                 let normal = if self.reversed[usize::from(o)] { -foot.normal } else { foot.normal };
                 // The foot jumped to another sheet: the last one stays the target.
                 let (target, normal) = match sample.last {
@@ -306,10 +305,12 @@ impl<'a> Fit<'a> {
             Aim::Curve(c) => {
                 let chain = &self.chains[c as usize];
                 let reach = 0.1 * chain.length();
-                let (length, near, along) = chain.nearest(point, sample.guess.1, reach);
-                sample.guess.1 = length;
-                let (target, _) = polished(self.operands, near, along, 0.1 * chain.length());
-                Some((target, weighted(along, SHARP_WEIGHT * sliding, SHARP_WEIGHT)))
+                let near = chain.nearest(point, sample.guess.1, reach);
+                sample.guess.1 = near.length;
+                let sheets = chain.sheets[near.stretch];
+                let (target, _) =
+                    polished(self.operands, sheets, near.point, near.along, 0.1 * chain.length());
+                Some((target, weighted(near.along, SHARP_WEIGHT * sliding, SHARP_WEIGHT)))
             }
             Aim::Crease(o) => {
                 let (target, along) = self.creases[usize::from(o)].nearest(point)?;

@@ -1,8 +1,11 @@
 //! An operand: its cage, its limit surface, and triangles on that.
 
-use glam::DVec3;
+use std::sync::OnceLock;
 
-use crate::spatial::TriangleTree;
+use glam::DVec3;
+use smallvec::SmallVec;
+
+use crate::spatial::{TriangleTree, closest_on_triangle};
 use crate::subdivision::control_mesh::ControlMesh;
 use crate::subdivision::evaluate::Surface;
 use crate::subdivision::limit_mesh::LimitMesh;
@@ -16,6 +19,10 @@ pub(super) struct Operand {
     /// How far its triangles may be from the surface.
     pub(super) within: f64,
     tree: TriangleTree,
+    /// Whether its surface crosses itself: the nearest point may then be on another sheet than the one that is meant.
+    pub(super) crosses_itself: bool,
+    /// The triangles at each fine vertex, made when first asked for.
+    stars: OnceLock<Vec<SmallVec<[u32; 8]>>>,
 }
 
 /// The nearest point of a limit surface.
@@ -54,7 +61,7 @@ impl Operand {
         let within = bounds.fold(0.0, f64::max);
         let fine = LimitMesh::new(&surface, &steps)?;
         let tree = TriangleTree::new(fine.mesh());
-        Ok(Self { cage, surface, fine, within, tree })
+        Ok(Self { cage, surface, fine, within, tree, crosses_itself: false, stars: OnceLock::new() })
     }
 
     /// The triangles as an operand.
@@ -62,8 +69,20 @@ impl Operand {
         self.fine.solid()
     }
 
-    /// The nearest point of the surface to `x`; nothing if `x` is not finite.
+    /// Whether two fine triangles are one or neighbours: the surface goes on from one to the other.
+    pub(super) fn continues(&self, one: u32, other: u32) -> bool {
+        let triangles = &self.fine.mesh().triangles;
+        let other = triangles[other as usize];
+        triangles[one as usize].iter().filter(|v| other.contains(v)).count() >= 2
+    }
+
+    /// The nearest point of the surface to `x`; nothing if `x` is not finite. A surface that crosses itself is searched from `guess` on
+    /// alone, over neighbours that are nearer; else a guess saves work and never changes the answer.
     pub(super) fn foot(&self, x: DVec3, guess: Option<u32>) -> Option<Foot> {
+        if let Some(guess) = guess.filter(|_| self.crosses_itself && x.is_finite()) {
+            let (triangle, point) = self.walk(x, guess);
+            return Some(self.foot_near(x, triangle, point));
+        }
         let closest = self.tree.closest_from(x.to_array(), guess)?;
         Some(self.foot_near(x, closest.triangle, closest.point.into()))
     }
@@ -94,6 +113,38 @@ impl Operand {
             }
         }
         Foot { position: sample.position, normal: sample.normal, triangle }
+    }
+
+    /// From a fine triangle to neighbours as long as they are nearer to `x`: the last one, and its nearest point.
+    fn walk(&self, x: DVec3, from: u32) -> (u32, DVec3) {
+        let triangles = &self.fine.mesh().triangles;
+        let stars = self.stars.get_or_init(|| {
+            let mut stars = vec![SmallVec::new(); self.fine.mesh().positions.len()];
+            for (number, corners) in (0..).zip(triangles) {
+                corners.iter().for_each(|&v| stars[v as usize].push(number));
+            }
+            stars
+        });
+        let nearest = |triangle: u32| {
+            let corners = self.corners(triangle).map(|corner| corner.to_array());
+            let point = DVec3::from(closest_on_triangle(x.to_array(), corners).0);
+            (point.distance_squared(x), triangle, point)
+        };
+        let mut best = nearest(from);
+        loop {
+            let before = best.1;
+            for &v in &triangles[before as usize] {
+                for &other in &stars[v as usize] {
+                    let found = nearest(other);
+                    if found.0 < best.0 {
+                        best = found;
+                    }
+                }
+            }
+            if best.1 == before {
+                return (best.1, best.2);
+            }
+        }
     }
 
     /// The corners of a fine triangle.
