@@ -9,7 +9,8 @@ use pyo3::types::PyDict;
 use serde_json::{Value, json};
 use trisect::io::WriteOptions;
 use trisect::subdivision::{
-    Cage as AnyCage, Corner, Crease, FreeForm, FreeFormReport, Rules, Scheme, Sector, Tags, VertexOrigin,
+    Cage as AnyCage, ControlMesh, Corner, Crease, FreeForm, FreeFormReport, Rules, Scheme, Sector, Tags,
+    VertexOrigin,
 };
 use trisect::{Error, Mesh, Operation};
 
@@ -264,22 +265,21 @@ fn read(options: Option<&Bound<'_, PyDict>>) -> PyResult<FreeForm> {
         .allow_tangent(setting(options, "allow_tangent")?.unwrap_or(false)))
 }
 
-/// Combines two cages. Cages of polygons are fitted by cages of triangles first, within half of the tolerance.
+/// Combines cages. Those of polygons are fitted by cages of triangles first, within half of the tolerance.
 #[pyfunction]
-#[pyo3(signature = (operation, a, b, options=None, settings=None))]
+#[pyo3(signature = (operation, operands, options=None, settings=None))]
 pub(crate) fn combine_cages<'py>(
     py: Python<'py>,
     operation: &str,
-    a: &Cage,
-    b: &Cage,
+    operands: Vec<PyRef<'py, Cage>>,
     options: Option<&Bound<'py, PyDict>>,
     settings: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Combined<'py>> {
     let operation: Operation = operation.parse().map_err(|error| failures::argument(&format!("{error}")))?;
     let (form, tolerance) = (read(options)?, setting::<f64>(options, "tolerance")?);
-    let cages = [Arc::clone(&a.cage), Arc::clone(&b.cage)];
+    let cages: Vec<Arc<AnyCage>> = operands.iter().map(|cage| Arc::clone(&cage.cage)).collect();
     let (outcome, distances) = limits(settings)?.run(py, WATCHED_FROM, move |control| {
-        let mut fitted = Vec::with_capacity(2);
+        let mut fitted = Vec::with_capacity(cages.len());
         for (number, cage) in cages.iter().enumerate() {
             control.check()?;
             let allowed = 0.5 * tolerance.unwrap_or_else(|| 1e-3 * diagonal(cage));
@@ -287,7 +287,8 @@ pub(crate) fn combine_cages<'py>(
             fitted.push(found.map_err(|error| error.of_operand(number, format!("cage {}", number + 1)))?);
         }
         let distances = fitted.iter().map(|(_, distance)| *distance).collect::<Vec<f64>>();
-        let outcome = form.control(control.clone()).run(operation, &fitted[0].0, &fitted[1].0)?;
+        let surfaces: Vec<&ControlMesh> = fitted.iter().map(|(cage, _)| cage).collect();
+        let outcome = form.control(control.clone()).run_all(operation, &surfaces)?;
         Ok::<_, Error>((outcome, distances))
     })?;
     let mut table = (Vec::new(), Vec::new(), Vec::new());
@@ -340,6 +341,7 @@ fn described(found: &FreeFormReport) -> Value {
         "unchanged": found.unchanged,
         "chains": found.chains,
         "features": found.features,
+        "junctions": found.junctions,
         "crossing_degrees": found.crossing,
         "largest_valence": found.valence,
         "refined": found.refined,

@@ -34,10 +34,13 @@ fn plane(given: Given) -> PyResult<Plane> {
     made.map_err(|fault: PlaneFault| failures::exception(&Error::from(fault)))
 }
 
+/// Normal, offset; name and height.
+type Level = ([f64; 3], f64, Option<(String, f64)>);
+
 /// What a plane is: a normal of about unit length unless it was given by one, the offset that belongs to it; and, of a plane
 /// across an axis, its name and its height.
 #[pyfunction]
-pub(crate) fn level(at: Given) -> PyResult<([f64; 3], f64, Option<(String, f64)>)> {
+pub(crate) fn level(at: Given) -> PyResult<Level> {
     let given = if let Given::Coefficients(coefficients) = &at { Some(*coefficients) } else { None };
     let plane = plane(at)?;
     let (normal, offset) = given.unwrap_or_else(|| {

@@ -91,6 +91,14 @@ def test_booleans_give_cages(ball: trisect.Cage) -> None:
     assert pickle.loads(pickle.dumps(lens)).report == lens.report
 
 
+def test_any_number_at_once(ball: trisect.Cage) -> None:
+    three = [ball.translated([0.7 * i, 0.1 * i, 0.05 * i]) for i in range(3)]
+    made = trisect.combine_cages("union", three, tolerance=0.05)
+    assert made.report.errors.largest < 0.05 and sorted(set(made.origins.operand.tolist())) == [-1, 0, 1, 2]
+    with pytest.raises(TypeError, match="operand 2"):
+        trisect.combine_cages("union", ball, 7)
+
+
 def test_polygons_are_fitted_and_that_is_told() -> None:
     cube = trisect.Cage(CORNERS, SQUARES)
     with pytest.warns(trisect.TrisectWarning, match="fitted to the Catmull-Clark surface"):

@@ -71,6 +71,7 @@ class CageReport(Record):
     unchanged: int = 0
     chains: int = 0
     features: int = 0
+    junctions: int = 0
     crossing_degrees: float = 90.0
     largest_valence: int = 0
     refined: int = 0
@@ -329,9 +330,7 @@ class CombinedCages:
 
 def combine_cages(
     operation: str,
-    a: Cage,
-    b: Cage,
-    *,
+    *cages: Any,
     tolerance: Optional[float] = None,
     refine: int = 0,
     attempts: Optional[int] = None,
@@ -340,7 +339,7 @@ def combine_cages(
     allow_tangent: bool = False,
     **limits: "Unpack[Limits]",
 ) -> CombinedCages:
-    """A boolean of two cages ("union", "intersection" or "difference") whose result is a cage.
+    """A boolean of cages ("union", "intersection" or "difference"; any number of them, or one list) whose result is a cage.
 
     >>> import trisect
     >>> ball = trisect.icosphere(1.0, level=1)
@@ -377,10 +376,15 @@ def combine_cages(
         given["tolerance"] = float(tolerance)
     if attempts is not None:
         given["attempts"] = _index(attempts)
-    made = _trisect.combine_cages(operation, a._core, b._core, given, settings(limits, limits_only=True))
+    listed = list(cages[0]) if len(cages) == 1 and not isinstance(cages[0], Cage) else list(cages)
+    for number, cage in enumerate(listed, 1):
+        if not isinstance(cage, Cage):
+            raise TypeError(f"operand {number} is a {type(cage).__name__}, and no cage")
+    cores = [cage._core for cage in listed]
+    made = _trisect.combine_cages(operation, cores, given, settings(limits, limits_only=True))
     core, exact, text, origins, distances = made
     report = CageReport.of(json.loads(text))
-    for number, (cage, distance) in enumerate(zip((a, b), distances), 1):
+    for number, (cage, distance) in enumerate(zip(listed, distances), 1):
         if cage.scheme != "loop":
             said = f"its polygons became triangles, fitted to the Catmull-Clark surface within {distance:.3g}"
             _warn([said], f"operand {number}")
