@@ -46,6 +46,9 @@ pub(crate) fn read_mesh(
         let corners = arrays::ragged(corners, &sizes, positions.len())?;
         return polygons(positions, &corners, &sizes);
     }
+    if let Some(triangles) = arrays::triangles(faces, positions.len())? {
+        return Ok(Mesh::new(positions, triangles));
+    }
     let (corners, columns) = arrays::faces(faces, positions.len())?;
     match columns {
         3 => Ok(Mesh::new(positions, corners.as_chunks::<3>().0.to_vec())),
