@@ -7,7 +7,7 @@
     python benches/scale.py same FOLDER               # compares the files of all that were run, byte by byte
     python benches/scale.py infill COUNT [TILES]      # a lattice of so many balls, tile by tile and at once
     python benches/scale.py pair COUNT [SLABS]        # two rings of so many triangles together, slab by slab and at once
-    python benches/scale.py memory                    # a task of Ray that is ended for its memory
+    python benches/scale.py memory                    # workers without enough memory
 """
 
 from __future__ import annotations
@@ -270,28 +270,31 @@ def memory() -> None:
     """A worker out of memory: what becomes of its job."""
     import tempfile
 
-    import ray
-    from trisect import ray as many
-
     with tempfile.TemporaryDirectory() as place:
         trisect.icosphere(1.0, level=8).save(f"{place}/ball.ply")
-        jobs = [{"id": "large", "verb": "union", "inputs": ["ball.ply", {"file": "ball.ply", "translate": [0.1, 0, 0]}]}]
-        small = {**jobs[0], "id": "limited", "options": {"memory": "100M"}}
-        # 1. A ceiling of ours; 2. one of the system for the worker's address space.
-        for name, call in (
-            ("option memory", lambda: trisect.run_job(small, place)),
-            ("address space", lambda: trisect.batch(jobs, folder=place, workers=1).reports[0]),
-            ("address space, through Ray", lambda: many.batch(jobs, folder=place).reports[0]),
-        ):
-            before = resource.getrlimit(resource.RLIMIT_AS)
-            if name == "address space":
-                resource.setrlimit(resource.RLIMIT_AS, (1_200_000_000, before[1]))
-            if name.endswith("Ray") and not ray.is_initialized():
-                ray.init(num_cpus=1, include_dashboard=False, log_to_driver=False)
+        job = {"id": "large", "verb": "union", "inputs": ["ball.ply", {"file": "ball.ply", "translate": [0.1, 0, 0]}]}
+        # 1. A ceiling of ours; 2. one of the system's for what workers may have, so that they are refused memory and end.
+        over = threading.Event()
+
+        def hold() -> None:
+            while not over.wait(0.005):
+                for worker in processes("trisect._worker"):
+                    try:
+                        resource.prlimit(worker, resource.RLIMIT_AS, (_LITTLE, _LITTLE))
+                    except OSError:
+                        continue
+
+        for name, options in (("option memory", {"memory": "100M"}), (f"workers of {_LITTLE / 1e6:.0f} MB", {})):
+            if not options:
+                threading.Thread(target=hold, daemon=True).start()
             start = time.perf_counter()
-            report = call()
-            resource.setrlimit(resource.RLIMIT_AS, before)
+            [report] = trisect.batch([{**job, "options": options}], folder=place, workers=1).reports or []
             print(f"{name}: {report['status']} {report.get('error')} in {time.perf_counter() - start:.1f} s", flush=True)
+        over.set()
+
+
+# Enough for Python and the package, and for reading one of two balls of 1.3 M triangles.
+_LITTLE = 350_000_000
 
 
 def _started(module: Any) -> None:
