@@ -83,7 +83,10 @@ def run_python(code: str, **given: Any) -> "subprocess.Popen[str]":
 def test_ctrl_c_cancels() -> None:
     process = run_python(
         """
+        import signal
         import trisect
+        # What a shell starts in the background ignores the signal, and so does what that starts.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         ball = trisect.icosphere(1.0, level=6)
         other = ball.rotated([1, 2, 3], 40).translated([0.5, 0, 0])
         print("ready", flush=True)

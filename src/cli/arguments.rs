@@ -252,10 +252,13 @@ pub(crate) struct Combine {
     pub(crate) inputs: Inputs,
     #[command(flatten)]
     pub(crate) results: Results,
-    /// Round the result to the numbers of the output's format (single precision in STL and glTF) and resolve what crosses there:
-    /// what is read back does not cross itself
-    #[arg(long, help_heading = "Results")]
+    /// Round the result to the numbers of the output's format (single precision in STL and glTF) and resolve all that crosses
+    /// there: what is read back does not cross itself. Without it this is done where the operation made triangles, in double precision
+    #[arg(long, help_heading = "Results", conflicts_with = "exact_rounding")]
     pub(crate) embed: bool,
+    /// Leave every point where it rounds to, also where that makes thin parts cross
+    #[arg(long, help_heading = "Results")]
+    pub(crate) exact_rounding: bool,
     /// What the faces show that a tool has cut: keep (what the tool has there), body, or the name of a material
     #[arg(long, value_name = "keep|body|NAME", value_parser = surface::cut_material, help_heading = "Results")]
     pub(crate) cut_material: Option<String>,

@@ -96,8 +96,8 @@ pub(crate) struct FreeFormVerb {
     /// What to do
     #[arg(value_name = "OPERATION", value_enum)]
     pub(crate) operation: CageOperation,
-    /// Cages: *.obj with tag lines, *.json, or *.glb that have one; of more than two, the result of two and the next
-    #[arg(value_name = "CAGE", required = true, num_args = 2..)]
+    /// Cages: *.obj with tag lines, *.json, or *.glb that have one; all are combined at once; of one that crosses itself, union makes one that does not
+    #[arg(value_name = "CAGE", required = true, num_args = 1..)]
     pub(crate) files: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) placing: Placing,

@@ -246,11 +246,15 @@ fn grouped(operands: Vec<Operand>) -> Vec<Operand> {
 
 /// What becomes of crossings that rounding makes.
 fn embedding(arguments: &Combine, targets: &[Target]) -> Embed {
-    if !arguments.embed {
-        return Embed::default();
+    if arguments.exact_rounding {
+        return Embed::Never;
     }
-    let single = arguments.results.writing.single || targets.iter().any(Target::is_single);
-    Embed::OnGrid(if single { Grid::Single } else { Grid::Double })
+    if arguments.embed {
+        let single = arguments.results.writing.single || targets.iter().any(Target::is_single);
+        return Embed::OnGrid(if single { Grid::Single } else { Grid::Double });
+    }
+    // What writing in single precision loses is told when it is written, and embedding on that grid would lose it before.
+    Embed::NearCut
 }
 
 /// The inputs, one for each part of a file that is asked for; in expressions, whose operands are numbered, one for all parts

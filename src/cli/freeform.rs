@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::{Value, json};
-use trisect::Error;
 use trisect::subdivision::{Cage, ControlMesh, FreeForm, FreeFormOutcome, FreeFormReport, Scheme};
+use trisect::{Error, Operation};
 
 use super::argument_groups::{Drawing, Writing};
 use super::cage_arguments::FreeFormVerb;
@@ -43,7 +43,7 @@ pub(crate) fn run(
     }
     output::probe(&targets, &session.limits)?;
     output::probe(&exact_targets, &session.limits)?;
-    // 2. The cages, combined one after the other.
+    // 2. The cages, combined all at once.
     let start = Instant::now();
     let read = cages::read(matches, arguments.cages, session)?;
     session.took("read", start);
@@ -109,19 +109,19 @@ fn combine(
         settings = settings.tolerance(tolerance);
     }
     let operation = arguments.operation.operation();
-    let mut steps = Vec::new();
-    let mut outcome: Option<FreeFormOutcome> = None;
-    for (index, (name, next)) in read.iter().enumerate().skip(1) {
-        let first = outcome.as_ref().map_or(&read[0].1, FreeFormOutcome::surface);
-        let done = settings.run(operation, first, next).map_err(name_option)?;
-        for warning in &done.report().warnings {
-            session.warn(format!("after operand {} ({name}): {warning}", index + 1));
-        }
-        steps.push(described(done.report()));
-        outcome = Some(done);
+    if read.len() < 2 && operation != Operation::Union {
+        return Err(Fault::usage(format!(
+            "{} needs two cages at least; one alone can be united with itself: freeform union",
+            operation.name()
+        )));
     }
-    session.note("steps", steps);
-    outcome.ok_or_else(|| Fault::usage("at least two cages are needed"))
+    let surfaces: Vec<&ControlMesh> = read.iter().map(|(_, cage)| cage).collect();
+    let outcome = settings.run_all(operation, &surfaces).map_err(name_option)?;
+    for warning in &outcome.report().warnings {
+        session.warn(warning.clone());
+    }
+    session.note("steps", vec![described(outcome.report())]);
+    Ok(outcome)
 }
 
 /// The error of surfaces that nearly touch, with the option that takes them.
@@ -188,6 +188,7 @@ fn described(found: &FreeFormReport) -> Value {
         "unchanged": found.unchanged,
         "chains": found.chains,
         "features": found.features,
+        "junctions": found.junctions,
         "crossing_degrees": found.crossing,
         "largest_valence": found.valence,
         "refined": found.refined,

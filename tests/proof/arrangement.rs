@@ -10,7 +10,8 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use trisect::exact::{Sign, collinear, orient3d};
 use trisect::{
-    BooleanOptions, Control, Embed, Expression, Grid, Mesh, OperandState, Rule, Solid, primitives,
+    BooleanOptions, Control, Embed, Expression, Grid, Mesh, OperandState, Operation, Outcome, Rule, Solid,
+    primitives,
 };
 
 /// Rounds of a test that usually runs `usual`.
@@ -409,6 +410,60 @@ fn results_on_a_grid_are_free_of_crossings_or_say_how_many_are_left() {
     }
     println!("{tried} results, {resolved} resolved, {left} with crossings left");
     assert!(tried > 30 && left * 20 < tried, "{left} of {tried} with crossings left");
+}
+
+#[test]
+fn crossings_that_rounding_makes_are_resolved_where_something_was_cut() {
+    // Boxes in a row, turned together: flush but for rounding. In the file of the first a ball of many triangles, far away.
+    let ball = primitives::icosphere(3.0, 4).unwrap().translated([40.0, 0.0, 0.0]);
+    let (mut crossing, mut left) = (0, 0);
+    for seed in 0..rounds(60) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let axis = [0, 1, 2].map(|_| rng.random_range(-1.0..1.0));
+        let angle = rng.random_range(1.0..90.0);
+        let mut row = |first: f64| {
+            let mut mesh = Mesh::default();
+            for k in 0..3 {
+                let low = [first + 2.0 * f64::from(k), 0.0, 0.0].map(|x: f64| x / 3.0);
+                let size = [1.0, f64::from(rng.random_range(1..4)), f64::from(rng.random_range(1..4))];
+                let high = [0, 1, 2].map(|k| low[k] + size[k] / 3.0);
+                let part = primitives::cuboid(low, high).unwrap();
+                append(&mut mesh, part.positions, &part.triangles);
+            }
+            mesh.rotated(axis, angle).unwrap()
+        };
+        let (mut a, b) = (row(0.0), row(1.0));
+        append(&mut a, ball.positions.clone(), &ball.triangles);
+        let operands = [a, b].map(|mesh| Solid::try_from(mesh).unwrap());
+        for operation in [Operation::Union, Operation::Difference] {
+            let run = |embed| BooleanOptions::new().embed(embed).run(operation, &operands).unwrap();
+            let again = |outcome: &Outcome| {
+                let mesh = outcome.solid().mesh();
+                Solid::try_from(Mesh::new(mesh.positions.clone(), mesh.triangles.clone())).unwrap()
+            };
+            let rounded = run(Embed::Never);
+            let found = again(&rounded);
+            let crosses = found.self_crossings(&Control::new()).unwrap();
+            crossing += u32::from(!crosses.is_simple() || crosses.tolerated > 0);
+            let near = run(Embed::NearCut);
+            let embedding = near.certificate().embedding.expect("it was looked for");
+            let found = again(&near);
+            let crosses = found.self_crossings(&Control::new()).unwrap();
+            if embedding.left == 0 {
+                assert!(crosses.is_simple() && crosses.tolerated == 0, "seed {seed}: {crosses:?}");
+            }
+            left += u32::from(embedding.left > 0);
+            assert!(
+                (found.volume() - rounded.solid().volume()).abs() < 1e-9,
+                "seed {seed}: {} {} {}",
+                found.volume(),
+                rounded.solid().volume(),
+                run(Embed::OnGrid(Grid::Double)).solid().volume()
+            );
+        }
+    }
+    println!("{crossing} results with crossings, {left} with crossings left");
+    assert!(crossing > 10 && left * 2 < crossing, "{left} of {crossing}");
 }
 
 #[test]

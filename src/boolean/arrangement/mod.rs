@@ -20,6 +20,7 @@ mod height_fields;
 pub(super) mod identify;
 pub(super) mod location;
 mod neighbours;
+mod pairs_of_some;
 mod penetration;
 pub(super) mod plane_faces;
 pub(super) mod points;

@@ -11,6 +11,7 @@ use std::borrow::Cow;
 use super::apart::{are_plainly_apart, common_corners};
 use super::beside::Look;
 use super::neighbours::Neighbours;
+use super::pairs_of_some::pairs_with;
 use super::penetration;
 use super::self_pairs::{self_pairs, tree_of};
 use crate::boolean::complex::planes;
@@ -20,7 +21,7 @@ use crate::exact::at_hand::{largest_coordinate, size_at_hand};
 use crate::mesh::{Bounds, SelfCrossing, SelfCrossings};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame};
-use crate::{Control, Error, Solid};
+use crate::{Control, Error, Mesh, Solid};
 
 /// Units in the last place of the coordinates at hand that a rounding-level crossing may be deep. Each of two rounded
 /// surfaces is off by less than one in every direction.
@@ -121,6 +122,23 @@ pub(in crate::boolean) fn is_nearly_simple(solid: &Solid, control: &Control) -> 
         solid.remember_self_crossings(shortened(found));
     }
     Ok(is_simple)
+}
+
+/// Whether triangles of a closed mesh cross or lie on each other, of which one is among `some`.
+///
+/// # Errors
+/// Only limits.
+pub(in crate::boolean) fn crosses_at(mesh: &Mesh, some: &[bool], runner: Runner<'_>) -> Result<bool, Error> {
+    let pairs = pairs_with(mesh, some, runner)?;
+    let Some(bounds) = mesh.bounds().filter(|_| !pairs.is_empty()) else { return Ok(false) };
+    let largest = bounds.largest();
+    let complex = Complex::alone(Operand { positions: &mesh.positions, triangles: &mesh.triangles }, largest);
+    let frame = Frame::of(bounds.low, bounds.high);
+    let surface = Surface::new(&complex, BoxTree::empty(), frame, &bounds, f64::EPSILON);
+    let found = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
+        pairs[range].iter().any(|&pair| surface.has_crossing(pair))
+    })?;
+    Ok(found.contains(&true))
 }
 
 /// Pairs that one thread examines before the limits are checked.
@@ -258,6 +276,20 @@ impl<'a> Surface<'a> {
             return Some(Found::Crossing(crossing));
         }
         self.lie_on_each_other(pair).then_some(Found::Touching)
+    }
+
+    /// Whether two triangles cross or lie on each other, however little.
+    fn has_crossing(&self, pair: [u32; 2]) -> bool {
+        let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t));
+        if are_plainly_apart(&self.predicates, &a, &b) {
+            return false;
+        }
+        let crosses = match common_corners(&a, &b).as_slice() {
+            [] => self.crossing(&a, &b).is_some(),
+            &[corners] => self.crossing_at_common_corner(&a, &b, corners).is_some(),
+            corners => corners.len() > 2,
+        };
+        crosses || self.lie_on_each_other(pair)
     }
 
     /// The crossing of a pair that crosses by no more than some roundings, if the surface overlaps beside it all the same.

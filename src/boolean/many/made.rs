@@ -3,8 +3,9 @@
 use rustc_hash::FxHashMap;
 
 use super::policy::{Embed, Policy};
+use crate::boolean::arrangement::self_crossings::crosses_at;
 use crate::boolean::complex::origin::Origin;
-use crate::boolean::general::embed::{Grid, Parts, embed};
+use crate::boolean::general::embed::{Embedding, Grid, Parts, embed};
 use crate::boolean::result::attributes::carried;
 use crate::boolean::result::certificate::Notes;
 use crate::boolean::result::origins::Origins;
@@ -38,8 +39,16 @@ impl Made {
             Embed::WhereNeeded if self.may_cross && self.is_clean => {
                 self.embed(Grid::Double, policy, has_attributes, runner)?;
             }
+            // (What is not known to be clean could be resolved by this where it is not asked for.)
+            Embed::NearCut if self.is_clean => {
+                let changed = changed(&self.origins, self.solid.mesh(), operands);
+                self.notes.embedding = Some(Embedding::default());
+                if crosses_at(self.solid.mesh(), &changed, runner)? {
+                    self.embed(Grid::Double, policy, has_attributes, runner)?;
+                }
+            }
             Embed::OnGrid(grid) => self.embed(grid, policy, has_attributes, runner)?,
-            Embed::Never | Embed::WhereNeeded => {}
+            Embed::Never | Embed::WhereNeeded | Embed::NearCut => {}
         }
         if self.is_clean {
             self.solid.set_made_clean();
@@ -84,6 +93,26 @@ impl Made {
         self.notes.embedding = Some(report);
         Ok(())
     }
+}
+
+/// For each triangle of a result whether it is no triangle of an operand as it was.
+fn changed(origins: &Origins, mesh: &Mesh, operands: &[&Solid]) -> Vec<bool> {
+    let corners = |mesh: &Mesh, t: usize| mesh.triangles[t].map(|v| mesh.positions[v as usize]);
+    let mut changed = Vec::with_capacity(mesh.triangles.len());
+    for (origin, count, whole) in origins.stretches() {
+        let count = count as usize;
+        match operands.get(origin.operand as usize).map(|solid| solid.mesh()).filter(|_| !whole) {
+            None => changed.resize(changed.len() + count, !whole),
+            Some(given) => {
+                let first = changed.len();
+                changed.extend((0..count).map(|i| {
+                    let source = corners(given, origin.triangle as usize + i);
+                    !is_as_given(corners(mesh, first + i), source, origin.reversed)
+                }));
+            }
+        }
+    }
+    changed
 }
 
 /// The polygons of the operands, on the triangles of the result that are as the operands have them.

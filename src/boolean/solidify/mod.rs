@@ -228,6 +228,7 @@ impl Work<'_> {
         let parts = Parts { positions: arrays.positions, triangles: arrays.triangles, origins, groups };
         let grid = match self.policy.embed {
             Embed::OnGrid(grid) => grid,
+            Embed::NearCut => Grid::Double,
             Embed::Never | Embed::WhereNeeded if arrays.may_cross => Grid::Double,
             Embed::Never | Embed::WhereNeeded => return Ok((parts, 0)),
         };

@@ -1,6 +1,5 @@
 //! Nodes of cages: their limit surfaces as meshes, and operations that give cages.
 
-use crate::boolean::Operation;
 use crate::model::cage::Cage;
 use crate::model::{Kind, Mode};
 use crate::subdivision::{ControlMesh, FreeForm};
@@ -48,27 +47,22 @@ impl State<'_> {
         if let Some(tolerance) = self.given_tolerance(node) {
             settings = settings.tolerance(tolerance);
         }
-        let mut result: Option<ControlMesh> = None;
+        let mut cages: Vec<ControlMesh> = Vec::with_capacity(operands.len());
         for &operand in operands {
-            let next = self.cage(operand)?;
+            let cage = self.cage(operand)?;
             let within = |error: Error| error.in_node(self.label(operand));
-            let (next, warning) = next.of_triangles(self.given_tolerance(node)).map_err(within)?;
+            let (cage, warning) = cage.of_triangles(self.given_tolerance(node)).map_err(within)?;
             if let Some(warning) = warning {
                 self.warnings.push(format!("node {}: {warning}", self.label(operand)));
             }
-            result = Some(match result {
-                None => next,
-                Some(before) => {
-                    let outcome = settings.run(*operation, &before, &next);
-                    let outcome = outcome.map_err(|error| error.in_node(self.label(node)))?;
-                    for warning in &outcome.report().warnings {
-                        self.warnings.push(format!("node {}: {warning}", self.label(node)));
-                    }
-                    outcome.into_surface()
-                }
-            });
+            cages.push(cage);
         }
-        let empty = || Error::Model(format!("`{}` needs an operand", Operation::name(*operation)));
-        result.map(|cage| Cage(cage.into())).ok_or_else(empty)
+        let cages: Vec<&ControlMesh> = cages.iter().collect();
+        let outcome =
+            settings.run_all(*operation, &cages).map_err(|error| error.in_node(self.label(node)))?;
+        for warning in &outcome.report().warnings {
+            self.warnings.push(format!("node {}: {warning}", self.label(node)));
+        }
+        Ok(Cage(outcome.into_surface().into()))
     }
 }

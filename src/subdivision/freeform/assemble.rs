@@ -17,7 +17,9 @@ pub(super) struct Draft {
     /// For each vertex where it comes from.
     pub(super) origins: Vec<VertexOrigin>,
     /// For each face its operand.
-    pub(super) operand_of: Vec<u8>,
+    pub(super) operand_of: Vec<u16>,
+    /// For each face one of its operand's fine triangles near it.
+    pub(super) seeds: Vec<u32>,
     /// For each face the operand and its control face that it is.
     pub(super) sources: Vec<Option<(usize, u32)>>,
     /// For each face whether it is one.
@@ -49,12 +51,10 @@ impl Draft {
             let Some(&tag) = self.sharp.get(&key(u, v)) else { continue };
             sharp.insert(key(u, middle), tag);
             sharp.insert(key(middle, v), tag);
-            if tag == Sharp::Curve {
+            if let Sharp::Curve(c) = tag {
                 let x = DVec3::from(cage.positions()[middle as usize]);
-                let near =
-                    chains.iter().enumerate().map(|(c, chain)| (c, chain.nearest(x, 0.0, f64::INFINITY)));
-                let nearest = near.min_by(|a, b| a.1.1.distance(x).total_cmp(&b.1.1.distance(x)));
-                on_curve[middle as usize] = nearest.map(|(c, found)| (c as u32, found.0));
+                let near = chains[c as usize].nearest(x, 0.0, f64::INFINITY);
+                on_curve[middle as usize] = Some((c, near.length));
             }
         }
         let resized = |of: &[bool]| -> Vec<bool> {
@@ -64,6 +64,7 @@ impl Draft {
         Ok(Self {
             origins: Vec::new(),
             operand_of: self.operand_of.iter().flat_map(|&o| [o; 4]).collect(),
+            seeds: self.seeds.iter().flat_map(|&seed| [seed; 4]).collect(),
             sources: vec![None; cage.faces().len()],
             whole: four(&self.whole),
             changed: vec![false; count],
@@ -88,23 +89,30 @@ fn turned(face: [u32; 3]) -> [u32; 3] {
 }
 
 /// Puts the cage together.
-pub(super) fn assemble(work: &Work, operands: [&Operand; 2], reversed: [bool; 2]) -> Result<Draft, Error> {
+pub(super) fn assemble(work: &Work, operands: &[Operand], reversed: &[bool]) -> Result<Draft, Error> {
     // 1. Faces: whole ones by their number in the operand, with its corners, then the others.
     let faces = ordered_faces(work, operands, reversed);
-    // 2. Vertices: control vertices of A, of B, then new ones.
+    // 2. Vertices: control vertices of the operands one after the other, then new ones.
     let mut used: Vec<u32> = faces.iter().flat_map(|&(_, _, corners)| corners).collect();
     used.sort_unstable();
     used.dedup();
-    used.sort_by_key(|&v| (work.vertices[v as usize].control.unwrap_or((u8::MAX, v)), v));
+    used.sort_by_key(|&v| (work.vertices[v as usize].control.unwrap_or((u16::MAX, v)), v));
     let numbers: FxHashMap<u32, u32> = used.iter().enumerate().map(|(i, &v)| (v, i as u32)).collect();
     let corners: Vec<[u32; 3]> = faces.iter().map(|&(_, _, corners)| corners.map(|v| numbers[&v])).collect();
     let sources: Vec<_> = faces.iter().map(|&(o, f, _)| (o != REST).then_some((o, f))).collect();
     let whole: Vec<bool> = sources.iter().map(Option::is_some).collect();
     let operand_of = faces
         .iter()
-        .map(|&(o, f, _)| if o == REST { work.faces[f as usize].operand } else { o as u8 })
+        .map(|&(o, f, _)| if o == REST { work.faces[f as usize].operand } else { o as u16 })
         .collect();
 
+    let seeds = faces
+        .iter()
+        .map(|&(o, f, _)| match o {
+            REST => work.faces[f as usize].seed,
+            o => operands[o].fine.first[f as usize],
+        })
+        .collect();
     let origins: Vec<VertexOrigin> = used
         .iter()
         .map(|&v| match work.vertices[v as usize].control {
@@ -136,19 +144,20 @@ pub(super) fn assemble(work: &Work, operands: [&Operand; 2], reversed: [bool; 2]
     let rules = operands[0].cage.rules();
     let cage = ControlMesh::new(positions, corners, tags, rules)?;
     let on_curve = used.iter().map(|&v| work.vertices[v as usize].on_curve).collect();
-    Ok(Draft { cage, origins, operand_of, sources, whole, changed, targets, on_curve, fixed, sharp })
+    Ok(Draft { cage, origins, operand_of, seeds, sources, whole, changed, targets, on_curve, fixed, sharp })
 }
 
 /// Stands for the operand of faces that are none of its control faces.
 const REST: usize = usize::MAX;
 
 /// The faces in the result's order: operand and control face, or [`REST`] and the number in the working mesh; and the corners.
-fn ordered_faces(work: &Work, operands: [&Operand; 2], reversed: [bool; 2]) -> Vec<(usize, u32, [u32; 3])> {
+fn ordered_faces(work: &Work, operands: &[Operand], reversed: &[bool]) -> Vec<(usize, u32, [u32; 3])> {
     let mut faces: Vec<(usize, u32, [u32; 3])> = Vec::new();
-    let known = operands.map(|operand| {
+    let known = operands.iter().map(|operand| {
         let all = operand.cage.faces().iter().enumerate();
-        all.map(|(f, &corners)| (turned(corners), f as u32)).collect::<FxHashMap<[u32; 3], u32>>()
+        all.map(|(f, &corners)| (turned(corners), f as u32)).collect()
     });
+    let known: Vec<FxHashMap<[u32; 3], u32>> = known.collect();
     for (i, face) in work.faces.iter().enumerate().filter(|(_, face)| face.alive) {
         let o = usize::from(face.operand);
         let mut corners = face.corners;
@@ -176,12 +185,7 @@ fn ordered_faces(work: &Work, operands: [&Operand; 2], reversed: [bool; 2]) -> V
 }
 
 /// Which vertices are new, or have other faces than before.
-fn changed(
-    operands: [&Operand; 2],
-    origins: &[VertexOrigin],
-    faces: &[[u32; 3]],
-    whole: &[bool],
-) -> Vec<bool> {
+fn changed(operands: &[Operand], origins: &[VertexOrigin], faces: &[[u32; 3]], whole: &[bool]) -> Vec<bool> {
     let mut count = vec![0usize; origins.len()];
     let mut changed = vec![false; origins.len()];
     for (corners, &whole) in faces.iter().zip(whole) {
@@ -202,8 +206,8 @@ fn changed(
 }
 
 fn tags(
-    operands: [&Operand; 2],
-    reversed: [bool; 2],
+    operands: &[Operand],
+    reversed: &[bool],
     origins: &[VertexOrigin],
     fixed: &[bool],
     sharp: &FxHashMap<(u32, u32), Sharp>,
@@ -217,7 +221,7 @@ fn tags(
         degree[u as usize] += 1;
         degree[v as usize] += 1;
     }
-    let mut number: [FxHashMap<u32, u32>; 2] = Default::default();
+    let mut number: Vec<FxHashMap<u32, u32>> = vec![FxHashMap::default(); operands.len()];
     for (v, origin) in origins.iter().enumerate() {
         let kept_corner = match *origin {
             VertexOrigin::Kept { operand, vertex } | VertexOrigin::Fitted { operand, vertex } => {
@@ -235,7 +239,7 @@ fn tags(
     // the crease it ended with; what is not found is seen from the faces again.
     let edges: FxHashSet<(u32, u32)> =
         faces.iter().flat_map(|f| [key(f[0], f[1]), key(f[1], f[2]), key(f[2], f[0])]).collect();
-    for o in 0..2 {
+    for o in 0..operands.len() {
         if reversed[o] {
             continue;
         }

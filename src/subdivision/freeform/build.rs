@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use rustc_hash::FxHashMap;
+use smallvec::SmallVec;
 
 use super::curve::Chain;
 use super::fan::fan;
@@ -17,12 +18,13 @@ pub(super) fn work(
     start: &Start<'_>,
     chains: &[Chain],
     sizes: &Sizes,
-    steps: &[Vec<u32>; 2],
+    steps: &[Vec<u32>],
 ) -> Result<Work, CageError> {
-    let active = [0, 1].map(|o| start.active(o, &steps[o]));
+    let count = start.operands.len();
+    let active: Vec<Vec<bool>> = (0..count).map(|o| start.active(o, &steps[o])).collect();
     let mut builder = Builder::new(start);
     // 1. Control faces that stay, with the points that faces beside them need.
-    for o in 0..2 {
+    for o in 0..count {
         for f in 0..active[o].len() as u32 {
             if !active[o][f as usize] && start.whole[o][f as usize] {
                 builder.add_whole(o, f, &active[o]);
@@ -36,10 +38,10 @@ pub(super) fn work(
         let f = start.face_of[t] as usize;
         if active[o][f] || !start.whole[o][f] {
             let corners = corners.map(|v| builder.vertex(v));
-            builder.work.add_face(corners, o as u8, None);
+            builder.work.add_face(corners, o as u16, None, start.fine_triangle(t as u32).1);
         }
     }
-    builder.describe(&active, steps, sizes);
+    builder.describe(steps, sizes);
     builder.tag(&active);
     builder.mark_chains(chains, sizes);
     builder.fix();
@@ -72,7 +74,7 @@ impl<'s, 'a> Builder<'s, 'a> {
             fixed: false,
             on_curve: None,
             step: u8::MAX,
-            normals: [DVec3::ZERO; 2],
+            normals: SmallVec::new(),
         });
         self.numbers.insert(v, number);
         number
@@ -80,7 +82,7 @@ impl<'s, 'a> Builder<'s, 'a> {
 
     /// A control face as one triangle, or as a fan where sides beside active faces have points.
     pub(super) fn add_whole(&mut self, o: usize, f: u32, active: &[bool]) {
-        let operand = self.start.operands[o];
+        let operand = &self.start.operands[o];
         let level = &operand.surface.level;
         let image = &self.start.image[o];
         let corners = level.faces[f as usize];
@@ -105,23 +107,23 @@ impl<'s, 'a> Builder<'s, 'a> {
             if self.start.reversed[o] {
                 triangle.swap(1, 2);
             }
-            self.work.add_face(triangle, o as u8, whole);
+            self.work.add_face(triangle, o as u16, whole, operand.fine.first[f as usize]);
         }
     }
 
     /// Where vertices come from, what is normal to them, and whether they stay.
-    pub(super) fn describe(&mut self, active: &[Vec<bool>; 2], steps: &[Vec<u32>; 2], sizes: &Sizes) {
+    pub(super) fn describe(&mut self, steps: &[Vec<u32>], sizes: &Sizes) {
         let on_crease = self.start.crease_vertices();
         // 1. Control vertices and those of splits.
-        for o in 0..2 {
-            let operand = self.start.operands[o];
+        for o in 0..self.start.operands.len() {
+            let operand = &self.start.operands[o];
             let level = &operand.surface.level;
             let wanted = wanted_steps(operand, &steps[o]);
             for (w, &v) in self.start.image[o].iter().enumerate() {
                 let Some(&number) = self.numbers.get(&v) else { continue };
                 let vertex = &mut self.work.vertices[number as usize];
                 if w < level.vertex_count {
-                    vertex.control = vertex.control.or(Some((o as u8, w as u32)));
+                    vertex.control = vertex.control.or(Some((o as u16, w as u32)));
                 }
                 vertex.step = vertex.step.min(operand.fine.step_of[w]);
                 let corner =
@@ -138,20 +140,19 @@ impl<'s, 'a> Builder<'s, 'a> {
             let f = self.start.face_of[t];
             for &v in corners {
                 let Some(&number) = self.numbers.get(&v) else { continue };
-                if self.work.vertices[number as usize].normals[o] != DVec3::ZERO {
+                if self.work.vertices[number as usize].normal(o) != DVec3::ZERO {
                     continue;
                 }
                 let place = self.start.place(t, v);
                 let normal = self.start.operands[o].surface.at(f, place.weights).normal;
                 let turn = if self.start.reversed[o] { -1.0 } else { 1.0 };
-                self.work.vertices[number as usize].normals[o] = normal * turn;
+                self.work.vertices[number as usize].set_normal(o, normal * turn);
             }
         }
-        let _ = active;
     }
 
     /// Tags the edges of creases.
-    pub(super) fn tag(&mut self, active: &[Vec<bool>; 2]) {
+    pub(super) fn tag(&mut self, active: &[Vec<bool>]) {
         let mut creases = Vec::new();
         self.start.each_side(|t, ends, sharp| {
             if sharp {
@@ -161,11 +162,11 @@ impl<'s, 'a> Builder<'s, 'a> {
         for (o, [u, v]) in creases {
             let (Some(&u), Some(&v)) = (self.numbers.get(&u), self.numbers.get(&v)) else { continue };
             if self.work.sides(u, v).is_some() {
-                self.work.sharp.insert(key(u, v), Sharp::Crease(o as u8));
+                self.work.sharp.insert(key(u, v), Sharp::Crease(o as u16));
             }
         }
         // Whole faces have long edges.
-        for o in 0..2 {
+        for o in 0..self.start.operands.len() {
             let level = &self.start.operands[o].surface.level;
             for (e, &h) in level.edges.iter().enumerate() {
                 let f = h as usize / 3;
@@ -177,7 +178,7 @@ impl<'s, 'a> Builder<'s, 'a> {
                 if let [Some(&u), Some(&v)] = ends
                     && self.work.sides(u, v).is_some()
                 {
-                    self.work.sharp.insert(key(u, v), Sharp::Crease(o as u8));
+                    self.work.sharp.insert(key(u, v), Sharp::Crease(o as u16));
                 }
             }
         }
@@ -187,7 +188,7 @@ impl<'s, 'a> Builder<'s, 'a> {
         for (u, v, sharp) in ends {
             if let Sharp::Crease(o) = sharp {
                 for w in [u, v] {
-                    self.work.vertices[w as usize].normals[usize::from(o)] = DVec3::ZERO;
+                    self.work.vertices[w as usize].set_normal(usize::from(o), DVec3::ZERO);
                 }
             }
         }
@@ -204,8 +205,12 @@ impl<'s, 'a> Builder<'s, 'a> {
                 vertex.keep = vertex.fixed;
                 vertex.step = u8::MAX;
                 vertex.control = None;
+                // Where two sheets of one surface meet no single normal is right.
+                if chain.is_of_one() {
+                    vertex.set_normal(usize::from(chain.sheets[0][0].operand), DVec3::ZERO);
+                }
                 if i + 1 < n || chain.closed {
-                    self.work.sharp.insert(key(numbers[i], numbers[(i + 1) % n]), Sharp::Curve);
+                    self.work.sharp.insert(key(numbers[i], numbers[(i + 1) % n]), Sharp::Curve(c as u32));
                 }
             }
             for &i in &chain.features {

@@ -1,7 +1,10 @@
 //! The intersection curve: chains of points on both surfaces.
 
-use glam::DVec3;
+use std::collections::BTreeMap;
 
+use glam::{DMat3, DVec3};
+
+use super::meetings::{Meeting, Sheet};
 use super::operand::Operand;
 
 /// A chain of the curve.
@@ -11,6 +14,8 @@ pub(super) struct Chain {
     pub(super) points: Vec<DVec3>,
     /// Vertices of the exact result, in the same order.
     pub(super) vertices: Vec<u32>,
+    /// For each stretch between points the surfaces that meet there.
+    pub(super) sheets: Vec<[Sheet; 2]>,
     pub(super) closed: bool,
     /// Length of the chain up to each point, and in all.
     pub(super) lengths: Vec<f64>,
@@ -25,13 +30,33 @@ const ROUNDS: usize = 3;
 /// A chain turns sharply where its direction changes by more than 30 degrees, here as a cosine.
 const TURN: f64 = 0.866;
 
+/// The point of a chain nearest to another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    /// The length of the chain up to there.
+    pub(super) length: f64,
+    pub(super) point: DVec3,
+    /// The direction of the chain; zero if none of it was within reach.
+    pub(super) along: DVec3,
+    /// The number of the stretch.
+    pub(super) stretch: usize,
+}
+
 /// A point of both surfaces near `x` in the plane across `along`: the point of both tangent planes, again and again. And the
 /// sine of the angle between them. Where they are nearly one, or the way is longer than `most`, `x` stays.
-pub(super) fn polished(operands: [&Operand; 2], x: DVec3, along: DVec3, most: f64) -> (DVec3, f64) {
+pub(super) fn polished(
+    operands: &[Operand],
+    sheets: [Sheet; 2],
+    x: DVec3,
+    along: DVec3,
+    most: f64,
+) -> (DVec3, f64) {
     let mut point = x;
     let mut sine = 1.0;
     for _ in 0..ROUNDS {
-        let (Some(a), Some(b)) = (operands[0].foot(point, None), operands[1].foot(point, None)) else {
+        let [a, b] =
+            sheets.map(|sheet| operands[usize::from(sheet.operand)].foot(point, Some(sheet.triangle)));
+        let (Some(a), Some(b)) = (a, b) else {
             return (x, sine);
         };
         let across = a.normal.cross(b.normal);
@@ -53,12 +78,8 @@ pub(super) fn polished(operands: [&Operand; 2], x: DVec3, along: DVec3, most: f6
 
 impl Chain {
     /// A chain from vertices of the exact result, polished; ends stay.
-    pub(super) fn new(
-        operands: [&Operand; 2],
-        positions: &[[f64; 3]],
-        mut vertices: Vec<u32>,
-        most: f64,
-    ) -> Self {
+    pub(super) fn new(operands: &[Operand], positions: &[[f64; 3]], meeting: Meeting, most: f64) -> Self {
+        let Meeting { mut vertices, sheets } = meeting;
         let closed = vertices.len() > 3 && vertices.first() == vertices.last();
         if closed {
             vertices.pop();
@@ -74,13 +95,13 @@ impl Chain {
                     (false, _) => (at(i - 1), at((i + 1).min(n - 1))),
                 };
                 let along = (after - before).normalize_or_zero();
-                let (point, sine) = polished(operands, at(i), along, most);
+                let (point, sine) = polished(operands, sheets[i.min(sheets.len() - 1)], at(i), along, most);
                 crossing = crossing.min(sine);
                 point
             })
             .collect();
         let mut chain =
-            Self { points, vertices, closed, lengths: Vec::new(), features: Vec::new(), crossing };
+            Self { points, vertices, sheets, closed, lengths: Vec::new(), features: Vec::new(), crossing };
         chain.measure();
         chain
     }
@@ -161,11 +182,16 @@ impl Chain {
         self.points[i - 1].lerp(self.points[i % n], t)
     }
 
-    /// The length at the point of the chain nearest to `x`, within `reach` of the length `near`; and the direction there.
-    pub(super) fn nearest(&self, x: DVec3, near: f64, reach: f64) -> (f64, DVec3, DVec3) {
+    /// Whether two sheets of one operand meet.
+    pub(super) fn is_of_one(&self) -> bool {
+        self.sheets.first().is_some_and(|[a, b]| a.operand == b.operand)
+    }
+
+    /// The point of the chain nearest to `x`, within `reach` of the length `near`.
+    pub(super) fn nearest(&self, x: DVec3, near: f64, reach: f64) -> Near {
         let total = self.length();
         let n = self.points.len();
-        let mut best = (f64::INFINITY, near, DVec3::ZERO, DVec3::X);
+        let mut best: Option<(f64, Near)> = None;
         for i in 1..self.lengths.len() {
             let mid = 0.5 * (self.lengths[i] + self.lengths[i - 1]);
             let half = 0.5 * (self.lengths[i] - self.lengths[i - 1]);
@@ -186,10 +212,64 @@ impl Chain {
             };
             let point = p + along * t;
             let distance = x.distance_squared(point);
-            if distance < best.0 {
-                best = (distance, self.lengths[i - 1] + t * 2.0 * half, point, along.normalize_or_zero());
+            if best.is_none_or(|(least, _)| distance < least) {
+                let length = self.lengths[i - 1] + t * 2.0 * half;
+                best = Some((
+                    distance,
+                    Near { length, point, along: along.normalize_or_zero(), stretch: i - 1 },
+                ));
             }
         }
-        if best.0.is_finite() { (best.1, best.2, best.3) } else { (near, self.at(near), DVec3::ZERO) }
+        let none = || Near { length: near, point: self.at(near), along: DVec3::ZERO, stretch: 0 };
+        best.map_or_else(none, |(_, found)| found)
     }
+}
+
+/// Where three surfaces and more meet, chains end in one point of all of them; where there is none within `most`, in the vertex of the
+/// exact result.
+pub(super) fn join_ends(operands: &[Operand], chains: &mut [Chain], positions: &[[f64; 3]], most: f64) {
+    let mut ends: BTreeMap<u32, Vec<(usize, usize)>> = BTreeMap::new();
+    for (c, chain) in chains.iter().enumerate().filter(|(_, chain)| !chain.closed) {
+        for i in [0, chain.points.len() - 1] {
+            ends.entry(chain.vertices[i]).or_default().push((c, i));
+        }
+    }
+    for (v, ends) in ends {
+        let sheets_at = |&(c, i): &(usize, usize)| chains[c].sheets[i.min(chains[c].sheets.len() - 1)];
+        let mut sheets: Vec<Sheet> = ends.iter().flat_map(sheets_at).collect();
+        sheets.sort_by_key(|sheet| sheet.operand);
+        sheets.dedup_by(|a, b| {
+            let operand = &operands[usize::from(a.operand)];
+            a.operand == b.operand && (!operand.crosses_itself || operand.continues(a.triangle, b.triangle))
+        });
+        if sheets.len() < 3 {
+            continue;
+        }
+        let x = DVec3::from(positions[v as usize]);
+        let point = common_point(operands, &sheets, x).filter(|point| point.distance(x) <= most).unwrap_or(x);
+        for (c, i) in ends {
+            chains[c].points[i] = point;
+            chains[c].measure();
+        }
+    }
+}
+
+/// The point of all tangent planes near `x`, in the sense of least squares, again and again.
+fn common_point(operands: &[Operand], sheets: &[Sheet], x: DVec3) -> Option<DVec3> {
+    let mut point = x;
+    for _ in 0..ROUNDS {
+        let (mut normal, mut right) = (DMat3::ZERO, DVec3::ZERO);
+        for sheet in sheets {
+            let foot = operands[usize::from(sheet.operand)].foot(point, Some(sheet.triangle))?;
+            let n = foot.normal;
+            normal += DMat3::from_cols(n * n.x, n * n.y, n * n.z);
+            right += n * n.dot(foot.position - point);
+        }
+        // Three planes of which one contains the line of the other two have no point: 3 degrees squared.
+        if !(normal.determinant() > 2.5e-3) {
+            return None;
+        }
+        point += normal.inverse() * right;
+    }
+    Some(point)
 }

@@ -36,7 +36,7 @@ pub(super) fn add(
         // 2. Where to, and the displacements.
         let smooth = draft.cage.points();
         let mut wanted = smooth.clone();
-        let mut fit = Fit::new(&draft, measure.operands, measure.start.reversed, measure.chains, 1, 1);
+        let mut fit = Fit::new(&draft, measure.operands, &measure.start.reversed, measure.chains, 1, 1);
         if !fit.unknown.is_empty() {
             fit.run(&mut wanted, 0.01 * tolerance);
         }

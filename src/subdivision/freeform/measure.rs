@@ -44,7 +44,7 @@ impl Errors {
 
 /// What is measured: the surface of a draft against the exact result.
 pub(super) struct Measure<'a> {
-    pub(super) operands: [&'a Operand; 2],
+    pub(super) operands: &'a [Operand],
     pub(super) start: &'a Start<'a>,
     pub(super) exact: &'a Outcome,
     pub(super) chains: &'a [Chain],
@@ -61,7 +61,7 @@ pub(super) struct Region {
     /// For each face of the cage whether its surface may differ from an operand's.
     pub(super) affected: Vec<bool>,
     /// For each operand and control face whether its surface is in the result as it was.
-    pub(super) same: [Vec<bool>; 2],
+    pub(super) same: Vec<Vec<bool>>,
 }
 
 impl Measure<'_> {
@@ -72,8 +72,8 @@ impl Measure<'_> {
     /// Every face of the cage is measured at the vertices of 4^steps triangles, which are on its surface. Also told is the
     /// largest distance over each face.
     pub(super) fn errors(&self, draft: &Draft, region: &Region, steps: u32) -> (Errors, Vec<f64>) {
-        let within = self.operands.map(|operand| operand.within);
-        let mut errors = Errors { allowance: within[0].max(within[1]), ..Errors::default() };
+        let within = self.operands.iter().map(|operand| operand.within);
+        let mut errors = Errors { allowance: within.fold(0.0, f64::max), ..Errors::default() };
         let mut of_face = vec![0.0f64; draft.cage.faces().len()];
         let Region { affected, same } = region;
         let (level, points) = fine_surface(draft, steps);
@@ -105,7 +105,7 @@ impl Measure<'_> {
                 let Some(closest) = tree.closest_from(x.to_array(), guess) else { continue };
                 guess = Some(closest.triangle);
                 let (o, triangle) = self.start.fine_triangle(cut[closest.triangle as usize]);
-                let distance = self.distance(self.operands[o], triangle, x, &closest);
+                let distance = self.distance(&self.operands[o], triangle, x, &closest);
                 errors.forward = errors.forward.max(distance);
                 of_face[face] = of_face[face].max(distance);
                 let kind = if draft.whole[face] { &mut errors.outside } else { &mut errors.band };
@@ -157,19 +157,20 @@ impl Measure<'_> {
         for (e, &h) in fine.edges.iter().enumerate().take(level.edges.len() << steps) {
             let own = level.edges[e >> steps];
             let (u, v) = (level.from(own), level.to(own));
-            if draft.sharp.get(&(u.min(v), u.max(v))) != Some(&Sharp::Curve) {
+            if !matches!(draft.sharp.get(&(u.min(v), u.max(v))), Some(Sharp::Curve(_))) {
                 continue;
             }
             let x = points[fine.from(h) as usize];
-            let near = |chain: &Chain| chain.nearest(x, 0.0, f64::INFINITY).1.distance(x);
+            let near = |chain: &Chain| chain.nearest(x, 0.0, f64::INFINITY).point.distance(x);
             largest = largest.max(self.chains.iter().map(near).fold(f64::INFINITY, f64::min));
         }
         largest
     }
 
     /// Control faces of the operands that are there with the same surface.
-    fn same_faces(&self, draft: &Draft, affected: &[bool]) -> [Vec<bool>; 2] {
-        let mut same = self.operands.map(|operand| vec![false; operand.cage.faces().len()]);
+    fn same_faces(&self, draft: &Draft, affected: &[bool]) -> Vec<Vec<bool>> {
+        let none = |operand: &Operand| vec![false; operand.cage.faces().len()];
+        let mut same: Vec<Vec<bool>> = self.operands.iter().map(none).collect();
         for (f, source) in draft.sources.iter().enumerate() {
             if let (Some((o, face)), false) = (source, affected[f]) {
                 same[*o][*face as usize] = true;

@@ -20,7 +20,10 @@ mod curve;
 mod details;
 mod fan;
 mod fit;
+#[cfg(test)]
+mod many_tests;
 mod measure;
+mod meetings;
 mod operand;
 mod relax;
 mod report;
@@ -214,16 +217,43 @@ impl FreeForm {
         a: &ControlMesh,
         b: &ControlMesh,
     ) -> Result<FreeFormOutcome, Error> {
+        self.run_all(operation, &[a, b])
+    }
+
+    /// Combines any number of cages at once: of a difference, what is taken from the first. The exact result is one of all limit
+    /// surfaces, where three meet is a corner of the cage, and the distance is that of one step. One cage alone, in a union, becomes
+    /// one that does not cross itself.
+    ///
+    /// ```
+    /// use trisect::Operation;
+    /// use trisect::subdivision::{ControlMesh, FreeForm, Rules, Tags};
+    ///
+    /// let ball = |at| {
+    ///     let ball = trisect::primitives::icosphere(1.0, 1)?.translated(at);
+    ///     ControlMesh::new(ball.positions, ball.triangles, Tags::default(), Rules::Loop)
+    /// };
+    /// let balls = [ball([0.0; 3])?, ball([0.9, 0.1, 0.2])?, ball([0.4, 0.8, 0.1])?];
+    /// let all = FreeForm::new().tolerance(0.05).run_all(Operation::Union, &balls.each_ref())?;
+    /// assert_eq!(all.report().junctions, 2);
+    /// # Ok::<(), trisect::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`run`](Self::run); [`Error::InvalidArgument`] for no cages, and more than 65,535.
+    pub fn run_all(&self, operation: Operation, cages: &[&ControlMesh]) -> Result<FreeFormOutcome, Error> {
+        if cages.is_empty() || cages.len() > usize::from(u16::MAX) {
+            return Err(Error::InvalidArgument(format!("1 to {} cages, not {}", u16::MAX, cages.len())));
+        }
         if !matches!(operation, Operation::Union | Operation::Intersection | Operation::Difference) {
             return Err(Error::InvalidArgument(format!(
                 "{} of cages is not offered: its result touches itself along the curve; take two differences",
                 operation.name()
             )));
         }
-        let tolerance = self.tolerance.unwrap_or_else(|| USUAL_TOLERANCE * diagonal(&[a, b]));
+        let tolerance = self.tolerance.unwrap_or_else(|| USUAL_TOLERANCE * diagonal(cages));
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(Error::InvalidArgument(format!("a tolerance must be positive, not {tolerance}")));
         }
-        Run::new(self, tolerance).all(operation, a, b)
+        Run::new(self, tolerance).all(operation, cages)
     }
 }

@@ -1,8 +1,11 @@
 //! An operand: its cage, its limit surface, and triangles on that.
 
-use glam::DVec3;
+use std::sync::OnceLock;
 
-use crate::spatial::TriangleTree;
+use glam::DVec3;
+use smallvec::SmallVec;
+
+use crate::spatial::{TriangleTree, closest_on_triangle};
 use crate::subdivision::control_mesh::ControlMesh;
 use crate::subdivision::evaluate::Surface;
 use crate::subdivision::limit_mesh::LimitMesh;
@@ -16,6 +19,10 @@ pub(super) struct Operand {
     /// How far its triangles may be from the surface.
     pub(super) within: f64,
     tree: TriangleTree,
+    /// Whether its surface crosses itself: the nearest point may then be on another sheet than the one that is meant.
+    pub(super) crosses_itself: bool,
+    /// The triangles at each fine vertex, made when first asked for.
+    stars: OnceLock<Vec<SmallVec<[u32; 8]>>>,
 }
 
 /// The nearest point of a limit surface.
@@ -29,6 +36,8 @@ pub(super) struct Foot {
 
 /// Every face is split at least this often: the vertices in between are those that a cut face's cage is chosen from.
 const LEAST_STEPS: u32 = 2;
+/// Sheets that cross differ by more than 3 degrees, here as a cosine: at 5 they are refused.
+const SAME_WAY: f64 = 0.9986;
 /// Newton steps from the nearest point of the triangles to that of the surface: each squares the error, which begins at a
 /// tenth of a fine triangle.
 const CORRECTIONS: usize = 2;
@@ -54,7 +63,7 @@ impl Operand {
         let within = bounds.fold(0.0, f64::max);
         let fine = LimitMesh::new(&surface, &steps)?;
         let tree = TriangleTree::new(fine.mesh());
-        Ok(Self { cage, surface, fine, within, tree })
+        Ok(Self { cage, surface, fine, within, tree, crosses_itself: false, stars: OnceLock::new() })
     }
 
     /// The triangles as an operand.
@@ -62,8 +71,28 @@ impl Operand {
         self.fine.solid()
     }
 
-    /// The nearest point of the surface to `x`; nothing if `x` is not finite.
+    /// Whether the surface goes on from one of two fine triangles to the other: they have a vertex in common, or look the same way.
+    /// (Where the exact result left out what rounding makes too thin, triangles side by side are not always neighbours here.)
+    pub(super) fn continues(&self, one: u32, other: u32) -> bool {
+        let triangles = &self.fine.mesh().triangles;
+        let corners = triangles[other as usize];
+        if triangles[one as usize].iter().any(|v| corners.contains(v)) {
+            return true;
+        }
+        let [p, q] = [one, other].map(|triangle| {
+            let [a, b, c] = self.corners(triangle);
+            (b - a).cross(c - a).normalize_or_zero()
+        });
+        p.dot(q) > SAME_WAY
+    }
+
+    /// The nearest point of the surface to `x`; nothing if `x` is not finite. A surface that crosses itself is searched from `guess` on
+    /// alone, over neighbours that are nearer; else a guess saves work and never changes the answer.
     pub(super) fn foot(&self, x: DVec3, guess: Option<u32>) -> Option<Foot> {
+        if let Some(guess) = guess.filter(|_| self.crosses_itself && x.is_finite()) {
+            let (triangle, point) = self.walk(x, guess);
+            return Some(self.foot_near(x, triangle, point));
+        }
         let closest = self.tree.closest_from(x.to_array(), guess)?;
         Some(self.foot_near(x, closest.triangle, closest.point.into()))
     }
@@ -94,6 +123,38 @@ impl Operand {
             }
         }
         Foot { position: sample.position, normal: sample.normal, triangle }
+    }
+
+    /// From a fine triangle to neighbours as long as they are nearer to `x`: the last one, and its nearest point.
+    fn walk(&self, x: DVec3, from: u32) -> (u32, DVec3) {
+        let triangles = &self.fine.mesh().triangles;
+        let stars = self.stars.get_or_init(|| {
+            let mut stars = vec![SmallVec::new(); self.fine.mesh().positions.len()];
+            for (number, corners) in (0..).zip(triangles) {
+                corners.iter().for_each(|&v| stars[v as usize].push(number));
+            }
+            stars
+        });
+        let nearest = |triangle: u32| {
+            let corners = self.corners(triangle).map(|corner| corner.to_array());
+            let point = DVec3::from(closest_on_triangle(x.to_array(), corners).0);
+            (point.distance_squared(x), triangle, point)
+        };
+        let mut best = nearest(from);
+        loop {
+            let before = best.1;
+            for &v in &triangles[before as usize] {
+                for &other in &stars[v as usize] {
+                    let found = nearest(other);
+                    if found.0 < best.0 {
+                        best = found;
+                    }
+                }
+            }
+            if best.1 == before {
+                return (best.1, best.2);
+            }
+        }
     }
 
     /// The corners of a fine triangle.

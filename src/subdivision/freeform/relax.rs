@@ -20,7 +20,7 @@ pub(super) fn polish(work: &mut Work, chains: &[Chain]) {
 }
 
 /// Moves vertices beside the curve and those that are new.
-pub(super) fn relax(work: &mut Work, chains: &[Chain], operands: [&Operand; 2], reversed: [bool; 2]) {
+pub(super) fn relax(work: &mut Work, chains: &[Chain], operands: &[Operand], reversed: &[bool]) {
     let count = work.vertices.len() as u32;
     for _ in 0..SWEEPS {
         for v in 0..count {
@@ -92,7 +92,7 @@ fn slide(work: &mut Work, chains: &[Chain], v: u32) {
 }
 
 /// Moves a vertex half the way to the middle of its neighbours, on its surface.
-fn smooth(work: &mut Work, operands: [&Operand; 2], reversed: [bool; 2], v: u32) {
+fn smooth(work: &mut Work, operands: &[Operand], reversed: &[bool], v: u32) {
     let Some(&f) = work.around[v as usize].first() else { return };
     let o = usize::from(work.faces[f as usize].operand);
     let neighbours = work.neighbours(v);
@@ -106,9 +106,10 @@ fn smooth(work: &mut Work, operands: [&Operand; 2], reversed: [bool; 2], v: u32)
     if !(weights > 0.0) {
         return;
     }
-    let Some(foot) = operands[o].foot(here.lerp(sum / weights, 0.5), None) else { return };
+    let seed = work.faces[f as usize].seed;
+    let Some(foot) = operands[o].foot(here.lerp(sum / weights, 0.5), Some(seed)) else { return };
     let normal = if reversed[o] { -foot.normal } else { foot.normal };
-    let known = work.vertices[v as usize].normals[o];
+    let known = work.vertices[v as usize].normal(o);
     // Another sheet of the surface.
     if known != DVec3::ZERO && known.dot(normal) < 0.5 {
         return;
@@ -117,7 +118,7 @@ fn smooth(work: &mut Work, operands: [&Operand; 2], reversed: [bool; 2], v: u32)
     if then > now {
         let vertex = &mut work.vertices[v as usize];
         vertex.position = foot.position;
-        vertex.normals[o] = normal;
+        vertex.set_normal(o, normal);
         vertex.control = None;
     }
 }

@@ -26,6 +26,8 @@ pub struct FreeFormReport {
     pub chains: usize,
     /// Its ends, turns, and meetings with creases.
     pub features: usize,
+    /// Places where curves of three and more surfaces meet.
+    pub junctions: usize,
     /// The smallest angle between both surfaces along the curve, in degrees; 90 without a curve.
     pub crossing: f64,
     /// The most faces around a vertex that an operand did not have so.

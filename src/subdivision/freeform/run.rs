@@ -9,6 +9,7 @@ use super::attempt::Attempt;
 use super::curve::Chain;
 use super::fit::Fit;
 use super::measure::Measure;
+use super::meetings::meetings;
 use super::operand::Operand;
 use super::report::FreeFormReport;
 use super::sizes::Sizes;
@@ -76,24 +77,24 @@ impl<'s> Run<'s> {
     pub(super) fn all(
         mut self,
         operation: Operation,
-        a: &ControlMesh,
-        b: &ControlMesh,
+        cages: &[&ControlMesh],
     ) -> Result<FreeFormOutcome, Error> {
         // 1. Limit surfaces as triangles, and their exact boolean.
         let control = &self.settings.control;
         control.report("limit surfaces", 0.0)?;
-        let operands = [self.operand(0, a)?, self.operand(1, b)?];
-        let operands = [&operands[0], &operands[1]];
-        self.warn_of_subdivision(operands, [a, b]);
+        let operands = cages.iter().enumerate().map(|(index, cage)| self.operand(index, cage));
+        let mut operands: Vec<Operand> = operands.collect::<Result<_, Error>>()?;
+        self.warn_of_subdivision(&operands, cages);
         self.took("limit");
         let exact = BooleanOptions::new()
             .control(control.clone())
             .remove_vertices(false)
-            .run(operation, [operands[0].solid(), operands[1].solid()])?;
+            .run(operation, operands.iter().map(Operand::solid))?;
         self.took("boolean");
         self.report.exact_triangles = exact.solid().mesh().triangles.len();
         if exact.solid().is_empty() {
-            let surface = ControlMesh::new(Vec::new(), Vec::new(), Tags::default(), a.rules())?;
+            let rules = cages.first().map(|cage| cage.rules()).unwrap_or_default();
+            let surface = ControlMesh::new(Vec::new(), Vec::new(), Tags::default(), rules)?;
             self.report.reached = true;
             return Ok(FreeFormOutcome { surface, exact, origins: Vec::new(), report: self.report });
         }
@@ -102,8 +103,13 @@ impl<'s> Run<'s> {
             return Err(CageError::Operation(what.into()).into());
         }
         // 2. The curve.
+        let meetings = meetings(&operands, &exact);
+        for [a, b] in meetings.iter().flat_map(|meeting| &meeting.sheets) {
+            operands[usize::from(a.operand)].crosses_itself |= a.operand == b.operand;
+        }
+        let operands: &[Operand] = &operands;
         let start = Start::new(operands, &exact);
-        let chains = start.chains(self.tolerance);
+        let chains = start.chains(meetings, self.tolerance);
         self.check_chains(&chains)?;
         self.took("curve");
         // 3. Cages with faces of smaller and smaller size beside the curve, and details of the best.
@@ -117,8 +123,8 @@ impl<'s> Run<'s> {
     }
 
     /// An operand that is sharp for a while only, or has details, has more control points than its cage.
-    fn warn_of_subdivision(&mut self, operands: [&Operand; 2], cages: [&ControlMesh; 2]) {
-        for (index, cage) in cages.into_iter().enumerate() {
+    fn warn_of_subdivision(&mut self, operands: &[Operand], cages: &[&ControlMesh]) {
+        for (index, cage) in cages.iter().enumerate() {
             if operands[index].cage.faces().len() != cage.faces().len() {
                 self.report.warnings.push(format!(
                     "operand {} is subdivided first, since it has details or creases that are sharp for a while only: the same \
@@ -165,6 +171,13 @@ impl<'s> Run<'s> {
         self.report.crossing = sine.clamp(0.0, 1.0).asin().to_degrees();
         self.report.chains = chains.len();
         self.report.features = chains.iter().map(|chain| chain.features.len()).sum();
+        let open = chains.iter().filter(|chain| !chain.closed);
+        let mut ends: Vec<u32> = open
+            .filter_map(|chain| Some([*chain.vertices.first()?, *chain.vertices.last()?]))
+            .flatten()
+            .collect();
+        ends.sort_unstable();
+        self.report.junctions = ends.chunk_by(|a, b| a == b).filter(|same| same.len() > 2).count();
         if self.report.crossing < LEAST_CROSSING {
             let text = format!(
                 "the surfaces meet at {:.1} degrees somewhere along their curve: where it runs is not well known",
@@ -190,12 +203,12 @@ impl<'s> Run<'s> {
         let mut work = build::work(start, chains, &sizes, &steps)?;
         let left_over = coarsen::coarsen(&mut work);
         relax::polish(&mut work, chains);
-        relax::relax(&mut work, chains, operands, start.reversed);
+        relax::relax(&mut work, chains, operands, &start.reversed);
         coarsen::turn_edges(&mut work);
-        let mut draft = assemble(&work, operands, start.reversed)?;
+        let mut draft = assemble(&work, operands, &start.reversed)?;
         self.took("cage");
         // 2. Its control points.
-        let mut fit = Fit::new(&draft, operands, start.reversed, chains, self.settings.rings, 2);
+        let mut fit = Fit::new(&draft, operands, &start.reversed, chains, self.settings.rings, 2);
         let mut positions = draft.cage.points();
         if !fit.unknown.is_empty() {
             fit.run(&mut positions, 0.01 * self.tolerance);
@@ -214,7 +227,7 @@ impl<'s> Run<'s> {
         Ok(Attempt { draft, errors, of_face, region, refined, left_over })
     }
 
-    fn describe(&mut self, best: &Attempt, operands: [&Operand; 2]) {
+    fn describe(&mut self, best: &Attempt, operands: &[Operand]) {
         let report = &mut self.report;
         let level = best.draft.cage.level();
         report.errors = best.errors;

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::curve::Chain;
+use super::curve::{Chain, join_ends};
+use super::meetings::Meeting;
 use super::operand::{Operand, weights_in};
 use super::sizes::Sizes;
 use crate::Outcome;
@@ -15,25 +16,27 @@ const ON_EDGE: f64 = 1e-7;
 
 /// What the exact result says of the operands' faces.
 pub(super) struct Start<'a> {
-    pub(super) operands: [&'a Operand; 2],
+    pub(super) operands: &'a [Operand],
     pub(super) outcome: &'a Outcome,
     /// For each operand whether its part is turned over.
-    pub(super) reversed: [bool; 2],
+    pub(super) reversed: Vec<bool>,
     /// For each operand and control face: whether it is in the result as it was.
-    pub(super) whole: [Vec<bool>; 2],
+    pub(super) whole: Vec<Vec<bool>>,
     /// For each operand and fine vertex the vertex of the result there.
-    pub(super) image: [Vec<u32>; 2],
+    pub(super) image: Vec<Vec<u32>>,
     /// For each triangle of the result its fine triangle's control face.
     pub(super) face_of: Vec<u32>,
 }
 
 impl<'a> Start<'a> {
-    pub(super) fn new(operands: [&'a Operand; 2], outcome: &'a Outcome) -> Self {
+    pub(super) fn new(operands: &'a [Operand], outcome: &'a Outcome) -> Self {
         let mesh = outcome.solid().mesh();
-        let mut reversed = [false; 2];
-        let mut image = operands.map(|operand| vec![NONE; operand.fine.mesh().positions.len()]);
+        let mut reversed = vec![false; operands.len()];
+        let nothing = |operand: &Operand| vec![NONE; operand.fine.mesh().positions.len()];
+        let mut image: Vec<Vec<u32>> = operands.iter().map(nothing).collect();
         // How often each fine triangle is there unchanged, and how often at all.
-        let mut seen = operands.map(|operand| vec![[0u8; 2]; operand.fine.mesh().triangles.len()]);
+        let unseen = |operand: &Operand| vec![[0u8; 2]; operand.fine.mesh().triangles.len()];
+        let mut seen: Vec<Vec<[u8; 2]>> = operands.iter().map(unseen).collect();
         let mut face_of = Vec::with_capacity(mesh.triangles.len());
         for (corners, origin) in mesh.triangles.iter().zip(outcome.origins()) {
             let o = origin.operand as usize;
@@ -55,12 +58,13 @@ impl<'a> Start<'a> {
             seen[0] = seen[0].saturating_add(1);
             seen[1] = seen[1].saturating_add(u8::from(same == 3));
         }
-        let whole = [0, 1].map(|o| {
-            let fine = &operands[o].fine;
-            (0..operands[o].cage.faces().len())
-                .map(|f| (fine.first[f]..fine.first[f + 1]).all(|t| seen[o][t as usize] == [1, 1]))
+        let whole = operands.iter().zip(&seen).map(|(operand, seen)| {
+            let fine = &operand.fine;
+            (0..operand.cage.faces().len())
+                .map(|f| (fine.first[f]..fine.first[f + 1]).all(|t| seen[t as usize] == [1, 1]))
                 .collect()
         });
+        let whole = whole.collect();
         Self { operands, outcome, reversed, whole, image, face_of }
     }
 
@@ -77,15 +81,12 @@ impl<'a> Start<'a> {
     }
 
     /// The chains of the curve, polished, with their features.
-    pub(super) fn chains(&self, most: f64) -> Vec<Chain> {
+    pub(super) fn chains(&self, meetings: Vec<Meeting>, most: f64) -> Vec<Chain> {
         let mesh = self.outcome.solid().mesh();
         let on_crease = self.crease_vertices();
-        let mut chains: Vec<Chain> = self
-            .outcome
-            .curves()
-            .into_iter()
-            .map(|vertices| Chain::new(self.operands, &mesh.positions, vertices, most))
-            .collect();
+        let chain = |meeting| Chain::new(self.operands, &mesh.positions, meeting, most);
+        let mut chains: Vec<Chain> = meetings.into_iter().map(chain).collect();
+        join_ends(self.operands, &mut chains, &mesh.positions, most);
         let sizes = self.curve_sizes(&chains, 0);
         for (chain, sizes) in chains.iter_mut().zip(&sizes) {
             let step = sizes.iter().copied().fold(f64::INFINITY, f64::min).min(chain.length() / 8.0);
@@ -131,7 +132,7 @@ impl<'a> Start<'a> {
     /// Where a vertex of triangle `t` of the result is on the cage of that triangle's operand.
     pub(super) fn place(&self, t: usize, v: u32) -> Place {
         let origin = self.outcome.origins()[t];
-        let operand = self.operands[origin.operand as usize];
+        let operand = &self.operands[origin.operand as usize];
         let triangle = operand.solid().source_triangle(origin.triangle);
         let position = DVec3::from(self.outcome.solid().mesh().positions[v as usize]);
         operand.fine.place_within(triangle, weights_in(operand.corners(triangle), position))
@@ -156,9 +157,8 @@ impl<'a> Start<'a> {
     }
 
     /// How often each control face is to be split.
-    pub(super) fn steps(&self, sizes: &Sizes) -> [Vec<u32>; 2] {
-        [0, 1].map(|o| {
-            let operand = self.operands[o];
+    pub(super) fn steps(&self, sizes: &Sizes) -> Vec<Vec<u32>> {
+        let steps = self.operands.iter().map(|operand| {
             let positions = &operand.fine.mesh().positions;
             (0..operand.cage.faces().len() as u32)
                 .map(|f| {
@@ -167,7 +167,8 @@ impl<'a> Start<'a> {
                     sizes.steps(corners, operand.size(f))
                 })
                 .collect()
-        })
+        });
+        steps.collect()
     }
 
     /// Which faces enter as fine triangles: those that are cut or to be split, and whole ones with three such neighbours.

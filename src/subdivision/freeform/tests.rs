@@ -11,7 +11,7 @@ use crate::{Error, Operation, Solid, primitives};
 
 const SHARP: f64 = f64::INFINITY;
 
-fn ball(level: u32) -> ControlMesh {
+pub(super) fn ball(level: u32) -> ControlMesh {
     let mesh = primitives::icosphere(1.0, level).expect("a ball");
     ControlMesh::new(mesh.positions, mesh.triangles, Tags::default(), Rules::Loop).expect("a surface")
 }
@@ -42,14 +42,19 @@ fn cylinder(sides: u32, rows: u32, radius: f64, low: f64, high: f64) -> ControlM
     ControlMesh::new(positions, faces, tags, Rules::Loop).expect("a surface")
 }
 
-fn torus(around: u32, across: u32, radius: f64, tube: f64) -> ControlMesh {
+fn torus(around: u32, across: u32, radius: f64, thick: f64) -> ControlMesh {
+    tube(around, across, thick, |a| DVec3::new(radius * a.cos(), radius * a.sin(), 0.0))
+}
+
+/// A closed tube along a curve that goes round once from 0 to 2 pi and is nowhere upright.
+pub(super) fn tube(around: u32, across: u32, thick: f64, curve: impl Fn(f64) -> DVec3) -> ControlMesh {
     let mut positions = Vec::new();
     for i in 0..around {
+        let a = std::f64::consts::TAU * f64::from(i) / f64::from(around);
+        let aside = (curve(a + 1e-4) - curve(a - 1e-4)).cross(DVec3::Z).normalize();
         for j in 0..across {
-            let a = std::f64::consts::TAU * f64::from(i) / f64::from(around);
             let b = std::f64::consts::TAU * (f64::from(j) + 0.5 * f64::from(i % 2)) / f64::from(across);
-            let r = radius + tube * b.cos();
-            positions.push([r * a.cos(), r * a.sin(), tube * b.sin()]);
+            positions.push((curve(a) + thick * (b.cos() * aside + b.sin() * DVec3::Z)).to_array());
         }
     }
     let at = |i: u32, j: u32| (i % around) * across + j % across;
@@ -63,18 +68,18 @@ fn torus(around: u32, across: u32, radius: f64, tube: f64) -> ControlMesh {
     ControlMesh::new(positions, faces, Tags::default(), Rules::Loop).expect("a surface")
 }
 
-fn moved(cage: &ControlMesh, map: impl Fn(DVec3) -> DVec3) -> ControlMesh {
+pub(super) fn moved(cage: &ControlMesh, map: impl Fn(DVec3) -> DVec3) -> ControlMesh {
     let positions = cage.positions().iter().map(|&p| map(p.into()).to_array()).collect();
     ControlMesh::new(positions, cage.faces().to_vec(), cage.tags().clone(), cage.rules()).expect("a surface")
 }
 
-fn diagonal(outcome: &FreeFormOutcome) -> f64 {
+pub(super) fn diagonal(outcome: &FreeFormOutcome) -> f64 {
     let bounds = outcome.exact().solid().bounds().expect("not empty");
     (DVec3::from(bounds.high) - DVec3::from(bounds.low)).length()
 }
 
 /// What holds for every result: a manifold of the exact result's kind, and kept points with their bits.
-fn check(outcome: &FreeFormOutcome, operands: [&ControlMesh; 2], name: &str) {
+pub(super) fn check(outcome: &FreeFormOutcome, operands: &[&ControlMesh], name: &str) {
     let cage = outcome.surface();
     let solid = Solid::try_from(cage.mesh()).unwrap_or_else(|error| panic!("{name}: {error}"));
     assert!(solid.is_manifold(), "{name}");
@@ -89,8 +94,12 @@ fn check(outcome: &FreeFormOutcome, operands: [&ControlMesh; 2], name: &str) {
     }
 }
 
+pub(super) fn seeded(seed: u64) -> ChaCha8Rng {
+    ChaCha8Rng::seed_from_u64(seed)
+}
+
 /// The largest distance of points at random on the cage's surface from the exact result.
-fn sampled(outcome: &FreeFormOutcome, random: &mut ChaCha8Rng) -> f64 {
+pub(super) fn sampled(outcome: &FreeFormOutcome, random: &mut ChaCha8Rng) -> f64 {
     let (cage, tree) = (outcome.surface(), TriangleTree::new(outcome.exact().solid().mesh()));
     let evaluator = cage.evaluator();
     (0..300)
@@ -112,7 +121,7 @@ fn a_bored_ball_is_as_near_as_it_was_seen_to_be() {
     let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.3);
     let bore = moved(&cylinder(8, 6, 0.45, -1.6, 1.6), |p| turn * (p + DVec3::new(0.1, 0.05, 0.0)));
     let native = FreeForm::new().attempts(0).run(Operation::Difference, &ball, &bore).expect("a cage");
-    check(&native, [&ball, &bore], "native");
+    check(&native, &[&ball, &bore], "native");
     let report = native.report();
     let d = diagonal(&native);
     assert!(report.errors.largest() < 1.3e-3 * d, "{report:?}");
@@ -121,7 +130,7 @@ fn a_bored_ball_is_as_near_as_it_was_seen_to_be() {
     // Faces of half the size: a third of the distance, around the curve and away from it.
     let finer =
         FreeForm::new().attempts(0).refine(1).run(Operation::Difference, &ball, &bore).expect("a cage");
-    check(&finer, [&ball, &bore], "finer");
+    check(&finer, &[&ball, &bore], "finer");
     assert!(finer.report().errors.largest() < 6e-4 * d, "{:?}", finer.report());
     assert!(finer.report().errors.outside < 3e-4 * d, "{:?}", finer.report());
     // Twice the same: the same bits.
@@ -166,7 +175,7 @@ fn where_nothing_is_cut_all_bits_stay() {
         (Operation::Union, &one, &small, 42),
     ] {
         let outcome = FreeForm::new().tolerance(0.05).run(operation, a, b).expect("a cage");
-        check(&outcome, [a, b], operation.name());
+        check(&outcome, &[a, b], operation.name());
         let report = outcome.report();
         assert_eq!((report.vertices, report.unchanged), (vertices, vertices), "{operation:?}");
         assert_eq!(report.errors.largest(), 0.0);
@@ -191,11 +200,11 @@ fn a_mug() {
     let inside = cylinder(12, 6, 0.85, 0.2, 2.8);
 
     let first = FreeForm::new().attempts(0).run(Operation::Union, &body, &handle).expect("a cage");
-    check(&first, [&body, &handle], "handle");
+    check(&first, &[&body, &handle], "handle");
     assert!(first.report().errors.largest() < 2e-3 * diagonal(&first), "{:?}", first.report());
     let united = first.surface();
     let mug = FreeForm::new().attempts(0).run(Operation::Difference, united, &inside).expect("a cage");
-    check(&mug, [united, &inside], "inside");
+    check(&mug, &[united, &inside], "inside");
     let report = mug.report();
     assert!(report.errors.largest() < 2e-3 * diagonal(&mug), "{report:?}");
     assert!(report.vertices <= 600 && report.valence <= 9, "{report:?}");
@@ -210,7 +219,7 @@ fn a_curve_through_a_crease_has_corners_there() {
     let other = moved(&ball(2), |p| turn * (p * 0.7) + DVec3::new(0.5, 0.1, 0.9));
     for operation in [Operation::Union, Operation::Difference, Operation::Intersection] {
         let outcome = FreeForm::new().attempts(1).run(operation, &block, &other).expect("a cage");
-        check(&outcome, [&block, &other], operation.name());
+        check(&outcome, &[&block, &other], operation.name());
         assert_eq!(outcome.report().features, 2, "{:?}", outcome.report());
         assert!(outcome.report().errors.largest() < 1e-2 * diagonal(&outcome), "{:?}", outcome.report());
     }
@@ -259,7 +268,7 @@ fn pairs_at_random() {
         match FreeForm::new().tolerance(0.02).attempts(0).allow_tangent(true).run(operation, &a, &b) {
             Ok(outcome) if outcome.surface().faces().is_empty() => {}
             Ok(outcome) => {
-                check(&outcome, [&a, &b], &name);
+                check(&outcome, &[&a, &b], &name);
                 let errors = outcome.report().errors;
                 let far = sampled(&outcome, &mut random);
                 assert!(far <= errors.largest() + errors.allowance, "{name}: {far} {errors:?}");

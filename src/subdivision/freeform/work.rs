@@ -7,10 +7,10 @@ use smallvec::SmallVec;
 /// What a tagged edge is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sharp {
-    /// Part of the intersection curve.
-    Curve,
-    /// Part of a crease of an operand: the operand, and its crease edges' number.
-    Crease(u8),
+    /// Part of the intersection curve: the number of its chain.
+    Curve(u32),
+    /// Part of a crease of an operand, by its number.
+    Crease(u16),
 }
 
 /// A vertex of the working mesh.
@@ -18,7 +18,7 @@ pub(super) enum Sharp {
 pub(super) struct Vertex {
     pub(super) position: DVec3,
     /// The operand's control vertex, if it is one.
-    pub(super) control: Option<(u8, u32)>,
+    pub(super) control: Option<(u16, u32)>,
     /// Whether it is to stay.
     pub(super) keep: bool,
     /// Whether it must not move along its curve or crease, nor go.
@@ -27,17 +27,35 @@ pub(super) struct Vertex {
     pub(super) on_curve: Option<(u32, f64)>,
     /// At which split it appeared: the finer go first.
     pub(super) step: u8,
-    /// Normals of the surfaces of both operands; zero where it is on no smooth part of it.
-    pub(super) normals: [DVec3; 2],
+    /// Normals of the surfaces of operands that it is on; zero where that is not smooth.
+    pub(super) normals: SmallVec<[(u16, DVec3); 2]>,
+}
+
+impl Vertex {
+    /// The normal of an operand's surface, if it is known; else zero.
+    pub(super) fn normal(&self, operand: usize) -> DVec3 {
+        let known = self.normals.iter().find(|entry| usize::from(entry.0) == operand);
+        known.map_or(DVec3::ZERO, |entry| entry.1)
+    }
+
+    /// Says what is normal to an operand's surface there.
+    pub(super) fn set_normal(&mut self, operand: usize, normal: DVec3) {
+        match self.normals.iter_mut().find(|entry| usize::from(entry.0) == operand) {
+            Some(entry) => entry.1 = normal,
+            None => self.normals.push((operand as u16, normal)),
+        }
+    }
 }
 
 /// A triangle of the working mesh.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face {
     pub(super) corners: [u32; 3],
-    pub(super) operand: u8,
+    pub(super) operand: u16,
     /// The control face it is, as long as it is that.
     pub(super) whole: Option<u32>,
+    /// A fine triangle of the operand near it.
+    pub(super) seed: u32,
     pub(super) alive: bool,
 }
 
@@ -70,9 +88,9 @@ impl Work {
         self.vertices.len() as u32 - 1
     }
 
-    pub(super) fn add_face(&mut self, corners: [u32; 3], operand: u8, whole: Option<u32>) {
+    pub(super) fn add_face(&mut self, corners: [u32; 3], operand: u16, whole: Option<u32>, seed: u32) {
         let f = self.faces.len() as u32;
-        self.faces.push(Face { corners, operand, whole, alive: true });
+        self.faces.push(Face { corners, operand, whole, seed, alive: true });
         corners.into_iter().for_each(|v| self.around[v as usize].push(f));
     }
 
@@ -122,14 +140,14 @@ impl Work {
     }
 
     /// Whether a triangle over an operand looks the way the surface does at its corners, as far as they know it.
-    pub(super) fn is_upright(&self, corners: [u32; 3], operand: u8, least: f64) -> bool {
+    pub(super) fn is_upright(&self, corners: [u32; 3], operand: u16, least: f64) -> bool {
         let [a, b, c] = self.points(corners);
         let normal = (b - a).cross(c - a).normalize_or_zero();
         if normal == DVec3::ZERO {
             return false;
         }
         corners.into_iter().all(|v| {
-            let known = self.vertices[v as usize].normals[usize::from(operand)];
+            let known = self.vertices[v as usize].normal(usize::from(operand));
             known == DVec3::ZERO || known.dot(normal) > least
         })
     }

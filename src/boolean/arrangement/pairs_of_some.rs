@@ -1,0 +1,88 @@
+//! Pairs of triangles of one surface of which one is among some: those that an operation made, or that have moved.
+
+use obvhs::aabb::Aabb;
+
+use super::neighbours::Neighbours;
+use crate::parallel::Runner;
+use crate::spatial::{BoxTree, Frame};
+use crate::{Error, Mesh};
+
+/// Triangles that one thread compares with boxes before the limits are checked.
+const TRIANGLES_AT_ONCE: usize = 1 << 14;
+
+/// The pairs of triangles of a closed surface, the lower one first, that may cross or lie on each other and of which at least one is
+/// among `some`, in order. Takes a pass over all triangles, of a few nanoseconds each away from those; no more for fans than their
+/// pairs.
+///
+/// # Errors
+/// Only limits.
+pub(super) fn pairs_with(mesh: &Mesh, some: &[bool], runner: Runner<'_>) -> Result<Vec<[u32; 2]>, Error> {
+    let chosen: Vec<u32> = (0..).zip(some).filter(|(_, is_one)| **is_one).map(|(t, _)| t).collect();
+    let Some(bounds) = mesh.bounds().filter(|_| !chosen.is_empty()) else { return Ok(Vec::new()) };
+    // 1. What is known of neighbours: nothing of the vertices of those triangles, and of others it is not asked.
+    let mut is_other = vec![true; mesh.positions.len()];
+    for &t in &chosen {
+        mesh.triangles[t as usize].iter().for_each(|&v| is_other[v as usize] = false);
+    }
+    let is_beside = |corners: &[u32; 3]| corners.iter().any(|&v| !is_other[v as usize]);
+    let beside = (0..).zip(&mesh.triangles).filter(|(_, corners)| is_beside(corners)).map(|(t, _)| t);
+    let beside: Vec<u32> = beside.collect();
+    let neighbours = Neighbours::new(mesh, bounds.largest(), is_other, &beside);
+    // 2. Whose boxes meet theirs.
+    let frame = Frame::of(bounds.low, bounds.high);
+    let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
+    let tree = BoxTree::new(&chosen, box_of);
+    let all = chosen.iter().map(|&t| box_of(t)).reduce(united).unwrap_or(Aabb::INVALID);
+    let pairs = runner.gather(mesh.triangles.len(), TRIANGLES_AT_ONCE, 0, |range, found| {
+        for t in range.map(|t| t as u32) {
+            let own = box_of(t);
+            if !own.intersect_aabb(&all) {
+                continue;
+            }
+            tree.meeting(&own, |other| {
+                // Of two that are both among them, once.
+                let pair = [t.min(other), t.max(other)];
+                if t != other && (t < other || !some[t as usize]) && neighbours.may_meet(pair) {
+                    found.push(pair);
+                }
+            });
+        }
+    })?;
+    let mut pairs = pairs;
+    pairs.sort_unstable();
+    Ok(pairs)
+}
+
+fn united(a: Aabb, b: Aabb) -> Aabb {
+    Aabb { min: a.min.min(b.min), max: a.max.max(b.max) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::self_pairs::self_pairs;
+    use super::*;
+    use crate::control::Control;
+    use crate::primitives;
+
+    /// The same pairs as those of all that have one of some.
+    #[test]
+    fn pairs_are_those_of_all_that_have_one_of_some() {
+        let ball = primitives::icosphere(1.0, 3).expect("a ball");
+        let mesh = Mesh::merged([&ball, &ball.clone().translated([0.7, 0.1, 0.2])]).expect("two balls");
+        let control = Control::new();
+        let runner = Runner::new(&control, true);
+        let bounds = mesh.bounds().expect("not empty");
+        let frame = Frame::of(bounds.low, bounds.high);
+        let may_meet = |neighbours: &Neighbours<'_>, pair: [u32; 2]| neighbours.may_meet(pair);
+        let (mut all, _) = self_pairs(&mesh, &frame, bounds.largest(), runner, may_meet).expect("pairs");
+        all.sort_unstable();
+        assert!(all.len() > 100);
+        for step in [1, 2, 7] {
+            let some: Vec<bool> = (0..mesh.triangles.len()).map(|t| t % step == 0).collect();
+            let wanted = all.iter().copied().filter(|pair| pair.iter().any(|&t| some[t as usize]));
+            assert_eq!(pairs_with(&mesh, &some, runner).expect("pairs"), wanted.collect::<Vec<_>>());
+        }
+        let none = vec![false; mesh.triangles.len()];
+        assert!(pairs_with(&mesh, &none, runner).expect("none").is_empty());
+    }
+}
