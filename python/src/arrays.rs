@@ -3,13 +3,18 @@
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use trisect::Mesh;
 
 use crate::failures;
 
 /// Positions from an array of `f64` or `f32` of shape (n, 3), in any memory order.
 pub(crate) fn positions(array: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; 3]>> {
     if let Ok(array) = array.cast::<PyArray2<f64>>() {
-        return rows(&array.try_readonly()?, "vertices", |x| x);
+        let array = array.try_readonly()?;
+        return match in_rows(&array) {
+            Some(numbers) if array.shape()[1] == 3 => Ok(numbers.as_chunks::<3>().0.to_vec()),
+            _ => rows(&array, "vertices", |x| x),
+        };
     }
     if let Ok(array) = array.cast::<PyArray2<f32>>() {
         return rows(&array.try_readonly()?, "vertices", f64::from);
@@ -37,6 +42,16 @@ fn rows<T: Element + Copy>(
 /// The numbers row by row, if they lie so. (NumPy's columns one after the other are in one piece too.)
 fn in_rows<'a, T: Element>(array: &'a PyReadonlyArray2<'_, T>) -> Option<&'a [T]> {
     if array.is_c_contiguous() { array.as_slice().ok() } else { None }
+}
+
+/// Triangles from an array of `i64` of shape (m, 3) whose rows lie one after the other; `None` for other arrays. (What NumPy makes
+/// unless asked for something else is read where the crate is optimised for speed, and not copied once more.)
+pub(crate) fn triangles(array: &Bound<'_, PyAny>, vertices: usize) -> PyResult<Option<Vec<[u32; 3]>>> {
+    let Ok(array) = array.cast::<PyArray2<i64>>() else { return Ok(None) };
+    let array = array.try_readonly()?;
+    let Some(numbers) = in_rows(&array).filter(|_| array.shape()[1] == 3) else { return Ok(None) };
+    let found = Mesh::triangles_of(numbers, vertices);
+    found.map(Some).map_err(|place| failures::index(place / 3, numbers[place], vertices))
 }
 
 /// Faces from an array of integers of shape (m, k), `k` corners each, in any memory order: the corners one after the other, and

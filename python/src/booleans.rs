@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use trisect::{Expression, Operation, Solid, TrimSide};
+use trisect::{Expression, Mesh, Operation, Solid, TrimSide};
 
 use crate::failures;
 use crate::meshes::Surface;
@@ -83,4 +83,25 @@ pub(crate) fn trim(
     let size = sheet.triangles.len() + by.solid().mesh().triangles.len();
     let trimmed = limits.run(py, size, |control| settings.options(control).trim(&sheet, by.solid(), side))?;
     Ok(trimmed.mesh.into())
+}
+
+/// The cells into which surfaces, which may be open, part a solid: what of it can be reached without passing through one.
+#[pyfunction]
+#[pyo3(signature = (core, surfaces, settings=None))]
+pub(crate) fn part(
+    py: Python<'_>,
+    core: &Core,
+    surfaces: Vec<PyRef<'_, Surface>>,
+    settings: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Vec<Core>> {
+    let (limits, settings) = (limits(settings)?, Settings::read(settings)?);
+    let made = Arc::clone(&core.made);
+    let sheets: Vec<Arc<Mesh>> = surfaces.iter().map(|surface| Arc::clone(&surface.mesh)).collect();
+    let size =
+        made.solid().mesh().triangles.len() + sheets.iter().map(|sheet| sheet.triangles.len()).sum::<usize>();
+    let cells = limits.run(py, size, |control| {
+        let listed: Vec<&Mesh> = sheets.iter().map(|sheet| &**sheet).collect();
+        settings.options(control).split(made.solid(), &listed)
+    })?;
+    Ok(cells.into_iter().map(|cell| Core::from(cell.solid)).collect())
 }

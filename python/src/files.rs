@@ -15,7 +15,7 @@ use crate::running::WATCHED_FROM;
 use crate::settings::limits;
 use crate::solids::Core;
 
-/// Reads a mesh file, or the parts of it that a name means; and what its reader had to say.
+/// Reads a mesh file, or the parts of it that a name means; what its reader had to say; and the ending that its format has.
 #[pyfunction]
 #[pyo3(signature = (path, part=None, settings=None))]
 pub(crate) fn load(
@@ -23,20 +23,20 @@ pub(crate) fn load(
     path: PathBuf,
     part: Option<String>,
     settings: Option<&Bound<'_, PyDict>>,
-) -> PyResult<(Surface, Vec<String>)> {
+) -> PyResult<(Surface, Vec<String>, &'static str)> {
     // (How large the mesh is is not known yet.)
-    let (mesh, warnings) = limits(settings)?.run(py, WATCHED_FROM, |control| {
+    let (mesh, warnings, format) = limits(settings)?.run(py, WATCHED_FROM, |control| {
         let options = ReadOptions::new().control(control.clone());
         let Some(part) = part else {
             let loaded = io::load(&path, &options)?;
-            return Ok((loaded.mesh, loaded.warnings));
+            return Ok((loaded.mesh, loaded.warnings, loaded.format));
         };
         let parts = io::load_parts(&path, &options)?;
         let chosen = parts.select(&part)?;
         let mesh = Mesh::merged(chosen.iter().map(|part| &part.mesh))?;
-        Ok((mesh, parts.whole.warnings))
+        Ok((mesh, parts.whole.warnings, parts.whole.format))
     })?;
-    Ok((mesh.into(), warnings))
+    Ok((mesh.into(), warnings, format.extension()))
 }
 
 /// Options of a written file.
@@ -93,6 +93,15 @@ pub(crate) fn save_mesh(
     save(py, &surface.mesh, &path, options)
 }
 
+/// A solid, or a surface that may be open.
+#[derive(IntoPyObject)]
+pub(crate) enum Evaluated {
+    /// A solid.
+    Solid(Core),
+    /// What a trim leaves.
+    Open(Surface),
+}
+
 /// Evaluates a model: the text of its file, and the folder where file names in it start.
 #[pyfunction]
 #[pyo3(signature = (text, folder, tolerance=None, settings=None))]
@@ -102,16 +111,18 @@ pub(crate) fn model(
     folder: PathBuf,
     tolerance: Option<f64>,
     settings: Option<&Bound<'_, PyDict>>,
-) -> PyResult<(Core, Vec<String>)> {
-    let (core, warnings) = limits(settings)?.run(py, WATCHED_FROM, |control| {
+) -> PyResult<(Evaluated, Vec<String>)> {
+    limits(settings)?.run(py, WATCHED_FROM, |control| {
         let model = Model::parse(text, &folder)?;
         let mut evaluation = Evaluation::new().control(control.clone());
         if let Some(tolerance) = tolerance {
             evaluation = evaluation.tolerance(tolerance);
         }
         let evaluated = evaluation.run(&model)?;
+        if evaluated.is_open {
+            return Ok((Evaluated::Open(evaluated.mesh.into()), evaluated.warnings));
+        }
         let solid = Gate::new().solid(evaluated.mesh).map_err(Error::from)?;
-        Ok((Core::extracted(solid, evaluated.extraction), evaluated.warnings))
-    })?;
-    Ok((core, warnings))
+        Ok((Evaluated::Solid(Core::extracted(solid, evaluated.extraction)), evaluated.warnings))
+    })
 }

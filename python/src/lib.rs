@@ -9,15 +9,18 @@
 //! - `failures`: errors become exceptions with data;
 //! - `solids`, `meshes`: the two classes of surfaces;
 //! - `settings`, `booleans`, `planes`: operations;
+//! - `cages`: subdivision surfaces; `places`: transforms;
 //! - `files`, `fields`, `pictures`, `shapes`: the other rooms.
 
 mod arrays;
 mod booleans;
+mod cages;
 mod failures;
 mod fields;
 mod files;
 mod meshes;
 mod pictures;
+mod places;
 mod planes;
 mod running;
 mod settings;
@@ -37,13 +40,17 @@ fn _trisect(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<views::View>()?;
     module.add_class::<fields::Distance>()?;
     module.add_class::<fields::Field>()?;
+    module.add_class::<cages::Cage>()?;
     for function in [
         wrap_pyfunction!(booleans::combine, module)?,
         wrap_pyfunction!(booleans::evaluate, module)?,
         wrap_pyfunction!(booleans::trim, module)?,
+        wrap_pyfunction!(booleans::part, module)?,
+        wrap_pyfunction!(cages::combine_cages, module)?,
         wrap_pyfunction!(planes::cut, module)?,
         wrap_pyfunction!(planes::sections, module)?,
         wrap_pyfunction!(planes::drawing, module)?,
+        wrap_pyfunction!(planes::level, module)?,
         wrap_pyfunction!(files::load, module)?,
         wrap_pyfunction!(files::save_solid, module)?,
         wrap_pyfunction!(files::save_mesh, module)?,

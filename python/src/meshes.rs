@@ -5,12 +5,12 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyArray2, PyArrayMethods as _};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use trisect::mesh::{Attribute, diagnose};
-use trisect::{Error, Mesh};
+use trisect::mesh::{Attribute, Gate, Welding, diagnose};
+use trisect::{Error, Mesh, MeshError};
 
 use crate::settings::limits;
 use crate::views::{Owner, View};
-use crate::{arrays, failures};
+use crate::{arrays, failures, places};
 
 /// What stands behind a `trisect.Mesh`.
 #[pyclass(frozen, module = "trisect._trisect")]
@@ -27,9 +27,8 @@ impl From<Mesh> for Surface {
 /// The name of an attribute, its values, and the value of every corner.
 type Table<'py> = (String, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
 
-/// All that a mesh holds: positions, triangles, attributes; and groups and polygons as JSON.
-pub(crate) type Parts<'py> =
-    (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>, Vec<Table<'py>>, String, String);
+/// What a mesh holds beside positions and triangles: attributes; and groups and polygons as JSON.
+pub(crate) type Parts<'py> = (Vec<Table<'py>>, String, String);
 
 /// A mesh from arrays; with `sizes`, of polygons whose corners are listed one after the other.
 pub(crate) fn read_mesh(
@@ -46,6 +45,9 @@ pub(crate) fn read_mesh(
         let corners = faces.cast::<PyArray1<i64>>()?;
         let corners = arrays::ragged(corners, &sizes, positions.len())?;
         return polygons(positions, &corners, &sizes);
+    }
+    if let Some(triangles) = arrays::triangles(faces, positions.len())? {
+        return Ok(Mesh::new(positions, triangles));
     }
     let (corners, columns) = arrays::faces(faces, positions.len())?;
     match columns {
@@ -71,8 +73,6 @@ pub(crate) fn parts<'py>(py: Python<'py>, mesh: &Mesh) -> PyResult<Parts<'py>> {
     };
     let json = |value: Result<String, serde_json::Error>| value.unwrap_or_default();
     Ok((
-        PyArray1::from_slice(py, mesh.positions.as_flattened()).reshape([mesh.positions.len(), 3])?,
-        PyArray1::from_slice(py, mesh.triangles.as_flattened()).reshape([mesh.triangles.len(), 3])?,
         mesh.attributes.iter().map(table).collect::<PyResult<_>>()?,
         json(serde_json::to_string(&mesh.groups)),
         json(serde_json::to_string(&mesh.polygons)),
@@ -94,10 +94,14 @@ impl Surface {
 
     /// A mesh from all that it holds.
     #[staticmethod]
-    fn of_parts(parts: Parts<'_>) -> PyResult<Self> {
-        let (positions, triangles, tables, groups, polygons) = parts;
+    fn of_parts(
+        positions: &Bound<'_, PyAny>,
+        triangles: &Bound<'_, PyArray2<u32>>,
+        parts: Parts<'_>,
+    ) -> PyResult<Self> {
+        let (tables, groups, polygons) = parts;
         let mut mesh = Mesh::new(
-            arrays::positions(positions.as_any())?,
+            arrays::positions(positions)?,
             triangles.try_readonly()?.to_vec()?.as_chunks::<3>().0.to_vec(),
         );
         for (name, values, corners) in tables {
@@ -167,9 +171,55 @@ impl Surface {
         })
     }
 
+    /// Moved to another place; see [`places::moved`].
+    fn moved(&self, py: Python<'_>, how: &str, numbers: Vec<f64>) -> PyResult<Self> {
+        let mesh = Arc::clone(&self.mesh);
+        let moved = py.detach(|| places::moved((*mesh).clone(), how, &numbers));
+        Ok(moved.map_err(|error| failures::exception(&error))?.into())
+    }
+
+    /// With vertices of open edges joined, also where that does not close it, and with faces turned outwards.
+    #[pyo3(signature = (weld=None, orient=false))]
+    fn joined(&self, py: Python<'_>, weld: Option<&Bound<'_, PyAny>>, orient: bool) -> PyResult<Self> {
+        let weld = weld.map(welding);
+        let mesh = (*self.mesh).clone();
+        let joined = py.detach(|| {
+            let mesh = weld.map_or(Ok(mesh.clone()), |weld| welded(mesh, weld))?;
+            Ok(if orient { mesh.oriented() } else { mesh })
+        });
+        Ok(joined.map_err(|error: Error| failures::exception(&error))?.into())
+    }
+
+    /// The surface of each group that has triangles, with its number; the whole if there are no groups.
+    fn by_group(&self, py: Python<'_>) -> Vec<(u32, Self)> {
+        let groups = py.detach(|| self.mesh.by_group());
+        groups.into_iter().map(|(group, mesh)| (group, mesh.into())).collect()
+    }
+
     /// All that the mesh holds.
     fn parts<'py>(&self, py: Python<'py>) -> PyResult<Parts<'py>> {
         parts(py, &self.mesh)
+    }
+}
+
+/// What `weld` means: a distance, or "auto".
+pub(crate) fn welding(value: &Bound<'_, PyAny>) -> Welding {
+    value.extract::<f64>().map_or(Welding::Closing, Welding::Within)
+}
+
+/// As the program joins the vertices of surfaces that may stay open: so that they close it; if nothing does, by the distance
+/// all the same.
+fn welded(mesh: Mesh, weld: Welding) -> Result<Mesh, Error> {
+    let refusal = match Gate::new().weld(weld).solid(mesh) {
+        Ok(solid) => return Ok(solid.into_mesh()),
+        Err(refusal) => refusal,
+    };
+    match (weld, &refusal.error) {
+        (Welding::Within(distance), MeshError::NotClosed(_) | MeshError::InsideOut { .. }) => {
+            Ok(refusal.mesh.welded(distance)?)
+        }
+        (_, MeshError::NotClosed(_) | MeshError::InsideOut { .. }) => Ok(refusal.mesh),
+        _ => Err(refusal.error.into()),
     }
 }
 

@@ -6,24 +6,49 @@ use numpy::PyArray2;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use trisect::exact::{Plane, PlaneFault};
-use trisect::io::drawing::{Layer, dxf, svg};
+use trisect::io::drawing::{Layer, dxf, json, svg};
 use trisect::{Error, FaceGroup, PlaneCut, SectionSide, Sections};
 
 use crate::settings::{Settings, limits};
 use crate::solids::Core;
 use crate::{arrays, failures};
 
-/// A plane by its coefficients: `normal . x = offset`.
-type Coefficients = ([f64; 3], f64);
+/// A plane as it is given: by its coefficients, `normal . x = offset`, or by three points, which run counter-clockwise seen from
+/// above.
+#[derive(FromPyObject)]
+pub(crate) enum Given {
+    /// Normal and offset.
+    Coefficients(([f64; 3], f64)),
+    /// Points.
+    Points([[f64; 3]; 3]),
+}
 
-fn plane((normal, offset): Coefficients) -> PyResult<Plane> {
-    let made = match normal {
-        [1.0, 0.0, 0.0] => Plane::across(0, offset),
-        [0.0, 1.0, 0.0] => Plane::across(1, offset),
-        [0.0, 0.0, 1.0] => Plane::across(2, offset),
-        _ => Plane::new(normal, offset),
+fn plane(given: Given) -> PyResult<Plane> {
+    let made = match given {
+        Given::Coefficients(([1.0, 0.0, 0.0], offset)) => Plane::across(0, offset),
+        Given::Coefficients(([0.0, 1.0, 0.0], offset)) => Plane::across(1, offset),
+        Given::Coefficients(([0.0, 0.0, 1.0], offset)) => Plane::across(2, offset),
+        Given::Coefficients((normal, offset)) => Plane::new(normal, offset),
+        Given::Points([a, b, c]) => Plane::through(a, b, c),
     };
     made.map_err(|fault: PlaneFault| failures::exception(&Error::from(fault)))
+}
+
+/// Normal, offset; name and height.
+type Level = ([f64; 3], f64, Option<(String, f64)>);
+
+/// What a plane is: a normal of about unit length unless it was given by one, the offset that belongs to it; and, of a plane
+/// across an axis, its name and its height.
+#[pyfunction]
+pub(crate) fn level(at: Given) -> PyResult<Level> {
+    let given = if let Given::Coefficients(coefficients) = &at { Some(*coefficients) } else { None };
+    let plane = plane(at)?;
+    let (normal, offset) = given.unwrap_or_else(|| {
+        let (normal, point) = (plane.normal(), plane.point());
+        (normal, (0..3).map(|k| normal[k] * point[k]).sum())
+    });
+    let named = plane.as_level().map(|(axis, at)| (format!("{}={at}", ["x", "y", "z"][axis]), at));
+    Ok((normal, offset, named))
 }
 
 /// What is above a plane and what is below it.
@@ -32,7 +57,7 @@ fn plane((normal, offset): Coefficients) -> PyResult<Plane> {
 pub(crate) fn cut(
     py: Python<'_>,
     core: &Core,
-    at: Coefficients,
+    at: Given,
     cap: Option<String>,
     settings: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<(Core, Core)> {
@@ -58,7 +83,7 @@ type Flat<'py> = (f64, f64, Vec<Vec<Bound<'py, PyArray2<f64>>>>, Vec<Vec<Bound<'
 pub(crate) fn sections<'py>(
     py: Python<'py>,
     core: &Core,
-    at: Vec<Coefficients>,
+    at: Vec<Given>,
     side: &str,
     settings: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Vec<Flat<'py>>> {
@@ -107,7 +132,7 @@ fn rings<T>(
 /// Polygons with holes.
 type Shapes = Vec<Vec<Vec<[f64; 2]>>>;
 
-/// Sections as the text of a drawing: "svg" or "dxf".
+/// Sections as the text of a drawing: "svg", "dxf" or "json".
 #[pyfunction]
 pub(crate) fn drawing(kind: &str, layers: Vec<(String, f64, Shapes)>) -> PyResult<String> {
     let listed: Vec<Layer<'_>> = layers
@@ -117,6 +142,7 @@ pub(crate) fn drawing(kind: &str, layers: Vec<(String, f64, Shapes)>) -> PyResul
     match kind {
         "svg" => Ok(svg(&listed)),
         "dxf" => Ok(dxf(&listed)),
-        other => Err(failures::argument(&format!("unknown drawing '{other}': known are svg, dxf"))),
+        "json" => Ok(json(&listed)),
+        other => Err(failures::argument(&format!("unknown drawing '{other}': known are svg, dxf, json"))),
     }
 }

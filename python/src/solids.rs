@@ -7,12 +7,12 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rustc_hash::FxHasher;
-use trisect::mesh::{Gate, Welding};
+use trisect::mesh::Gate;
 use trisect::model::ExtractionReport;
-use trisect::{Certificate, Error, Mesh, Outcome, Solid};
+use trisect::{Certificate, Error, Mesh, MeshError, Outcome, Solid};
 
 use crate::failures;
-use crate::meshes::{Parts, Surface, read_mesh};
+use crate::meshes::{Parts, Surface, read_mesh, welding};
 use crate::settings::limits;
 use crate::views::{Owner, View};
 
@@ -103,13 +103,12 @@ fn gate(options: Option<&Bound<'_, PyDict>>) -> PyResult<Gate> {
     for (key, value) in options.iter() {
         let key: String = key.extract()?;
         gate = match key.as_str() {
-            "weld" => gate.weld(match value.extract::<f64>() {
-                Ok(distance) => Welding::Within(distance),
-                Err(_) => Welding::Closing,
-            }),
+            "weld" => gate.weld(welding(&value)),
             "orient" => gate.orient(value.extract()?),
             "closed_parts" => gate.closed_parts(value.extract()?),
             "fill_holes" => gate.fill_holes(value.extract()?),
+            "refine_holes" => gate.refine_holes(value.extract()?),
+            "proven_clean" => gate.proven_clean(value.extract()?),
             "single_shells" => gate.single_shells(value.extract()?),
             "as_is" => gate.as_is(value.extract()?),
             _ => return Err(failures::argument(&format!("unknown option '{key}'"))),
@@ -286,6 +285,43 @@ impl Core {
             let found = self.solid().self_crossings(control)?;
             Ok(serde_json::to_string(found).unwrap_or_default())
         })
+    }
+
+    /// As the program has an operand: looked through, refused if shells face the wrong way, and apart where it touches itself in
+    /// single vertices, as its result would.
+    #[pyo3(signature = (assume_clean=false, settings=None))]
+    fn operand(
+        &self,
+        py: Python<'_>,
+        assume_clean: bool,
+        settings: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let count = self.solid().mesh().triangles.len();
+        let separated = limits(settings)?.run(py, count, |control| {
+            let solid = self.solid();
+            if !assume_clean && solid.self_crossings(control)?.is_clean() {
+                let misplaced = solid.inside_out_shells();
+                if !misplaced.is_none() {
+                    return Err(MeshError::InsideOutShells(Box::new(misplaced)).into());
+                }
+            }
+            Ok((!solid.is_manifold()).then(|| solid.separated().0))
+        })?;
+        Ok(match separated {
+            Some(solid) => solid.into(),
+            None => Self { made: Arc::clone(&self.made), extraction: self.extraction, hash: OnceLock::new() },
+        })
+    }
+
+    /// Whether it has neither attributes nor groups nor polygons.
+    fn is_plain(&self) -> bool {
+        let mesh = self.solid().mesh();
+        mesh.attributes.is_empty() && mesh.groups.is_empty() && mesh.polygons.is_empty()
+    }
+
+    /// Whether it is known, without a look, that operations may take it as it is.
+    fn is_proven_clean(&self) -> bool {
+        self.solid().is_proven_clean()
     }
 
     /// The bodies as solids of their own.

@@ -61,7 +61,7 @@ def test_every_job_is_reported_once(folder: Any) -> None:
         "open": "unusable", "broken": "unreadable", "missing": "unreadable", "wrong": "usage", "limit": "limit", "key": "usage", "options": "usage",
         "15": "usage", "16": "usage", "17": "usage",
     }
-    assert reports["union"]["result"]["volume"] == 1.875 and reports["cut"]["result"]["volume"] == 0.25
+    assert reports["union"]["result"]["volume"] == 1.875 and reports["cut"]["results"][0]["volume"] == 0.25
     assert reports["open"]["error"]["operand"] == 2
     assert told[-1][:3] == (17, 17, 10) and told[-1][3] is not None
     # The same bytes as one by one.
@@ -82,17 +82,17 @@ def test_inputs_are_placed_as_the_program_places_them(folder: Any) -> None:
 
 
 def test_the_timeout_of_a_job_is_for_all_of_it(folder: Any, monkeypatch: Any) -> None:
-    from trisect import _jobs
+    from trisect import _inputs
 
     given: List[float] = []
-    load = trisect.Solid.load
+    load = _inputs._convert.load_with_format
 
-    def slow(path: Any, **options: Any) -> trisect.Solid:
-        given.append(options["deadline"])
+    def slow(path: Any, part: Any, settings: Any) -> Any:
+        given.append(settings["deadline"])
         time.sleep(0.1)
-        return load(path, **options)
+        return load(path, part, settings)
 
-    monkeypatch.setattr(_jobs.Solid, "load", slow)
+    monkeypatch.setattr(_inputs._convert, "load_with_format", slow)
     job = {"verb": "union", "inputs": ["cube.ply"] * 2, "options": {"timeout": 60}}
     assert trisect.run_job(job, folder)["status"] == "done"
     assert given[0] <= 60 and given[1] <= given[0] - 0.1

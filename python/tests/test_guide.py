@@ -21,7 +21,7 @@ def test_the_guide_runs(tmp_path: Any, monkeypatch: Any) -> None:
     for number, block in enumerate(blocks, 1):
         exec(compile(block, f"{GUIDE.name}, block {number}", "exec"), names)
     pictures = sorted(path.name for path in tmp_path.glob("*.png"))
-    assert pictures == ["python-cut.png", "python-drilled.png", "python-gyroid.png"]
+    assert pictures == ["python-cage.png", "python-cut.png", "python-drilled.png", "python-gyroid.png"]
     # Every picture that it shows is there.
     for picture in re.findall(r"\(images/([^)]*)\)", GUIDE.read_text(encoding="utf-8")):
         assert (GUIDE.parent / "images" / picture).exists(), picture

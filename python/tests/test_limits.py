@@ -97,10 +97,13 @@ def test_ctrl_c_cancels() -> None:
             print("interrupted", (trisect.cuboid([0, 0, 0], [1, 1, 1]) | trisect.cuboid([0, 0, 0], [1, 1, 2])).volume, flush=True)
         """
     )
-    assert process.stdout is not None and process.stdout.readline() == "ready\n"
-    time.sleep(0.3)
-    process.send_signal(signal.SIGINT)
-    output, errors = process.communicate(timeout=300)
+    try:
+        assert process.stdout is not None and process.stdout.readline() == "ready\n"
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        output, errors = process.communicate(timeout=300)
+    finally:
+        process.kill()
     assert output == "interrupted 2.0\n", errors
 
 

@@ -74,3 +74,32 @@ def test_slabs_of_a_large_pair_fit_together(cluster: None, operation: str) -> No
     assert slabs.solid.volume == pytest.approx(alone.volume, rel=1e-12)
     assert slabs.solid.is_manifold and (slabs.solid.components, slabs.solid.genus) == (1, 0)
     assert slabs.tiles == 4 and np.isfinite(slabs.seconds)
+
+
+def test_slabs_of_what_crosses_itself_are_resolved(cluster: None) -> None:
+    import trisect.ray
+
+    ball = trisect.icosphere(1.0, level=2)
+    parts = [ball.rotated([1, 2, 3], 25 * i).translated([0.7 * i, 0.05 * i, 0]) for i in range(3)]
+    faces = [part.faces + sum(len(other.vertices) for other in parts[:i]) for i, part in enumerate(parts)]
+    crossing = trisect.Solid(np.vstack([part.vertices for part in parts]), np.vstack(faces))
+    known = trisect.Solid(crossing.vertices, crossing.faces)
+    assert known.self_crossings()
+    other = ball.translated([0.4, 0.6, 0.1])
+    for rule in ("positive", "even-odd"):
+        alone = trisect.difference(crossing, other, rule=rule)
+        for operand in (trisect.Solid(crossing.vertices, crossing.faces), known):
+            slabs = trisect.ray.combine_large("difference", operand, other, slabs=5, rule=rule)
+            assert slabs.solid.volume == pytest.approx(alone.volume, rel=1e-12), rule
+            assert slabs.solid.components == alone.components
+
+
+def test_parts_of_all_kinds_are_packed(cluster: None) -> None:
+    import trisect.ray
+
+    cube = trisect.cuboid([0, 0, 0], [1, 1, 1])
+    heat = cube.translated([0.5, 0.5, 0.5]).with_attribute("_HEAT", np.arange(8.0).reshape(-1, 1))
+    parts = [cube, heat, trisect.Solid.empty(), cube.translated([5, 0, 0]) | cube.translated([5.5, 0, 0])]
+    tiled = trisect.ray.union(parts, tiles=(2, 1, 1))
+    assert tiled.solid.volume == trisect.union(parts).volume == 1.875 + 1.5
+    assert list(tiled.solid.attributes) == ["_HEAT"] and set(tiled.steps) == {"given out", "done", "here"}

@@ -28,6 +28,24 @@ def test_equality_hash_and_pickles(pair: Any) -> None:
     assert (pickle.loads(pickle.dumps(mesh)).faces == mesh.faces).all()
 
 
+def test_pickles_keep_what_is_proven(pair: Any) -> None:
+    a, b = pair
+    assert not a._core.is_proven_clean() and not pickle.loads(pickle.dumps(a))._core.is_proven_clean()
+    cut = a - b
+    assert cut._core.is_proven_clean() and a._core.is_proven_clean()
+    again = pickle.loads(pickle.dumps(cut))
+    assert again == cut and again._core.is_proven_clean() and not again.is_result
+    # Of other bits it is not believed.
+    make, (vertices, faces, parts, proof) = cut.__reduce__()
+    assert make(vertices, faces, parts, proof)._core.is_proven_clean()
+    moved = vertices.copy()
+    moved[0] += 0.125
+    assert not make(moved, faces, parts, proof)._core.is_proven_clean()
+    both = trisect.Solid(np.vstack([a.vertices, b.vertices]), np.vstack([a.faces, b.faces + 8]))
+    assert both.self_crossings() and not pickle.loads(pickle.dumps(both))._core.is_proven_clean()
+    assert (pickle.loads(pickle.dumps(both)) | a).volume == (a | b).volume
+
+
 def test_pickles_keep_attributes_and_groups(pair: Any) -> None:
     a, _ = pair
     rich = a.with_attribute("_HEAT", a.vertices[:, :1]).with_groups(["low", "high"], np.arange(12) % 2)

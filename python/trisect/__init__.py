@@ -19,6 +19,7 @@ double precision, and decided exactly.
 from __future__ import annotations
 
 from . import fields
+from ._cages import Cage, CageErrors, CageReport, CombinedCages, PointOrigins, combine_cages
 from ._errors import (
     ArgumentError,
     CancelledError,
@@ -84,10 +85,14 @@ load = Solid.load
 __all__ = [
     "ArgumentError",
     "Attribute",
+    "Cage",
+    "CageErrors",
+    "CageReport",
     "CancelledError",
     "Certificate",
     "Check",
     "Cleaning",
+    "CombinedCages",
     "DeadlineError",
     "Diagnosis",
     "Embedding",
@@ -117,6 +122,7 @@ __all__ = [
     "OperandState",
     "Origins",
     "Place",
+    "PointOrigins",
     "Section",
     "SelfCrossing",
     "SelfCrossings",
@@ -130,6 +136,7 @@ __all__ = [
     "batch",
     "check",
     "combine",
+    "combine_cages",
     "cone",
     "cuboid",
     "cut",

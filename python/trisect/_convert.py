@@ -38,6 +38,12 @@ def of_arrays(vertices: Any, faces: Any) -> _trisect.Surface:
 
 def load(path: Any, part: Optional[str] = None, settings: Any = None) -> Tuple[_trisect.Surface, Any]:
     """A mesh file, and what its reader had to say. ``scene.glb#base`` is the part of that name."""
+    surface, warned, _ = load_with_format(path, part, settings)
+    return surface, warned
+
+
+def load_with_format(path: Any, part: Optional[str], settings: Any) -> Tuple[_trisect.Surface, Any, str]:
+    """The same, and the ending that its format has."""
     path = os.fspath(path)
     if part is None and "#" in path and not os.path.exists(path):
         path, part = path.rsplit("#", 1)

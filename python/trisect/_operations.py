@@ -13,18 +13,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _trisect
-from ._errors import ArgumentError, Error, MeshError, TrisectWarning
+from ._errors import ArgumentError, Error, InsideOutError, MeshError, NotClosedError, TrisectWarning
+from ._files import ending, write_text
 from ._records import Diagnosis, SelfCrossings
 from ._settings import _SETTINGS, Limits, Settings, settings
-from ._surfaces import Mesh, Solid, SolidLike, _gate_options, _passed, _surface_of, core_of
+from ._surfaces import _ANY_HOLE, Mesh, Solid, SolidLike, _passed, _surface_of, _three, core_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-PlaneLike = Union[str, Tuple[str, float], Tuple[Sequence[float], float], Sequence[float]]
-"""A plane: ``"z=12.5"``, ``("z", 12.5)``, a normal and an offset ``((1, 1, 0), 3.0)`` (all x with normal . x = offset), or their four
-numbers. Above is where the normal points."""
+PlaneLike = Union[str, Tuple[str, float], Tuple[Sequence[float], float], Sequence[float], Sequence[Sequence[float]]]
+"""A plane: ``"z=12.5"``, ``("z", 12.5)``, a normal and an offset ``((1, 1, 0), 3.0)`` (all x with normal . x = offset), their four
+numbers, or three points. Above is where the normal points, or from where the points run counter-clockwise."""
 
 
 def _core(operand: SolidLike, place: int, count: int) -> _trisect.Core:
@@ -162,13 +163,15 @@ def resolve(operand: SolidLike, **given: "Unpack[Settings]") -> Solid:
     return Solid._of(core)
 
 
-def _plane(given: PlaneLike) -> Tuple[List[float], float]:
-    """Normal and offset."""
+def _plane(given: PlaneLike) -> Any:
+    """Normal and offset, or three points."""
     try:
         if isinstance(given, str):
             axis, at = given.split("=")
             return _axis(axis.strip()), float(at)
         listed: List[Any] = list(given)
+        if len(listed) == 3:
+            return [_three(point, "a point of a plane") for point in listed]
         if len(listed) == 2 and isinstance(listed[0], str):
             return _axis(listed[0]), float(listed[1])
         if len(listed) == 2:
@@ -178,7 +181,7 @@ def _plane(given: PlaneLike) -> Tuple[List[float], float]:
             return numbers[:3], numbers[3]
     except (TypeError, ValueError):
         pass
-    raise ArgumentError(f"a plane is 'z=1.5', ('z', 1.5), ((nx, ny, nz), offset) or four numbers, not {given!r}")
+    raise ArgumentError(f"a plane is 'z=1.5', ('z', 1.5), ((nx, ny, nz), offset), four numbers or three points, not {given!r}")
 
 
 def _axis(name: str) -> List[float]:
@@ -248,7 +251,7 @@ def sections(
     side : str
         What counts where faces lie in the plane: "inside" (has the solid on both sides), "above" or "below".
     drawing : path
-        A file to draw them into, a layer each: ``.svg`` or ``.dxf``.
+        A file to draw them into, a layer each: ``.svg``, ``.dxf`` or ``.json``.
     """
     if heights is not None:
         listed = [([0.0, 0.0, 1.0], float(height)) for height in np.asarray(heights, dtype=float).reshape(-1)]
@@ -257,13 +260,13 @@ def sections(
     else:
         listed = [_plane(plane) for plane in _planes(planes)]
     found = _trisect.sections(_core(solid, 0, 1), listed, side, settings(given))
-    # (Areas of nothing are not to be negative zeros.)
-    made = [
-        Section((normal[0], normal[1], normal[2]), offset, area + 0.0, perimeter, shapes, rings)
-        for (normal, offset), (area, perimeter, shapes, rings) in zip(listed, found)
-    ]
+    made = []
+    for plane, (area, perimeter, shapes, rings) in zip(listed, found):
+        normal, offset, _ = _trisect.level(plane)
+        # (Areas of nothing are not to be negative zeros.)
+        made.append(Section((normal[0], normal[1], normal[2]), offset, area + 0.0, perimeter, shapes, rings))
     if drawing is not None:
-        _draw(made, os.fspath(drawing))
+        _draw(made, listed, os.fspath(drawing))
     return made
 
 
@@ -279,27 +282,39 @@ def _planes(given: Any) -> Sequence[PlaneLike]:
     return [listed]
 
 
-def _draw(made: Sequence[Section], path: str) -> None:
-    kind = os.path.splitext(path)[1].lower().lstrip(".")
+def layer_names(planes: Sequence[PlaneLike]) -> Tuple[List[str], List[float]]:
+    """What sections at planes are called in drawings, and their heights there: of planes across an axis their own."""
+    levels = [_trisect.level(_plane(plane))[2] for plane in planes]
+    names = [f"plane {number}" if level is None else level[0] for number, level in enumerate(levels, 1)]
+    return names, [0.0 if level is None else level[1] for level in levels]
+
+
+def _draw(made: Sequence[Section], planes: Sequence[Any], path: str) -> None:
     layers = []
-    for section in made:
-        normal = ",".join(f"{x:g}" for x in section.normal)
-        name = f"z={section.offset:g}" if section.normal == (0.0, 0.0, 1.0) else f"{normal},{section.offset:g}"
-        shapes = [[ring.tolist() for ring in shape] for shape in section.shapes]
-        layers.append((name, section.offset, shapes))
-    text = _trisect.drawing(kind, layers)
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(text)
+    for section, name, height in zip(made, *layer_names(planes)):
+        layers.append((name, height, [[ring.tolist() for ring in shape] for shape in section.shapes]))
+    write_text(path, _trisect.drawing(ending(path), layers))
 
 
-def split(solid: SolidLike, by: Optional[SolidLike] = None, **given: "Unpack[Settings]") -> List[Solid]:
-    """The bodies of a solid; or the cells that another one makes of it: what is inside it and what is outside, body by body.
+def split(
+    solid: SolidLike, by: Optional[SolidLike] = None, *, sheets: Optional[Sequence[Any]] = None, **given: "Unpack[Settings]"
+) -> List[Solid]:
+    """The bodies of a solid; or the cells that another one makes of it: what is inside it and what is outside, body by body; or
+    the cells between ``sheets``, surfaces that need not be closed but have to pass through it.
 
     >>> import trisect
     >>> block, wall = trisect.cuboid([0, 0, 0], [5, 1, 1]), trisect.cuboid([2, -1, -1], [3, 2, 2])
     >>> sorted(cell.volume for cell in trisect.split(block, by=wall))
     [1.0, 2.0, 2.0]
+    >>> sheet = trisect.Mesh([[1, -1, -1], [1, 2, -1], [1, 2, 2], [1, -1, 2]], [[0, 1, 2, 3]])
+    >>> sorted(cell.volume for cell in trisect.split(block, sheets=[sheet]))
+    [1.0, 4.0]
     """
+    if by is not None and sheets is not None:
+        raise ArgumentError("a solid is split by another or by sheets, not by both")
+    if sheets is not None:
+        surfaces = [_surface_of(sheet, None) for sheet in sheets]
+        return [Solid._of(core) for core in _trisect.part(_core(solid, 0, 1), surfaces, settings(given))]
     if by is None:
         return Solid._of(_core(solid, 0, 1)).bodies()
     cells = combine(["a - b", "a & b"], solid, by, **given)
@@ -341,17 +356,46 @@ class Check:
         return self.usable
 
 
-# What is tried, the least first.
+# What is tried, the least first, in the order of the program.
 _REMEDIES: Tuple[Dict[str, Any], ...] = (
-    {"orient": True},
     {"weld": "auto"},
-    {"weld": "auto", "orient": True},
+    {"orient": True},
     {"closed_parts": True},
+    {"weld": "auto", "orient": True},
+    {"weld": "auto", "closed_parts": True},
     {"closed_parts": True, "orient": True},
+    {"weld": "auto", "closed_parts": True, "orient": True},
     {"fill_holes": True},
     {"fill_holes": True, "orient": True},
-    {"fill_holes": True, "weld": "auto", "orient": True},
 )
+
+
+def usable(surface: _trisect.Surface, gate: Mapping[str, Any], assume_clean: bool, given: Any) -> Solid:
+    """A surface as an operand, as the program takes one."""
+    return Solid._of(_passed(surface, dict(gate), given).operand(assume_clean, given))
+
+
+def remedy(surface: _trisect.Surface, error: MeshError, gate: Mapping[str, Any], given: Any) -> Optional[Dict[str, Any]]:
+    """The first of few sets of options that makes a mesh usable that was refused: what crosses itself afterwards is usable as well,
+    but the second choice."""
+    inwards = isinstance(error, InsideOutError)
+    if not inwards and not isinstance(error, NotClosedError):
+        return None
+    crossing: Optional[Dict[str, Any]] = None
+    for options in _REMEDIES:
+        if any(gate.get(key) for key in options) or (inwards and options != {"orient": True}):
+            continue
+        asked = {**gate, **options, "as_is": False}
+        if asked.get("fill_holes") is True:
+            asked["fill_holes"] = _ANY_HOLE
+        try:
+            solid = usable(surface, asked, False, given)
+        except MeshError:
+            continue
+        if solid and not json.loads(solid._core.self_crossings(given))["count"]:
+            return options
+        crossing = crossing or (options if solid else None)
+    return crossing
 
 
 def check(source: Any, **limits: "Unpack[Limits]") -> Check:
@@ -367,25 +411,16 @@ def check(source: Any, **limits: "Unpack[Limits]") -> Check:
     surface = _surface_of(source, None)
     text, words = surface.diagnosis(given)
     diagnosis = Diagnosis.of({**json.loads(text), "text": words})
-    error: Optional[MeshError] = None
-    remedies: List[Dict[str, Any]] = [{}, *_REMEDIES]
-    for remedy in remedies:
-        try:
-            options = _gate_options(
-                remedy.get("weld"),
-                bool(remedy.get("orient")),
-                bool(remedy.get("closed_parts")),
-                bool(remedy.get("fill_holes")),
-                False,
-                False,
-            )
-            solid = Solid._of(_passed(surface, options, given))
-        except MeshError as refused:
-            error = error or refused
-            continue
-        crossings = solid.self_crossings(**limits)
-        return Check(not remedy, diagnosis, solid, crossings, error, remedy or None)
-    return Check(False, diagnosis, None, None, error, None)
+    try:
+        solid = Solid._of(_passed(surface, None, given))
+        return Check(True, diagnosis, solid, solid.self_crossings(**limits), None, None)
+    except MeshError as error:
+        found = remedy(surface, error, {}, given)
+        if found is None:
+            return Check(False, diagnosis, None, None, error, None)
+        options = {**found, "fill_holes": _ANY_HOLE} if "fill_holes" in found else found
+        solid = Solid._of(_passed(surface, options, given))
+        return Check(False, diagnosis, solid, solid.self_crossings(**limits), error, found)
 
 
 def evaluate_model(
@@ -394,8 +429,9 @@ def evaluate_model(
     folder: Union[str, "os.PathLike[str]", None] = None,
     tolerance: Optional[float] = None,
     **limits: "Unpack[Limits]",
-) -> Solid:
-    """A solid from a model: a tree of operations over meshes, primitives, formulas and contours.
+) -> Any:
+    """A solid from a model: a tree of operations over meshes, primitives, formulas and contours; or, where the last operation is a
+    ``trim``, a :class:`~trisect.Mesh`, which may be open.
 
     >>> import trisect
     >>> trisect.evaluate_model({"kind": "difference", "operands": [
@@ -415,7 +451,7 @@ def evaluate_model(
     core, warned = _trisect.model(text, base, tolerance, settings(limits, limits_only=True))
     for line in warned:
         warnings.warn(line, TrisectWarning, stacklevel=2)
-    return Solid._of(core)
+    return Mesh._wrap(core) if isinstance(core, _trisect.Surface) else Solid._of(core)
 
 
 def model_text(model: Any, folder: Any) -> Tuple[str, str]:

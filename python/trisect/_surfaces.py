@@ -237,7 +237,7 @@ class Mesh(_Surface):
         return core
 
     def __reduce__(self) -> Any:
-        return (_mesh_of_parts, (self._core.parts(),))
+        return (_mesh_of_parts, (self.vertices, self.faces, self._core.parts()))
 
     def __repr__(self) -> str:
         vertices, faces = self._core.counts()
@@ -270,6 +270,8 @@ class Solid(_Surface):
         Parts that are not closed are left out, if others are closed.
     fill_holes : bool or int
         Holes (of up to so many edges) are filled with the smallest surface.
+    refine_holes : bool
+        What fills holes gets vertices of its own and is bent on like the surface around; fills all of them if ``fill_holes`` is not given.
     single_shells : bool
         Further copies of a shell are left out.
     as_is : bool
@@ -291,12 +293,13 @@ class Solid(_Surface):
         orient: bool = False,
         closed_parts: bool = False,
         fill_holes: Union[bool, int] = False,
+        refine_holes: bool = False,
         single_shells: bool = False,
         as_is: bool = False,
         **limits: "Unpack[Limits]",
     ) -> None:
         self._vertices = self._faces = None
-        options = _gate_options(weld, orient, closed_parts, fill_holes, single_shells, as_is)
+        options = _gate_options(weld, orient, closed_parts, fill_holes, single_shells, as_is, refine_holes)
         given = settings(limits, limits_only=True)
         if isinstance(vertices, Solid) and faces is None:
             self._core = vertices._core if options is None else _passed(vertices._surface(), options, given)
@@ -316,12 +319,13 @@ class Solid(_Surface):
         orient: bool = False,
         closed_parts: bool = False,
         fill_holes: Union[bool, int] = False,
+        refine_holes: bool = False,
         single_shells: bool = False,
         as_is: bool = False,
         **limits: "Unpack[Limits]",
     ) -> Solid:
         """Reads a mesh file and makes a solid of it; see :class:`Solid` for the arguments, and :meth:`Mesh.load` for the formats."""
-        options = _gate_options(weld, orient, closed_parts, fill_holes, single_shells, as_is)
+        options = _gate_options(weld, orient, closed_parts, fill_holes, single_shells, as_is, refine_holes)
         given = settings(limits, limits_only=True)
         surface, warned = _convert.load(path, part, given)
         solid: Solid = cls._wrap(_passed(surface, options, given))
@@ -600,7 +604,9 @@ class Solid(_Surface):
         return hash(self._core.hash())
 
     def __reduce__(self) -> Any:
-        return (_solid_of_parts, (self._core.parts(),))
+        # That it need not be looked through is said of these bits, and believed of no others.
+        proof = self._core.hash() if self._core.is_proven_clean() else None
+        return (_solid_of_parts, (self.vertices, self.faces, self._core.parts(), proof))
 
     def __repr__(self) -> str:
         vertices, faces = self._core.counts()
@@ -656,7 +662,9 @@ def _gate_options(
     fill_holes: Union[bool, int],
     single_shells: bool,
     as_is: bool,
+    refine_holes: bool = False,
 ) -> Optional[Dict[str, Any]]:
+    fill_holes = fill_holes or refine_holes
     if weld is None and not (orient or closed_parts or fill_holes or single_shells or as_is):
         return None
     if isinstance(weld, str) and weld != "auto":
@@ -664,6 +672,8 @@ def _gate_options(
     options: Dict[str, Any] = {"orient": orient, "closed_parts": closed_parts, "single_shells": single_shells, "as_is": as_is}
     if weld is not None:
         options["weld"] = weld
+    if refine_holes:
+        options["refine_holes"] = True
     if fill_holes:
         options["fill_holes"] = _ANY_HOLE if fill_holes is True else int(fill_holes)
     return {key: bool(value) if isinstance(value, np.bool_) else value for key, value in options.items()}
@@ -708,12 +718,17 @@ def _run(operation: str, operands: Tuple[SolidLike, ...], given: Mapping[str, An
     return run(operation, operands, given)
 
 
-def _solid_of_parts(parts: Any) -> Solid:
-    """Unpickles a solid."""
-    return Solid._of(_passed(_trisect.Surface.of_parts(parts), {"as_is": True}, None))
+def _solid_of_parts(vertices: Any, faces: Any, parts: Any, proof: Optional[int] = None) -> Solid:
+    """Unpickles a solid; ``proof`` is the hash of one that need not be looked through."""
+    surface = _trisect.Surface.of_parts(vertices, faces, parts)
+    if proof is not None:
+        core = _passed(surface, {"as_is": True, "proven_clean": True}, None)
+        if core.hash() == proof:
+            return Solid._of(core)
+    return Solid._of(_passed(surface, {"as_is": True}, None))
 
 
-def _mesh_of_parts(parts: Any) -> Mesh:
+def _mesh_of_parts(vertices: Any, faces: Any, parts: Any) -> Mesh:
     """Unpickles a mesh."""
-    mesh: Mesh = Mesh._wrap(_trisect.Surface.of_parts(parts))
+    mesh: Mesh = Mesh._wrap(_trisect.Surface.of_parts(vertices, faces, parts))
     return mesh

@@ -22,6 +22,7 @@ mod from_polygons;
 mod gate;
 mod groups;
 mod handover;
+mod indices;
 mod inertia;
 mod links;
 mod manifold;

@@ -204,6 +204,14 @@ impl Solid {
         self.made_clean || self.self_crossings.get().is_some_and(SelfCrossings::is_simple)
     }
 
+    /// Whether it is known, without a look, that operations may take it as it is: it crosses itself no deeper than rounding, does not
+    /// touch itself, and no shell faces the wrong way. So are results of such operands, and operands that were looked through.
+    /// [`Gate::proven_clean`](super::Gate::proven_clean) gives a copy of it the same knowledge.
+    #[must_use]
+    pub fn is_proven_clean(&self) -> bool {
+        self.made_clean || (self.is_known_clean() && self.is_well_nested())
+    }
+
     /// Whether no shell faces the wrong way: outwards inside another, or inwards by itself. Computed once; O(n).
     pub(crate) fn is_well_nested(&self) -> bool {
         self.made_clean || self.inside_out().is_none()
@@ -392,6 +400,27 @@ mod tests {
         let borrowed: &Mesh = solid.as_ref();
         assert_eq!(*borrowed, mesh);
         assert_eq!(Mesh::from(solid), mesh);
+    }
+
+    #[test]
+    fn what_is_proven_goes_along_with_a_copy() {
+        use crate::mesh::Gate;
+        let mesh = primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
+        let solid = Solid::try_from(mesh.clone()).unwrap();
+        assert!(!solid.is_proven_clean(), "nobody has looked");
+        assert!(solid.self_crossings(&crate::Control::new()).unwrap().is_simple() && solid.is_proven_clean());
+        let copy = |gate: Gate, mesh: &Mesh| gate.as_is(true).solid(mesh.clone()).unwrap();
+        assert!(copy(Gate::new().proven_clean(true), &mesh).is_proven_clean());
+        assert!(!copy(Gate::new(), &mesh).is_proven_clean());
+        // Two bodies that cross.
+        let other = primitives::cuboid([0.5; 3], [1.5; 3]).unwrap();
+        let both = Solid::try_from(Mesh::merged([&mesh, &other]).unwrap()).unwrap();
+        assert!(!both.self_crossings(&crate::Control::new()).unwrap().is_clean() && !both.is_proven_clean());
+        // Of what has to be mended nothing is known.
+        let mut open = mesh;
+        open.triangles.pop();
+        let filled = Gate::new().fill_holes(9).proven_clean(true).solid(open).unwrap();
+        assert!(!filled.mending().is_none() && !filled.is_proven_clean());
     }
 
     #[test]
