@@ -100,6 +100,7 @@ pub(super) fn smoothed(
     let _account = control.reserve((mesh.positions.len() * BYTES) as u64)?;
     let work = Work { nearby, tolerance, floor, control };
     let mut surface = Surface::new(features::net(&mesh, nearby, control)?, &mesh);
+    drop(mesh);
     for part in PARTS {
         let groups = surface.divided(MOST, part);
         match work.worked_over(&surface, &groups)? {
@@ -202,7 +203,7 @@ impl Work<'_> {
         for _ in 0..DIVISIONS {
             place::relax(net, nearby, limits, scratch, control)?;
             edit::flip_all(net, limits);
-            let edges = self.to_divide(net, scratch);
+            let edges = self.edges_to_divide(net, scratch);
             if edges.is_empty() || place::split(net, &edges, nearby, scratch) == 0 {
                 break;
             }
@@ -221,7 +222,7 @@ impl Work<'_> {
     }
 
     /// The edges to get a new vertex: the longest of every triangle that is too far off, unless it is a crease or short.
-    fn to_divide(&self, net: &Net, scratch: &mut Scratch) -> Vec<[u32; 2]> {
+    fn edges_to_divide(&self, net: &Net, scratch: &mut Scratch) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
         for (_, corners) in net.present() {
             if corners.iter().any(|&corner| net.is(corner, Kind::Frozen)) {

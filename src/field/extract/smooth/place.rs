@@ -34,7 +34,7 @@ pub(super) fn relax(
             Some(foot) => net.displace(vertex, Vertex::free(foot.place, foot.outward)),
             None => net.settle(vertex),
         }
-        if vertex as usize % AT_ONCE == 0 {
+        if (vertex as usize).is_multiple_of(AT_ONCE) {
             control.check()?;
         }
     }
