@@ -8,8 +8,8 @@ mod shapes;
 
 use std::path::Path;
 
-use trisect::Operation;
-use trisect::subdivision::{ControlMesh, FreeForm};
+use trisect::subdivision::{ControlMesh, FreeForm, Rules, Tags};
+use trisect::{Operation, primitives};
 
 use shapes::{block, cylinder, moved, torus};
 
@@ -20,6 +20,7 @@ fn chain(
     first: ControlMesh,
     steps: &[(Operation, ControlMesh)],
 ) -> Result<(), Box<dyn std::error::Error>> {
+    std::fs::write(folder.join(format!("{name}-body.obj")), first.to_obj())?;
     let mut cage = first;
     for (index, (operation, next)) in steps.iter().enumerate() {
         std::fs::write(folder.join(format!("{name}-part{}.obj", index + 1)), next.to_obj())?;
@@ -38,6 +39,31 @@ fn chain(
         cage = outcome.into_surface();
     }
     std::fs::write(folder.join(format!("{name}.obj")), cage.to_obj())?;
+    Ok(())
+}
+
+/// The same operands all at once: distances do not add up.
+fn at_once(
+    name: &str,
+    folder: &Path,
+    operation: Operation,
+    cages: &[&ControlMesh],
+) -> Result<(), Box<dyn std::error::Error>> {
+    let outcome = FreeForm::new().attempts(0).run_all(operation, cages)?;
+    let report = outcome.report();
+    println!(
+        "{name}, {operation} of {} at once: {} control points, {} unchanged, at most {} faces at a vertex, {} corners of three \
+         surfaces, off by {:.1e} (asked {:.1e}), {:.2} s",
+        cages.len(),
+        report.vertices,
+        report.unchanged,
+        report.valence,
+        report.junctions,
+        report.errors.largest(),
+        report.asked,
+        report.seconds.iter().map(|(_, seconds)| seconds).sum::<f64>()
+    );
+    std::fs::write(folder.join(format!("{name}.obj")), outcome.surface().to_obj())?;
     Ok(())
 }
 
@@ -65,5 +91,24 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let slot = block([6, 2, 3], [-0.6, -0.14, 0.3], [0.6, 0.14, 1.2], &[[0, 2], [1, 2]])?;
     steps.push((Operation::Difference, slot));
-    chain("part", folder, plate, &steps)
+    let mut cages = vec![&plate];
+    cages.extend(steps.iter().map(|(_, tool)| tool));
+    at_once("part-at-once", folder, Operation::Difference, &cages)?;
+    chain("part", folder, plate, &steps)?;
+    // Three balls, and a tube that goes through itself.
+    let ball = |at: [f64; 3]| {
+        let ball = primitives::icosphere(1.0, 2)?.translated(at);
+        ControlMesh::new(ball.positions, ball.triangles, Tags::default(), Rules::Loop)
+    };
+    let balls = [ball([0.0; 3])?, ball([0.9, 0.1, 0.2])?, ball([0.4, 0.8, 0.1])?];
+    at_once("balls", folder, Operation::Union, &balls.each_ref())?;
+    let eight = moved(&torus(40, 10, 1.0, 0.16)?, |[x, y, z]| {
+        // The ring bent to a figure of eight: its middle line goes to (sin t, sin t cos t), what is beside it along.
+        let (t, r) = (y.atan2(x), x.hypot(y) - 1.0);
+        let along = [t.cos(), (2.0 * t).cos()];
+        let length = along[0].hypot(along[1]);
+        [t.sin() + r * along[1] / length, t.sin() * t.cos() - r * along[0] / length, z + 0.05 * t.cos()]
+    })?;
+    std::fs::write(folder.join("eight-itself.obj"), eight.to_obj())?;
+    at_once("eight", folder, Operation::Union, &[&eight])
 }

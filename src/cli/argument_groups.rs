@@ -56,16 +56,23 @@ pub(crate) struct Common {
     pub(crate) memory: Option<u64>,
 }
 
-/// Files that are used as operands.
+/// Files that are read and placed. They are taken from the matches together with the options after each.
 #[derive(Debug, Args)]
-pub(crate) struct Inputs {
+pub(crate) struct Files {
     /// Input files; `-` is standard input (with --format)
     #[arg(value_name = "FILE", required = true)]
-    pub(crate) files: Vec<PathBuf>,
+    files: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) reading: Reading,
     #[command(flatten)]
-    pub(crate) placing: Placing,
+    placing: Placing,
+}
+
+/// Files that are used as operands.
+#[derive(Debug, Args)]
+pub(crate) struct Inputs {
+    #[command(flatten)]
+    pub(crate) from: Files,
     #[command(flatten)]
     pub(crate) using: Using,
 }
@@ -77,6 +84,14 @@ pub(crate) struct Results {
     pub(crate) writing: Writing,
     #[command(flatten)]
     pub(crate) drawing: Drawing,
+}
+
+/// What surfaces of fields are like.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct Smoothness {
+    /// Leave surfaces of fields as the cells give them: as near and in less time, but crumpled and of several times the triangles
+    #[arg(long)]
+    pub(crate) no_smooth: bool,
 }
 
 /// How inputs are read.

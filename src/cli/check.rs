@@ -31,7 +31,7 @@ struct Verdict {
 
 /// Checks every input; the worst answer decides the exit code, an unreadable file before an unusable one.
 pub(crate) fn run(arguments: &Check, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
-    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = requests::requests(matches, arguments.inputs.from.reading.format)?;
     let requests = selection::each(requests, &session.limits, &session.control())?;
     let (mut unreadable, mut unusable) = (false, false);
     let mut objects = Vec::new();

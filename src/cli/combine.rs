@@ -33,7 +33,7 @@ pub(crate) fn run(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
-    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = requests::requests(matches, arguments.inputs.from.reading.format)?;
     run_task(&Task::Operation(operation), requests, arguments, session)
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn run_combination(
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
     let combine = &arguments.combine;
-    let mut requests = requests::requests(matches, combine.inputs.reading.format)?;
+    let mut requests = requests::requests(matches, combine.inputs.from.reading.format)?;
     let task = Task::of(arguments, &mut requests)?;
     run_task(&task, requests, combine, session)
 }
@@ -55,7 +55,7 @@ pub(crate) fn run_resolve(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
-    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = requests::requests(matches, arguments.inputs.from.reading.format)?;
     if requests.len() > 1 {
         return Err(Fault::usage("resolve takes one input; union unites several, each resolved first"));
     }
@@ -254,7 +254,7 @@ fn embedding(arguments: &Combine, targets: &[Target]) -> Embed {
         return Embed::OnGrid(if single { Grid::Single } else { Grid::Double });
     }
     // What writing in single precision loses is told when it is written, and embedding on that grid would lose it before.
-    Embed::NearCut(Grid::Double)
+    Embed::NearCut
 }
 
 /// The inputs, one for each part of a file that is asked for; in expressions, whose operands are numbered, one for all parts

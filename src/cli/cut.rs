@@ -21,7 +21,7 @@ use super::words;
 
 /// Cuts an input.
 pub(crate) fn run(arguments: &Cut, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
-    let mut requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let mut requests = requests::requests(matches, arguments.inputs.from.reading.format)?;
     if arguments.plane.is_empty() {
         return Err(without_plane(&requests));
     }

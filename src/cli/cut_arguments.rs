@@ -7,7 +7,7 @@ use trisect::FaceGroup;
 use trisect::exact::Plane;
 use trisect::mesh::Welding;
 
-use super::argument_groups::{Inputs, Placing, Reading, Repair, Results};
+use super::argument_groups::{Files, Inputs, Repair, Results};
 use super::field_arguments::Axis;
 use super::surface::{self, CutUv};
 use super::values::{self, Heights};
@@ -115,13 +115,8 @@ pub(crate) struct Trim {
 /// Making a solid of a soup.
 #[derive(Debug, Args)]
 pub(crate) struct Solidify {
-    /// Input file; `-` is standard input (with --format)
-    #[arg(value_name = "FILE", required = true)]
-    files: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) reading: Reading,
-    #[command(flatten)]
-    placing: Placing,
+    pub(crate) from: Files,
     /// Join vertices on open edges that are no further apart than this; auto: than the least distance that hardly leaves more
     /// edges open than larger ones do
     #[arg(long, value_name = "DISTANCE|auto", value_parser = values::welding, allow_hyphen_values = true, help_heading = "Inputs")]
@@ -133,13 +128,8 @@ pub(crate) struct Solidify {
 /// Drawing curves on surfaces.
 #[derive(Debug, Args)]
 pub(crate) struct Imprint {
-    /// Two input files, which may be open; `-` is standard input (with --format)
-    #[arg(value_name = "FILE", required = true)]
-    files: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) reading: Reading,
-    #[command(flatten)]
-    placing: Placing,
+    pub(crate) from: Files,
     #[command(flatten)]
     repair: Repair,
     #[command(flatten)]

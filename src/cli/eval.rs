@@ -49,6 +49,9 @@ pub(crate) fn run(arguments: &Eval, session: &mut Session<'_>) -> Result<Exit, F
     if let Some(tolerance) = arguments.tolerance {
         evaluation = evaluation.tolerance(tolerance);
     }
+    if arguments.smoothness.no_smooth {
+        evaluation = evaluation.smooth(false);
+    }
     let mut parts = Vec::new();
     let mut drawn = Vec::new();
     if let (Some(path), Some(format)) = (&arguments.contours, format) {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use trisect::field::SignRule;
 
-use super::argument_groups::{Placing, Reading, Results};
+use super::argument_groups::{Placing, Reading, Results, Smoothness};
 use super::values;
 
 /// Evaluating a model.
@@ -17,6 +17,8 @@ pub(crate) struct Eval {
     /// Largest distance of a mesh from the true surface, whatever the model says
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
+    #[command(flatten)]
+    pub(crate) smoothness: Smoothness,
     /// Write the boundary in a plane, as polygons: *.svg or *.json
     #[arg(long, value_name = "FILE", help_heading = "Outputs")]
     pub(crate) contours: Option<PathBuf>,

@@ -26,7 +26,7 @@ pub(crate) fn run(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
-    let mut requests = requests::requests(matches, arguments.reading.format)?;
+    let mut requests = requests::requests(matches, arguments.from.reading.format)?;
     let writing = &arguments.results.writing;
     scenes::name_node(&mut requests, writing)?;
     let targets = output::targets(writing, &arguments.results.drawing, session.common)?;

@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use clap::ArgMatches;
 use serde_json::{Value, json};
-use trisect::making as library;
+use trisect::making::{self as library, OffsetOptions};
 use trisect::{Control, Error, Mesh, Solid};
 
-use super::argument_groups::{Inputs, Results};
+use super::argument_groups::{Inputs, Results, Smoothness};
 use super::combine;
 use super::fault::{Exit, Fault};
 use super::made;
@@ -22,7 +22,7 @@ use super::words;
 /// Makes the convex hull of all inputs.
 pub(crate) fn run(arguments: &Hull, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
     let control = session.control();
-    let requests = requests::requests(matches, arguments.reading.format)?;
+    let requests = requests::requests(matches, arguments.from.reading.format)?;
     let requests = selection::each(requests, &session.limits, &control)?;
     let targets = made::targets(&arguments.results, session)?;
     let start = Instant::now();
@@ -86,7 +86,7 @@ pub(crate) fn run_minkowski(
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
     let control = session.control();
-    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = requests::requests(matches, arguments.inputs.from.reading.format)?;
     let requests = selection::joined(requests, &session.limits, &control)?;
     if requests.len() != 2 {
         return Err(Fault::usage(format!(
@@ -124,8 +124,9 @@ pub(crate) fn run_offset(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
+    let options = offsetting(arguments.tolerance, arguments.smoothness);
     let of = |solid: &Solid, control: &Control| {
-        library::offset(solid, arguments.distance, arguments.tolerance, control)
+        options.clone().control(control.clone()).offset(solid, arguments.distance)
     };
     let verb = Verb { name: "offset", is_new: true };
     from_distance(verb, &arguments.inputs, &arguments.results, matches, session, of)
@@ -137,11 +138,20 @@ pub(crate) fn run_hollow(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
+    let options = offsetting(arguments.tolerance, arguments.smoothness);
     let of = |solid: &Solid, control: &Control| {
-        library::hollow(solid, arguments.wall, &arguments.drain, arguments.tolerance, control)
+        options.clone().control(control.clone()).hollow(solid, arguments.wall, &arguments.drain)
     };
     let verb = Verb { name: "hollow", is_new: false };
     from_distance(verb, &arguments.inputs, &arguments.results, matches, session, of)
+}
+
+fn offsetting(tolerance: Option<f64>, smoothness: Smoothness) -> OffsetOptions {
+    let options = OffsetOptions::new().smooth(!smoothness.no_smooth);
+    match tolerance {
+        Some(tolerance) => options.tolerance(tolerance),
+        None => options,
+    }
 }
 
 /// A verb that makes something of a distance field.
@@ -161,7 +171,7 @@ fn from_distance(
     make: impl Fn(&Solid, &Control) -> Result<library::Offset, Error>,
 ) -> Result<Exit, Fault> {
     let control = session.control();
-    let requests = requests::requests(matches, inputs.reading.format)?;
+    let requests = requests::requests(matches, inputs.from.reading.format)?;
     let requests = selection::joined(requests, &session.limits, &control)?;
     if requests.len() != 1 {
         return Err(Fault::usage(format!("{verb} takes one input, not {}", requests.len())));

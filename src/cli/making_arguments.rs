@@ -7,19 +7,14 @@ use clap::Args;
 use clap_complete::Shell;
 use trisect::making::Drain;
 
-use super::argument_groups::{Inputs, Placing, Reading, Results};
+use super::argument_groups::{Files, Inputs, Placing, Results, Smoothness};
 use super::values;
 
 /// Convex hulls.
 #[derive(Debug, Args)]
 pub(crate) struct Hull {
-    /// Input files, which need not be closed; `-` is standard input (with --format)
-    #[arg(value_name = "FILE", required = true)]
-    pub(crate) files: Vec<PathBuf>,
     #[command(flatten)]
-    pub(crate) reading: Reading,
-    #[command(flatten)]
-    pub(crate) placing: Placing,
+    pub(crate) from: Files,
     #[command(flatten)]
     pub(crate) results: Results,
 }
@@ -57,6 +52,8 @@ pub(crate) struct Offset {
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
     #[command(flatten)]
+    pub(crate) smoothness: Smoothness,
+    #[command(flatten)]
     pub(crate) results: Results,
 }
 
@@ -74,6 +71,8 @@ pub(crate) struct Hollow {
     /// Largest distance of the cavity from the true one [default: a twentieth of the wall, but no less than 1/2000 of the diagonal]
     #[arg(long, value_name = "LENGTH", value_parser = values::length, allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
+    #[command(flatten)]
+    pub(crate) smoothness: Smoothness,
     #[command(flatten)]
     pub(crate) results: Results,
 }

@@ -28,7 +28,7 @@ pub(crate) fn run(
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
     let control = session.control();
-    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = requests::requests(matches, arguments.inputs.from.reading.format)?;
     let requests = selection::each(requests, &session.limits, &control)?;
     let mut asked = arguments.at.clone();
     if let Some(file) = &arguments.points {
@@ -169,7 +169,7 @@ pub(crate) fn run_distance(
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
     let control = session.control();
-    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = requests::requests(matches, arguments.inputs.from.reading.format)?;
     let requests = selection::joined(requests, &session.limits, &control)?;
     if requests.len() != 2 {
         return Err(Fault::usage(format!("distance takes two inputs, not {}", requests.len())));

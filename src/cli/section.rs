@@ -26,7 +26,7 @@ pub(crate) fn run(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
-    let requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let requests = requests::requests(matches, arguments.inputs.from.reading.format)?;
     if requests.len() > 1 {
         return Err(Fault::usage("section takes one input; unite several first"));
     }

@@ -9,13 +9,11 @@ use super::argument_groups::Colours;
 use super::cut_arguments::Solidify as Arguments;
 use super::fault::{Exit, Fault};
 use super::json::json_of;
-use super::made;
-use super::output::{self, Target};
+use super::made::{self, Begun};
+use super::output::Target;
 use super::reading::{self, Input};
 use super::report::Measures;
-use super::requests;
 use super::scenes;
-use super::selection;
 use super::session::Session;
 use super::words;
 use super::written::Written;
@@ -26,16 +24,10 @@ pub(crate) fn run(
     matches: &ArgMatches,
     session: &mut Session<'_>,
 ) -> Result<Exit, Fault> {
-    let mut requests = requests::requests(matches, arguments.reading.format)?;
+    let otherwise = "solidify takes one input; union puts several together afterwards";
+    let Begun { requests: [request], targets, options: write_options, control } =
+        made::begin(matches, &arguments.from, &arguments.results, otherwise, session)?;
     let writing = &arguments.results.writing;
-    scenes::name_node(&mut requests, writing)?;
-    let targets = made::targets(&arguments.results, session)?;
-    let control = session.control();
-    let requests = selection::joined(requests, &session.limits, &control)?;
-    let write_options =
-        scenes::kept(output::write_options(writing, &session.limits), writing, requests.first())?;
-    let [request] = <[_; 1]>::try_from(requests)
-        .map_err(|_| Fault::usage("solidify takes one input; union puts several together afterwards"))?;
 
     let start = Instant::now();
     let Input { mesh, format, mut warnings, contents, reserved: _reserved } =
@@ -55,15 +47,12 @@ pub(crate) fn run(
     let seconds = session.took("run", start);
     tell(&made, &targets, seconds, session);
 
-    let start = Instant::now();
     let written = Written {
         usual: Colours::Operand,
         operand: &|triangle| made.origins[triangle].operand as usize,
         ..Written::new(made.solid.mesh(), write_options, Some(format))
     };
-    let outputs = written.to(&targets, writing, &arguments.results.drawing, session)?;
-    session.note("outputs", outputs);
-    session.took("write", start);
+    made::write(written, &arguments.results, &targets, session)?;
     Ok(Exit::Fine)
 }
 
@@ -116,6 +105,5 @@ fn tell(made: &Solidified, targets: &[Target], seconds: f64, session: &mut Sessi
     let mut result = measures.to_json();
     result.insert("solidify".into(), json_of(report));
     session.note("result", result);
-    let arrow = output::arrow(targets);
-    session.console.say(&format!("result: {} ({}){arrow}", measures.line(), words::time(seconds)));
+    made::say(&measures, targets, seconds, session);
 }

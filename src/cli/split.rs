@@ -102,7 +102,7 @@ fn requests(arguments: &Split, matches: &ArgMatches) -> Result<Vec<Request>, Fau
         let (path, part) = chosen::split(path.clone());
         Request { path, part, chosen: None, transforms: Vec::new(), ..input.clone() }
     }));
-    requests::name_formats(&mut requests, arguments.inputs.reading.format)?;
+    requests::name_formats(&mut requests, arguments.inputs.from.reading.format)?;
     Ok(requests)
 }
 

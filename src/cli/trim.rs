@@ -11,33 +11,23 @@ use super::argument_groups::Writing;
 use super::combine;
 use super::cut_arguments::Trim;
 use super::fault::{Exit, Fault};
-use super::made;
+use super::made::{self, Begun};
 use super::mended;
 use super::operands;
-use super::output;
 use super::reading::{self, Input};
 use super::report::Measures;
-use super::requests::{self, Request};
+use super::requests::Request;
 use super::scenes;
-use super::selection;
 use super::session::Session;
 use super::usable;
-use super::words;
 use super::written::Written;
 
 /// Trims the first input by the second.
 pub(crate) fn run(arguments: &Trim, matches: &ArgMatches, session: &mut Session<'_>) -> Result<Exit, Fault> {
-    let mut requests = requests::requests(matches, arguments.inputs.reading.format)?;
+    let otherwise = "trim takes two inputs: the surface, then the solid that it is trimmed by";
+    let Begun { requests: [request, by], targets, options: write_options, control } =
+        made::begin(matches, &arguments.inputs.from, &arguments.results, otherwise, session)?;
     let writing = &arguments.results.writing;
-    scenes::name_node(&mut requests, writing)?;
-    let targets = made::targets(&arguments.results, session)?;
-    let control = session.control();
-    let requests = selection::joined(requests, &session.limits, &control)?;
-    let write_options =
-        scenes::kept(output::write_options(writing, &session.limits), writing, requests.first())?;
-    let [request, by] = <[_; 2]>::try_from(requests).map_err(|_| {
-        Fault::usage("trim takes two inputs: the surface, then the solid that it is trimmed by")
-    })?;
 
     let start = Instant::now();
     let sheet = sheet(&request, 0, writing, &control, session)?;
@@ -55,13 +45,9 @@ pub(crate) fn run(arguments: &Trim, matches: &ArgMatches, session: &mut Session<
     let measures = Measures::of_mesh(&trimmed.mesh);
     session.note("result", measures.to_json());
 
-    let start = Instant::now();
     let written = Written::new(&trimmed.mesh, write_options, Some(sheet.format));
-    let outputs = written.to(&targets, writing, &arguments.results.drawing, session)?;
-    session.note("outputs", outputs);
-    session.took("write", start);
-    let arrow = output::arrow(&targets);
-    session.console.say(&format!("result: {} ({}){arrow}", measures.line(), words::time(seconds)));
+    made::write(written, &arguments.results, &targets, session)?;
+    made::say(&measures, &targets, seconds, session);
     Ok(Exit::Fine)
 }
 

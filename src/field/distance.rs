@@ -76,6 +76,10 @@ pub struct SignedDistance {
     number: u64,
 }
 
+/// Roundings of the largest coordinate within which a point is on the surface, as far as directions are concerned: nearest points are
+/// off by a few, and farther away their direction is by less than a twentieth.
+const ON_SURFACE: f64 = 64.0;
+
 /// How many meshes there have been.
 static COUNT: AtomicU64 = AtomicU64::new(0);
 
@@ -192,15 +196,29 @@ impl SignedDistance {
     /// The distance and its gradient, from the nearest point.
     pub(crate) fn measured(&self, query: [f64; 3], closest: Closest) -> SignedDistanceAt {
         let distance = self.sign(query, &closest);
-        let away = DVec3::from_array(query) - DVec3::from_array(closest.point);
-        let gradient = if distance > 0.0 {
-            away.normalize_or_zero()
-        } else if distance < 0.0 {
-            -away.normalize_or_zero()
-        } else {
-            -self.normals.of(closest.triangle, closest.feature).normalize_or_zero()
-        };
+        let gradient = self.gradient_from(query, &closest, distance);
         SignedDistanceAt { distance, gradient: gradient.to_array(), closest }
+    }
+
+    /// The gradient: away from the nearest point, or towards it. As near to the surface as coordinates are rounded that difference points
+    /// anywhere, and nearer to a face than to its edges it is along its normal in any case.
+    fn gradient_from(&self, query: [f64; 3], closest: &Closest, distance: f64) -> DVec3 {
+        let query = DVec3::from_array(query);
+        let away = query - DVec3::from_array(closest.point);
+        let direct = away.normalize_or_zero() * distance.signum();
+        let known = || self.normals.of(closest.triangle, closest.feature).normalize_or_zero();
+        if distance.abs() <= ON_SURFACE * f64::EPSILON * query.abs().max_element() {
+            let inward = -known();
+            return if inward == DVec3::ZERO && distance != 0.0 { direct } else { inward };
+        }
+        match closest.feature {
+            Feature::Face => match known() {
+                DVec3::ZERO => direct,
+                normal if normal.dot(direct) < 0.0 => -normal,
+                normal => normal,
+            },
+            Feature::Edge(_) | Feature::Vertex(_) => direct,
+        }
     }
 
     /// Where `query` is, by the sign rule.

@@ -27,7 +27,7 @@ mod text;
 pub use hull::convex_hull;
 pub use minkowski::minkowski_sum;
 #[cfg(feature = "field")]
-pub use offset::{Drain, Offset, hollow, offset};
+pub use offset::{Drain, Offset, OffsetOptions, hollow, offset};
 pub use pattern::Pattern;
 #[cfg(feature = "text")]
 pub use text::{Font, Lettering, TextAlign};

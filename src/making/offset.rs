@@ -44,6 +44,31 @@ const FARTHEST: f64 = 1e9;
 /// Around a drain.
 const SEGMENTS: u32 = 64;
 
+/// How an offset is made; for its tolerance, limits, and where smoothing is not worth its time.
+///
+/// ```
+/// use trisect::making::OffsetOptions;
+/// use trisect::{Solid, primitives};
+///
+/// let cube = Solid::try_from(primitives::cuboid([0.0; 3], [4.0; 3])?)?;
+/// let larger = OffsetOptions::new().tolerance(0.2).smooth(false).offset(&cube, 1.0)?;
+/// assert!(larger.solid.volume() > 64.0 + 96.0);
+/// # Ok::<(), trisect::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct OffsetOptions {
+    tolerance: Option<f64>,
+    smooth: bool,
+    control: Control,
+}
+
+impl Default for OffsetOptions {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 fn invalid<T>(what: impl Into<String>) -> Result<T, Error> {
     Err(Error::InvalidArgument(what.into()))
 }
@@ -71,6 +96,11 @@ pub fn offset(
     tolerance: Option<f64>,
     control: &Control,
 ) -> Result<Offset, Error> {
+    OffsetOptions { tolerance, smooth: true, control: control.clone() }.offset(solid, distance)
+}
+
+fn extracted(solid: &Solid, distance: f64, options: &OffsetOptions) -> Result<Offset, Error> {
+    let OffsetOptions { tolerance, smooth, control } = options;
     if distance == 0.0 || !distance.is_finite() {
         return invalid(format!("offset: the distance must be finite and not zero, not {distance}"));
     }
@@ -103,7 +133,7 @@ pub fn offset(
     let room = distance.max(0.0) + 4.0 * tolerance;
     let (low, high) = (bounds.low.map(|x| x - room), bounds.high.map(|x| x + room));
     let Extracted { mesh, deviation, normal_deviation, .. } =
-        Extraction::new(low, high, tolerance).control(control.clone()).run(&field)?;
+        Extraction::new(low, high, tolerance).smooth(*smooth).control(control.clone()).run(&field)?;
     Ok(Offset { solid: Solid::try_from(mesh)?, tolerance, deviation, normal_deviation })
 }
 
@@ -133,17 +163,21 @@ pub fn hollow(
     tolerance: Option<f64>,
     control: &Control,
 ) -> Result<Offset, Error> {
+    OffsetOptions { tolerance, smooth: true, control: control.clone() }.hollow(solid, wall, drains)
+}
+
+fn hollowed(solid: &Solid, wall: f64, drains: &[Drain], offsetting: &OffsetOptions) -> Result<Offset, Error> {
     if !(wall > 0.0 && wall.is_finite()) {
         return invalid(format!("hollow: the wall must be positive and finite, not {wall}"));
     }
-    let inner = offset(solid, -wall, tolerance, control)?;
+    let inner = offsetting.offset(solid, -wall)?;
     if inner.solid.is_empty() {
         return invalid(format!(
             "hollow: the solid is nowhere thicker than two walls of {wall}: there is no room inside"
         ));
     }
     let tree = TriangleTree::new(solid.mesh());
-    let options = BooleanOptions::new().control(control.clone());
+    let options = BooleanOptions::new().control(offsetting.control.clone());
     let mut hollow = options.run(Operation::Difference, [solid, &inner.solid])?.into_solid();
     for (number, drain) in (1..).zip(drains) {
         let hole = hole(&tree, drain, wall)?;
@@ -179,6 +213,47 @@ fn hole(tree: &TriangleTree, drain: &Drain, wall: f64) -> Result<Solid, Error> {
     let row = |k: usize| [x[k], y[k], outwards[k], start[k]];
     let placed = upright.transformed([row(0), row(1), row(2)].as_flattened())?;
     Ok(Solid::try_from(placed)?)
+}
+
+impl OffsetOptions {
+    /// The tolerance of [`offset`] where none is given, a smooth surface, no limits.
+    pub fn new() -> Self {
+        Self { tolerance: None, smooth: true, control: Control::new() }
+    }
+
+    /// How far the surface may be from the true one, in units of the coordinates.
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = Some(tolerance);
+        self
+    }
+
+    /// Whether the surface is made smooth (default). See [`Extraction::smooth`](crate::field::Extraction::smooth).
+    pub fn smooth(mut self, smooth: bool) -> Self {
+        self.smooth = smooth;
+        self
+    }
+
+    /// Limits and progress.
+    pub fn control(mut self, control: Control) -> Self {
+        self.control = control;
+        self
+    }
+
+    /// The solid grown by `distance`, or shrunk if it is negative: as [`offset`].
+    ///
+    /// # Errors
+    /// As [`offset`].
+    pub fn offset(&self, solid: &Solid, distance: f64) -> Result<Offset, Error> {
+        extracted(solid, distance, self)
+    }
+
+    /// The solid with a wall of thickness `wall` and drain holes: as [`hollow`].
+    ///
+    /// # Errors
+    /// As [`hollow`].
+    pub fn hollow(&self, solid: &Solid, wall: f64, drains: &[Drain]) -> Result<Offset, Error> {
+        hollowed(solid, wall, drains, self)
+    }
 }
 
 #[cfg(test)]

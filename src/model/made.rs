@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use super::{fault, take};
-use crate::making::{self, Drain, Pattern};
+use crate::making::{self, Drain, OffsetOptions, Pattern};
 use crate::{Control, Error, Mesh, Solid};
 
 /// The kinds read here.
@@ -99,12 +99,29 @@ fn length(object: &mut Map<String, Value>, key: &str) -> Result<f64, Error> {
     take(object, key)?.ok_or_else(|| fault(format!("`{key}`, a number, is missing")))
 }
 
+/// How surfaces that are not exact become meshes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Meshing {
+    pub(super) tolerance: Option<f64>,
+    pub(super) smooth: bool,
+}
+
+impl Meshing {
+    fn offsetting(self, control: &Control) -> OffsetOptions {
+        let options = OffsetOptions::new().smooth(self.smooth).control(control.clone());
+        match self.tolerance {
+            Some(tolerance) => options.tolerance(tolerance),
+            None => options,
+        }
+    }
+}
+
 impl Made {
     /// The mesh. File names start at `folder`.
     pub(super) fn mesh(
         &self,
         operands: &[&Solid],
-        tolerance: Option<f64>,
+        meshing: Meshing,
         folder: &Path,
         control: &Control,
     ) -> Result<Mesh, Error> {
@@ -126,13 +143,13 @@ impl Made {
             }
             Self::Offset(distance) => {
                 let operand = operands.first().ok_or_else(missing)?;
-                Ok(making::offset(operand, *distance, tolerance, control)?.solid.into_mesh())
+                Ok(meshing.offsetting(control).offset(operand, *distance)?.solid.into_mesh())
             }
             Self::Hollow(wall, drains) => {
                 let operand = operands.first().ok_or_else(missing)?;
-                Ok(making::hollow(operand, *wall, drains, tolerance, control)?.solid.into_mesh())
+                Ok(meshing.offsetting(control).hollow(operand, *wall, drains)?.solid.into_mesh())
             }
-            Self::Text(text) => text.mesh(tolerance, folder),
+            Self::Text(text) => text.mesh(meshing.tolerance, folder),
         }
     }
 }

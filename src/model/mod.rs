@@ -90,6 +90,7 @@ pub struct Model {
 #[derive(Clone, Debug, Default)]
 struct Defaults {
     tolerance: Option<f64>,
+    smooth: Option<bool>,
     bounds: Option<[[f64; 3]; 2]>,
     system: Option<System>,
     parameters: Vec<(String, f64)>,
@@ -116,6 +117,8 @@ struct Node {
     mode: Option<Mode>,
     system: Option<System>,
     tolerance: Option<f64>,
+    /// Whether a surface that is extracted from a field is made smooth.
+    smooth: Option<bool>,
     bounds: Option<[[f64; 3]; 2]>,
     clip: bool,
 }

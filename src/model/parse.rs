@@ -34,10 +34,6 @@ struct ModelReader<'a> {
     folder: &'a Path,
 }
 
-fn within(label: &str) -> impl Fn(Error) -> Error + '_ {
-    move |error| error.in_node(label)
-}
-
 /// A node's keys that all kinds have; its kind is still to come.
 fn common(object: &mut Map<String, Value>, label: &str) -> Result<Node, Error> {
     let _: (Option<String>, Option<Value>) = (take(object, "name")?, take(object, "about")?);
@@ -69,6 +65,7 @@ fn common(object: &mut Map<String, Value>, label: &str) -> Result<Node, Error> {
         mode,
         system: system.map(|name| system_of(&name)).transpose()?,
         tolerance: take(object, "tolerance")?,
+        smooth: take(object, "smooth")?,
         bounds: take(object, "bounds")?,
         clip: take(object, "clip")?.unwrap_or(false),
     };
@@ -104,7 +101,7 @@ pub(super) fn model(text: &str, folder: &Path) -> Result<Model, Error> {
             object.remove("result").ok_or_else(|| fault("`result` is missing: the node to evaluate"))?;
         if let Some(key) = object.keys().next() {
             return Err(fault(format!(
-                "unknown key `{key}`; known: nodes, result, tolerance, bounds, system, parameters, about"
+                "unknown key `{key}`; known: nodes, result, tolerance, smooth, bounds, system, parameters, about"
             )));
         }
         for (index, label, value) in pending {
@@ -130,6 +127,7 @@ fn name_of(label: &str) -> &str {
 fn defaults_of(object: &mut Map<String, Value>) -> Result<Defaults, Error> {
     let _: Option<Value> = take(object, "about")?;
     let tolerance = take(object, "tolerance")?;
+    let smooth = take(object, "smooth")?;
     let bounds = take(object, "bounds")?;
     let system: Option<String> = take(object, "system")?;
     let parameters: BTreeMap<String, f64> = take(object, "parameters")?.unwrap_or_default();
@@ -137,6 +135,7 @@ fn defaults_of(object: &mut Map<String, Value>) -> Result<Defaults, Error> {
     checked_bounds(bounds)?;
     Ok(Defaults {
         tolerance,
+        smooth,
         bounds,
         system: system.map(|name| system_of(&name)).transpose()?,
         parameters: parameters.into_iter().collect(),
@@ -210,27 +209,31 @@ impl ModelReader<'_> {
         operands.into_iter().map(|(place, value)| self.add(value, &format!("{path}/{place}"))).collect()
     }
 
+    /// A node; its errors, and those of nodes in it that have no label, say that they are of `label`.
     fn node(&mut self, value: Value, label: &str, path: &str) -> Result<Node, Error> {
+        self.labelled(value, label, path).map_err(|error| error.in_node(label))
+    }
+
+    fn labelled(&mut self, value: Value, label: &str, path: &str) -> Result<Node, Error> {
         match value {
             Value::String(text) => {
                 let kind = match extension(&text) {
                     _ if self.names.contains_key(&text) => Kind::Reference(text, usize::MAX),
-                    Some("json") => self.described(&text).map_err(within(label))?,
+                    Some("json") => self.described(&text)?,
                     Some(_) => Kind::Mesh(MeshFile::plain(text)),
                     None => Kind::Reference(text, usize::MAX),
                 };
                 Ok(Node::new(label.to_owned(), kind))
             }
             Value::Object(object) => self.object(object, label, path),
-            _ => Err(fault("a node is an object, the name of a node, or the name of a mesh file"))
-                .map_err(within(label)),
+            _ => Err(fault("a node is an object, the name of a node, or the name of a mesh file")),
         }
     }
 
     fn object(&mut self, mut object: Map<String, Value>, label: &str, path: &str) -> Result<Node, Error> {
-        let mut node = common(&mut object, label).map_err(within(label))?;
-        let kind: Option<String> = take(&mut object, "kind").map_err(within(label))?;
-        let operation: Option<String> = take(&mut object, "operation").map_err(within(label))?;
+        let mut node = common(&mut object, label)?;
+        let kind: Option<String> = take(&mut object, "kind")?;
+        let operation: Option<String> = take(&mut object, "operation")?;
         let name = match (kind, operation) {
             (Some(kind), None) => kind,
             (None, Some(operation)) if operation_of(&operation).is_some() || operation == "complement" => {
@@ -240,93 +243,78 @@ impl ModelReader<'_> {
                 let what = format!(
                     "unknown operation `{operation}`; known: union, intersection, difference, xor, complement"
                 );
-                return Err(fault(what).in_node(label));
+                return Err(fault(what));
             }
             (None, None) => {
-                return Err(fault(format!("`kind` is missing; known kinds: {KINDS}")).in_node(label));
+                return Err(fault(format!("`kind` is missing; known kinds: {KINDS}")));
             }
             (Some(_), Some(_)) => {
-                return Err(fault("a node has a `kind` or an `operation`, not both").in_node(label));
+                return Err(fault("a node has a `kind` or an `operation`, not both"));
             }
         };
-        node.kind = self.kind(&name, object, label, path)?;
+        node.kind = self.kind(&name, object, path)?;
         Ok(node)
     }
 
-    fn kind(
-        &mut self,
-        name: &str,
-        mut object: Map<String, Value>,
-        label: &str,
-        path: &str,
-    ) -> Result<Kind, Error> {
+    fn kind(&mut self, name: &str, mut object: Map<String, Value>, path: &str) -> Result<Kind, Error> {
         if operation_of(name).is_some() || name == "complement" {
-            return self.operation(name, object, label, path);
+            return self.operation(name, object, path);
         }
         if let Some(primitive) = primitive::parse(name, Value::Object(object.clone())) {
-            return primitive.map(Kind::Primitive).map_err(|what| fault(what).in_node(label));
+            return primitive.map(Kind::Primitive).map_err(fault);
         }
         let kind = match name {
-            "mesh" => Kind::Mesh(MeshFile::take(&mut object).map_err(within(label))?),
+            "mesh" => Kind::Mesh(MeshFile::take(&mut object)?),
             "half_space" => {
                 let keys = Value::Object(std::mem::take(&mut object));
-                Kind::HalfSpace(HalfSpace::parse(keys).map_err(fault).map_err(within(label))?)
+                Kind::HalfSpace(HalfSpace::parse(keys).map_err(fault)?)
             }
             "formula" => {
-                let text: Option<Text> = take(&mut object, "formula").map_err(within(label))?;
-                let text = match text.ok_or_else(|| fault("`formula` is missing").in_node(label))? {
+                let text: Option<Text> = take(&mut object, "formula")?;
+                let text = match text.ok_or_else(|| fault("`formula` is missing"))? {
                     Text::Line(line) => line,
                     Text::Lines(lines) => lines.join("\n"),
                 };
-                let parameters: BTreeMap<String, f64> =
-                    take(&mut object, "parameters").map_err(within(label))?.unwrap_or_default();
-                let formula = Formula::parse(&text).map_err(|error| Error::from(error).in_node(label))?;
+                let parameters: BTreeMap<String, f64> = take(&mut object, "parameters")?.unwrap_or_default();
+                let formula = Formula::parse(&text)?;
                 let parameters = parameters.into_iter().collect();
                 Kind::Formula { formula: Box::new(formula), parameters, uses: Vec::new() }
             }
             "contour" => {
                 let fields = Value::Object(std::mem::take(&mut object));
-                Kind::Contour(contour::contour(fields).map_err(within(label))?)
+                Kind::Contour(contour::contour(fields)?)
             }
             "region" => {
                 let region = object.remove("region");
-                let region = region.ok_or_else(|| fault("`region` is missing").in_node(label))?;
-                region_of(region).map_err(within(label))?
+                let region = region.ok_or_else(|| fault("`region` is missing"))?;
+                region_of(region)?
             }
             "parametric" => {
-                let file = file_of(&mut object).map_err(within(label))?;
-                self.described(&file).map_err(within(label))?
+                let file = file_of(&mut object)?;
+                self.described(&file)?
             }
-            kind if made::KINDS.contains(&kind) => self.made(kind, &mut object, label, path)?,
+            kind if made::KINDS.contains(&kind) => self.made(kind, &mut object, path)?,
             kind if cuts::KINDS.contains(&kind) => {
-                let (cut, operands) = Cut::parse(kind, &mut object).map_err(within(label))?;
+                let (cut, operands) = Cut::parse(kind, &mut object)?;
                 Kind::Cut(cut, self.add_all(operands, path)?)
             }
-            "freeform" => self.cage(std::mem::take(&mut object)).map_err(within(label))?,
-            kind if PARAMETRIC.contains(&kind) => {
-                solid_of(kind, std::mem::take(&mut object)).map_err(within(label))?
-            }
+            "freeform" => self.cage(std::mem::take(&mut object))?,
+            kind if PARAMETRIC.contains(&kind) => solid_of(kind, std::mem::take(&mut object))?,
             kind if kind.starts_with(CUSTOM) => {
                 let value = Value::Object(std::mem::take(&mut object));
                 Kind::Custom { kind: kind.to_owned(), value }
             }
-            _ => return Err(fault(format!("unknown kind `{name}`; known: {KINDS}")).in_node(label)),
+            _ => return Err(fault(format!("unknown kind `{name}`; known: {KINDS}"))),
         };
         match object.keys().next() {
-            Some(key) => Err(fault(format!("unknown key `{key}` for the kind `{name}`")).in_node(label)),
+            Some(key) => Err(fault(format!("unknown key `{key}` for the kind `{name}`"))),
             None => Ok(kind),
         }
     }
 
     /// What is made of other nodes, or of text.
-    fn made(
-        &mut self,
-        kind: &str,
-        object: &mut Map<String, Value>,
-        label: &str,
-        path: &str,
-    ) -> Result<Kind, Error> {
-        let (made, operands) = made::parse(kind, object).map_err(within(label))?;
+    fn made(&mut self, kind: &str, object: &mut Map<String, Value>, path: &str) -> Result<Kind, Error> {
+        let (made, operands) = made::parse(kind, object)?;
         Ok(Kind::Made(made, self.add_all(operands, path)?))
     }
 
@@ -356,20 +344,14 @@ impl ModelReader<'_> {
         Err(fault("`freeform` needs a build with the feature `subdivision`"))
     }
 
-    fn operation(
-        &mut self,
-        name: &str,
-        mut object: Map<String, Value>,
-        label: &str,
-        path: &str,
-    ) -> Result<Kind, Error> {
+    fn operation(&mut self, name: &str, mut object: Map<String, Value>, path: &str) -> Result<Kind, Error> {
         let mut operands: Vec<(String, Value)> = Vec::new();
         match object.remove("operands") {
             Some(Value::Array(list)) => {
                 operands
                     .extend(list.into_iter().enumerate().map(|(k, value)| (format!("operands/{k}"), value)));
             }
-            Some(_) => return Err(fault("`operands` is a list of nodes").in_node(label)),
+            Some(_) => return Err(fault("`operands` is a list of nodes")),
             None => {
                 for side in ["left", "right"] {
                     operands.extend(object.remove(side).map(|value| (side.to_owned(), value)));
@@ -380,12 +362,12 @@ impl ModelReader<'_> {
             let what = format!(
                 "unknown key `{key}` for the operation `{name}`: it takes `operands`, or `left` and `right`"
             );
-            return Err(fault(what).in_node(label));
+            return Err(fault(what));
         }
         let wanted = if name == "complement" { 1..=1 } else { 1..=usize::MAX };
         if !wanted.contains(&operands.len()) {
             let wanted = if name == "complement" { "exactly one operand" } else { "at least one operand" };
-            return Err(fault(format!("`{name}` needs {wanted}, but has {}", operands.len())).in_node(label));
+            return Err(fault(format!("`{name}` needs {wanted}, but has {}", operands.len())));
         }
         let operands = self.add_all(operands, path)?;
         Ok(match operation_of(name) {
@@ -405,6 +387,7 @@ impl Node {
             mode: None,
             system: None,
             tolerance: None,
+            smooth: None,
             bounds: None,
             clip: false,
         }

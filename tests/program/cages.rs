@@ -77,6 +77,31 @@ fn cages_are_combined_to_cages() {
 }
 
 #[test]
+fn any_number_of_cages_is_combined_at_once() {
+    let folder = folder();
+    // Twice the second cage, apart: what two steps of each take off.
+    folder.run("subdivide two.obj --translate 0,0,0.4 --levels 0 -o up.obj").exits(0);
+    folder.run("subdivide two.obj --translate -2.2,-0.6,-0.4 --levels 0 -o down.obj").exits(0);
+    let line =
+        "freeform difference one.obj up.obj down.obj --tolerance 0.05 -o cut.obj --exact exact.obj --json";
+    let report = folder.run(line).exits(0).json();
+    assert_eq!(report["steps"].as_array().map(Vec::len), Some(1));
+    let found = report["result"]["chains"].as_u64().expect("a number");
+    let first =
+        folder.run("freeform difference one.obj up.obj --tolerance 0.05 -o a.obj --json").exits(0).json();
+    let alone = first["result"]["chains"].as_u64().expect("a number");
+    assert!(found > alone && alone > 0, "{found} {alone}");
+    let surface = folder.run("subdivide cut.obj --tolerance 0.01 -o fine.obj").exits(0);
+    let (near, exact) = (volume(&folder.read("fine.obj")), volume(&folder.read("exact.obj")));
+    assert!((near - exact).abs() < 0.03 * exact, "{near} {exact} {surface:?}");
+    // One alone is united with itself.
+    folder.run("freeform union one.obj -o same.obj").exits(0);
+    let same = folder.run("subdivide same.obj --levels 2 --limit -o x.obj").exits(0);
+    folder.run("subdivide one.obj --levels 2 --limit -o y.obj").exits(0);
+    assert_eq!(volume(&folder.read("x.obj")), volume(&folder.read("y.obj")), "{same:?}");
+}
+
+#[test]
 fn cages_are_nodes_of_models() {
     let folder = folder();
     let node = |file: &str| format!(r#"{{"kind": "freeform", "file": "{file}"}}"#);
@@ -108,7 +133,7 @@ fn what_is_no_cage_is_refused_with_a_reason() {
         ("subdivide none.obj -o x.obj", 2, "none.obj"),
         ("subdivide one.obj --tolerance 0 -o x.obj", 1, "tolerance"),
         ("subdivide one.obj", 1, "nowhere"),
-        ("freeform union one.obj -o x.obj", 1, "2"),
+        ("freeform difference one.obj -o x.obj", 1, "freeform union"),
         ("freeform union one.obj open.obj -o x.obj", 3, "not closed"),
         ("freeform union one.obj two.obj -o -", 1, "file"),
         ("freeform difference one.obj two.obj --tolerance 0.001 --details 1 -o x.obj", 3, "--flatten"),

@@ -63,6 +63,27 @@ fn eval_extracts_fields_within_the_tolerance_asked_for() {
 }
 
 #[test]
+fn surfaces_are_left_as_the_cells_have_them_where_that_is_asked_for() {
+    let folder = folder();
+    let count = |line: &str| {
+        let report = folder.run(line).exits(0).json();
+        assert_eq!(report["result"]["genus"], 1, "{line}");
+        report["result"]["triangles"].as_u64().expect("a number")
+    };
+    let smooth = count("eval field.json --json");
+    let rough = count("eval field.json --no-smooth --json");
+    assert!(2 * smooth < rough, "{smooth} {rough}");
+    // The model says so itself, of all of it or of a node.
+    let model = folder.read("field.json");
+    folder.write("rough.json", model.replacen('{', "{ \"smooth\": false, ", 1));
+    assert_eq!(count("eval rough.json --json"), rough);
+    folder.write("node.json", model.replace("\"evaluate\"", "\"smooth\": false, \"evaluate\""));
+    assert_eq!(count("eval node.json --json"), rough);
+    folder.write("odd.json", model.replacen('{', "{ \"smooth\": 1, ", 1));
+    folder.run("eval odd.json --json").exits(3).says("smooth");
+}
+
+#[test]
 fn eval_writes_contours() {
     let folder = folder();
     let line = "eval field.json --contours c.svg --contour-height 0.5 --json";

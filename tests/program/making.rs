@@ -50,6 +50,9 @@ fn offsets_and_shells_say_how_near_they_are() {
     assert!((volume(&grown) - steiner).abs() < 0.3 * 150.0, "{grown}");
     assert!(grown["deviation"].as_f64() <= grown["tolerance"].as_f64());
     folder.run("offset box:4 --distance=-3 --tolerance 0.5 -o none.off --json").exits(0);
+    let rough = folder.run("offset box:4 --distance 1 --tolerance 0.3 --no-smooth --json").exits(0).json();
+    let triangles = |report: &Value| report["result"]["triangles"].as_u64().expect("a number");
+    assert!(triangles(&grown) < triangles(&rough));
     let hollow = folder
         .run("hollow box:20 --wall 2 --drain 0,0,-10:1.5 --tolerance 0.8 -o hollow.stl --json")
         .exits(0);

@@ -445,7 +445,7 @@ fn crossings_that_rounding_makes_are_resolved_where_something_was_cut() {
             let found = again(&rounded);
             let crosses = found.self_crossings(&Control::new()).unwrap();
             crossing += u32::from(!crosses.is_simple() || crosses.tolerated > 0);
-            let near = run(Embed::NearCut(Grid::Double));
+            let near = run(Embed::NearCut);
             let embedding = near.certificate().embedding.expect("it was looked for");
             let found = again(&near);
             let crosses = found.self_crossings(&Control::new()).unwrap();

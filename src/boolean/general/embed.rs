@@ -8,7 +8,6 @@ use rustc_hash::FxHashMap;
 use super::arrangement::{Crossed, General};
 use super::evaluate::{Finish, evaluate};
 use super::labels::winding;
-use crate::boolean::arrangement::self_crossings::crosses_at;
 use crate::boolean::complex::origin::Origin;
 use crate::mesh::compact;
 use crate::parallel::Runner;
@@ -70,8 +69,6 @@ pub(crate) struct Parts {
     pub(crate) origins: Vec<Origin>,
     /// Empty if there are no groups.
     pub(crate) groups: Vec<u32>,
-    /// For each triangle whether crossings are looked for there at first; nothing if they are everywhere.
-    pub(crate) changed: Option<Vec<bool>>,
 }
 
 /// Rounds a result to a grid and resolves what crosses, until nothing does.
@@ -94,18 +91,11 @@ pub(crate) fn embed(
         if grid == Grid::Single || coarser(report.rounds) > 0 {
             merge(&mut parts);
         }
-        // 2. What crosses: everywhere, unless there is nothing where something changed. (What is near each other has to be known
-        // of all to be resolved: what merely touches is moved apart.)
+        // 2. What crosses.
         let positions = std::mem::take(&mut parts.positions);
         let mut triangles = std::mem::take(&mut parts.triangles);
         let positions = compact(&positions, &mut triangles);
         let solid = Solid::from_closed_unchecked(Mesh::new(positions, triangles));
-        if let Some(changed) = parts.changed.take()
-            && !crosses_at(solid.mesh(), &changed, runner)?
-        {
-            let Mesh { positions, triangles, .. } = solid.into_mesh();
-            return Ok((Parts { positions, triangles, ..parts }, report));
-        }
         let crossed = Crossed::new(&[&solid], runner)?;
         troubled = crossed.troubled();
         report.left = troubled.len();
@@ -116,7 +106,7 @@ pub(crate) fn embed(
         if report.left < fewest {
             let Mesh { positions, triangles, .. } = solid.mesh().clone();
             let (origins, groups) = (parts.origins.clone(), parts.groups.clone());
-            best = Some((Parts { positions, triangles, origins, groups, changed: None }, report));
+            best = Some((Parts { positions, triangles, origins, groups }, report));
         }
         if report.left == 0 || is_hopeless {
             return Ok(best.expect("the first round is better than none"));
@@ -130,7 +120,6 @@ pub(crate) fn embed(
         let arrays =
             evaluate(&general, &inside, Finish { remove_vertices, unit, find_low: false }, runner)?.arrays;
         let before = &parts;
-        let sources: Vec<u32> = arrays.origins.iter().map(|origin| origin.triangle).collect();
         let origins = arrays.origins.iter().map(|origin| {
             let source = before.origins[origin.triangle as usize];
             Origin { reversed: source.reversed != origin.reversed, ..source }
@@ -141,8 +130,8 @@ pub(crate) fn embed(
             groups: arrays.origins.iter().filter_map(groups).collect(),
             positions: arrays.positions,
             triangles: arrays.triangles,
-            changed: None,
         };
+        let sources: Vec<u32> = arrays.origins.iter().map(|origin| origin.triangle).collect();
         troubled = descendants(&troubled, &sources);
         parts = made;
     }
@@ -168,8 +157,7 @@ fn round(parts: &mut Parts, grid: Grid, coarser: u32, troubled: &[u32]) -> f64 {
         }
     }
     let mut furthest = 0.0f64;
-    let mut has_moved = vec![false; if parts.changed.is_some() { parts.positions.len() } else { 0 }];
-    for (v, (position, bits)) in parts.positions.iter_mut().zip(bits).enumerate() {
+    for (position, bits) in parts.positions.iter_mut().zip(bits) {
         let old = *position;
         let largest = old.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
         *position = old.map(|x| {
@@ -181,12 +169,6 @@ fn round(parts: &mut Parts, grid: Grid, coarser: u32, troubled: &[u32]) -> f64 {
         });
         let moved = (0..3).map(|k| (position[k] - old[k]).powi(2)).sum::<f64>().sqrt();
         furthest = furthest.max(moved);
-        if let Some(has_moved) = has_moved.get_mut(v) {
-            *has_moved = *position != old;
-        }
-    }
-    for (corners, changed) in parts.triangles.iter().zip(parts.changed.iter_mut().flatten()) {
-        *changed |= corners.iter().any(|&v| has_moved[v as usize]);
     }
     furthest
 }
@@ -224,16 +206,10 @@ fn merge(parts: &mut Parts) {
             if !parts.groups.is_empty() {
                 parts.groups[kept] = parts.groups[t];
             }
-            if let Some(changed) = &mut parts.changed {
-                changed[kept] = changed[t];
-            }
             kept += 1;
         }
     }
     parts.triangles.truncate(kept);
     parts.origins.truncate(kept);
     parts.groups.truncate(kept);
-    if let Some(changed) = &mut parts.changed {
-        changed.truncate(kept);
-    }
 }

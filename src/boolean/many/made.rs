@@ -3,8 +3,9 @@
 use rustc_hash::FxHashMap;
 
 use super::policy::{Embed, Policy};
+use crate::boolean::arrangement::self_crossings::crosses_at;
 use crate::boolean::complex::origin::Origin;
-use crate::boolean::general::embed::{Grid, Parts, embed};
+use crate::boolean::general::embed::{Embedding, Grid, Parts, embed};
 use crate::boolean::result::attributes::carried;
 use crate::boolean::result::certificate::Notes;
 use crate::boolean::result::origins::Origins;
@@ -36,15 +37,18 @@ impl Made {
         let has_attributes = operands.iter().any(|solid| !solid.mesh().attributes.is_empty());
         match policy.embed {
             Embed::WhereNeeded if self.may_cross && self.is_clean => {
-                self.embed(Grid::Double, None, policy, has_attributes, runner)?;
+                self.embed(Grid::Double, policy, has_attributes, runner)?;
             }
             // (What is not known to be clean could be resolved by this where it is not asked for.)
-            Embed::NearCut(grid) if self.is_clean => {
+            Embed::NearCut if self.is_clean => {
                 let changed = changed(&self.origins, self.solid.mesh(), operands);
-                self.embed(grid, Some(changed), policy, has_attributes, runner)?;
+                self.notes.embedding = Some(Embedding::default());
+                if crosses_at(self.solid.mesh(), &changed, runner)? {
+                    self.embed(Grid::Double, policy, has_attributes, runner)?;
+                }
             }
-            Embed::OnGrid(grid) => self.embed(grid, None, policy, has_attributes, runner)?,
-            Embed::Never | Embed::WhereNeeded | Embed::NearCut(_) => {}
+            Embed::OnGrid(grid) => self.embed(grid, policy, has_attributes, runner)?,
+            Embed::Never | Embed::WhereNeeded | Embed::NearCut => {}
         }
         if self.is_clean {
             self.solid.set_made_clean();
@@ -53,10 +57,8 @@ impl Made {
         let meshes: Vec<&Mesh> = operands.iter().map(|solid| solid.mesh()).collect();
         self.solid.set_polygons(whole_polygons(&self.origins, self.solid.mesh(), &meshes));
         // The attributes last, of the vertices as they are now.
-        let unit = match policy.embed {
-            Embed::OnGrid(Grid::Single) | Embed::NearCut(Grid::Single) => f32::EPSILON.into(),
-            _ => f64::EPSILON,
-        };
+        let unit =
+            if policy.embed == Embed::OnGrid(Grid::Single) { f32::EPSILON.into() } else { f64::EPSILON };
         let attributes = carried(&self.origins, self.solid.mesh(), operands, unit, runner)?;
         self.solid.set_attributes(attributes);
         Ok(Outcome::new(self.solid, self.origins, unit, self.notes))
@@ -65,7 +67,6 @@ impl Made {
     fn embed(
         &mut self,
         grid: Grid,
-        changed: Option<Vec<bool>>,
         policy: Policy,
         has_attributes: bool,
         runner: Runner<'_>,
@@ -80,8 +81,7 @@ impl Made {
         } else {
             (groups, None)
         };
-        let Mesh { positions, triangles, .. } = mesh;
-        let parts = Parts { positions, triangles, groups: classes, origins, changed };
+        let parts = Parts { positions: mesh.positions, triangles: mesh.triangles, groups: classes, origins };
         let (parts, report) = embed(parts, grid, policy.remove_vertices, runner)?;
         self.groups.of_triangle = match group_of_class {
             Some(groups) if groups.is_empty() => Vec::new(),
@@ -100,14 +100,16 @@ fn changed(origins: &Origins, mesh: &Mesh, operands: &[&Solid]) -> Vec<bool> {
     let corners = |mesh: &Mesh, t: usize| mesh.triangles[t].map(|v| mesh.positions[v as usize]);
     let mut changed = Vec::with_capacity(mesh.triangles.len());
     for (origin, count, whole) in origins.stretches() {
-        let given = operands.get(origin.operand as usize).map(|solid| solid.mesh());
-        for triangle in (origin.triangle as usize..).take(count as usize) {
-            let own = changed.len();
-            let is_whole = whole
-                || given.is_some_and(|given| {
-                    is_as_given(corners(mesh, own), corners(given, triangle), origin.reversed)
-                });
-            changed.push(!is_whole);
+        let count = count as usize;
+        match operands.get(origin.operand as usize).map(|solid| solid.mesh()).filter(|_| !whole) {
+            None => changed.resize(changed.len() + count, !whole),
+            Some(given) => {
+                let first = changed.len();
+                changed.extend((0..count).map(|i| {
+                    let source = corners(given, origin.triangle as usize + i);
+                    !is_as_given(corners(mesh, first + i), source, origin.reversed)
+                }));
+            }
         }
     }
     changed

@@ -17,10 +17,10 @@ pub enum Embed {
     Never,
     /// They are looked for where new triangles are no higher than rounding, and resolved.
     WhereNeeded,
-    /// As in [`OnGrid`](Self::OnGrid), but crossings are looked for only where the operation made triangles, and where coordinates
-    /// were no numbers of the grid: in some nanoseconds a triangle, and some tenths of a microsecond for each that was made. What
-    /// operands bring with them elsewhere stays as it is. What the program does by itself.
-    NearCut(Grid),
+    /// They are looked for where the operation made triangles, and resolved if there are any. What operands bring with them elsewhere
+    /// stays as it is. Some nanoseconds a triangle, and some tenths of a microsecond for each that was made. What the program does by
+    /// itself.
+    NearCut,
     /// All coordinates are numbers of a grid, and what crosses on it is resolved: the result does not cross itself when it is
     /// written in a format with such numbers. Always looked for, in some tenths of a microsecond a triangle.
     OnGrid(Grid),

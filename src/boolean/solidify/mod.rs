@@ -222,15 +222,14 @@ impl Work<'_> {
 
     /// The result without crossings that rounding has made, and how many triangles cross all the same.
     fn embedded(&self, arrays: Assembled, groups: &[u32]) -> Result<(Parts, usize), Error> {
-        let may_cross = arrays.may_cross;
         let origins: Vec<Origin> = arrays.origins.iter().collect();
         let group = |origin: &Origin| groups.get(origin.triangle as usize).copied();
         let groups = origins.iter().filter_map(group).collect();
-        let Assembled { positions, triangles, .. } = arrays;
-        let parts = Parts { positions, triangles, origins, groups, changed: None };
+        let parts = Parts { positions: arrays.positions, triangles: arrays.triangles, origins, groups };
         let grid = match self.policy.embed {
-            Embed::OnGrid(grid) | Embed::NearCut(grid) => grid,
-            Embed::Never | Embed::WhereNeeded if may_cross => Grid::Double,
+            Embed::OnGrid(grid) => grid,
+            Embed::NearCut => Grid::Double,
+            Embed::Never | Embed::WhereNeeded if arrays.may_cross => Grid::Double,
             Embed::Never | Embed::WhereNeeded => return Ok((parts, 0)),
         };
         let (parts, report) = embed(parts, grid, self.policy.remove_vertices, self.runner)?;

@@ -12,6 +12,7 @@ use crate::boolean::{Expression, Leaf, Operation};
 use crate::exact::Plane;
 use crate::field::{Extracted, Extraction, extrude};
 use crate::io::ReadOptions;
+use crate::model::made::Meshing;
 use crate::model::{Kind, Made, Mode};
 use crate::{Error, Mesh, MeshError, Solid};
 
@@ -128,8 +129,8 @@ impl State<'_> {
         let solids: Vec<Arc<Solid>> =
             operands.iter().map(|&operand| self.solid_of(operand)).collect::<Result<_, Error>>()?;
         let solids: Vec<&Solid> = solids.iter().map(Arc::as_ref).collect();
-        let tolerance = self.given_tolerance(node);
-        made.mesh(&solids, tolerance, &self.model.folder, &self.settings.control)
+        let (tolerance, smooth) = (self.given_tolerance(node), self.is_smooth(node));
+        made.mesh(&solids, Meshing { tolerance, smooth }, &self.model.folder, &self.settings.control)
             .map_err(|error| error.in_node(self.label(node)))
     }
 
@@ -265,6 +266,7 @@ impl State<'_> {
         let Extracted { mesh, cells, divided_cells, deviation, normal_deviation, .. } =
             Extraction::new(low, high, tolerance)
                 .clip(self.model.nodes[node].clip)
+                .smooth(self.is_smooth(node))
                 .control(control.clone())
                 .run(&field)
                 .map_err(|error| error.in_node(label))?;

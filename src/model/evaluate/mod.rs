@@ -38,6 +38,7 @@ type Loader = dyn Fn(&Path) -> Result<Mesh, Error> + Send + Sync;
 #[derive(Clone)]
 pub struct Evaluation {
     tolerance: Option<f64>,
+    smooth: Option<bool>,
     control: Control,
     kinds: BTreeMap<String, Arc<dyn LeafKind>>,
     loader: Option<Arc<Loader>>,
@@ -81,13 +82,27 @@ impl Evaluation {
     /// Default settings: the model's own tolerance, or a thousandth of the diagonal of what is meshed.
     #[must_use]
     pub fn new() -> Self {
-        Self { tolerance: None, control: Control::default(), kinds: BTreeMap::new(), loader: None }
+        Self {
+            tolerance: None,
+            smooth: None,
+            control: Control::default(),
+            kinds: BTreeMap::new(),
+            loader: None,
+        }
     }
 
     /// Meshes within `tolerance`, whatever the model says.
     #[must_use]
     pub fn tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = Some(tolerance);
+        self
+    }
+
+    /// Whether surfaces extracted from fields are made smooth, whatever the model says: see
+    /// [`Extraction::smooth`](crate::field::Extraction::smooth).
+    #[must_use]
+    pub fn smooth(mut self, smooth: bool) -> Self {
+        self.smooth = Some(smooth);
         self
     }
 

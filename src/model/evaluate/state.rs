@@ -79,6 +79,12 @@ impl<'a> State<'a> {
         self.settings.tolerance.or(self.model.nodes[node].tolerance).or(self.model.defaults.tolerance)
     }
 
+    /// Whether the surface of a node that is extracted is made smooth.
+    pub(super) fn is_smooth(&self, node: usize) -> bool {
+        let of_model = self.model.nodes[node].smooth.or(self.model.defaults.smooth);
+        self.settings.smooth.or(of_model).unwrap_or(true)
+    }
+
     /// The plane region that an extruded node extrudes.
     pub(super) fn region(&mut self, node: usize) -> Result<Contours, Error> {
         if let Kind::Contour(outline) = &self.model.nodes[node].kind {

@@ -23,8 +23,11 @@ const RIDGE: f64 = 1e-5;
 /// Where a sample belongs.
 #[derive(Clone, Copy, Debug)]
 enum Aim {
-    Surface(u16),
-    Curve(u32),
+    /// An operand, and a fine triangle to begin the next search from.
+    Surface(u16, u32),
+    /// A chain, and the length along it to begin from.
+    Curve(u32, f64),
+    /// An operand.
     Crease(u16),
     Point(DVec3),
 }
@@ -33,8 +36,6 @@ struct Sample {
     /// Over the control points.
     row: Vec<(u32, f64)>,
     aim: Aim,
-    /// The fine triangle, or the length along the chain, to start the next search from.
-    guess: (u32, f64),
     /// The target and its normal or direction, once known.
     last: Option<(DVec3, DVec3)>,
 }
@@ -173,7 +174,7 @@ impl<'a> Fit<'a> {
     /// Samples over all faces whose surface depends on an unknown: at the vertices after one or two `steps`.
     fn take_samples(&mut self, draft: &Draft, steps: u32) {
         let mut rows = LimitRows::new(draft.cage.level(), steps);
-        let mut aims: FxHashMap<u32, (Aim, (u32, f64))> = FxHashMap::default();
+        let mut aims: FxHashMap<u32, Aim> = FxHashMap::default();
         let faces = draft.cage.faces();
         let mut moves = vec![false; self.number.len()];
         for corners in faces {
@@ -186,7 +187,7 @@ impl<'a> Fit<'a> {
             if corners.iter().any(|&v| moves[v as usize]) {
                 for inner in &rows.last().faces[f << (2 * steps)..(f + 1) << (2 * steps)] {
                     inner.iter().for_each(|&v| {
-                        aims.insert(v, (Aim::Surface(draft.operand_of[f]), (draft.seeds[f], 0.0)));
+                        aims.insert(v, Aim::Surface(draft.operand_of[f], draft.seeds[f]));
                     });
                 }
             }
@@ -201,13 +202,10 @@ impl<'a> Fit<'a> {
             let points = [(u, 0.0), (middle, 0.5), (v, 1.0), (quarter(0), 0.25), (quarter(1), 0.75)];
             for &(point, t) in &points[..if steps > 1 { 5 } else { 3 }] {
                 if let Some(aim) = aims.get_mut(&point) {
-                    let found = match sharp {
-                        Sharp::Curve(c) => Some(self.curve_aim(draft, c, [u, v], t)),
-                        Sharp::Crease(o) => Some((Aim::Crease(o), 0.0)),
+                    *aim = match sharp {
+                        Sharp::Curve(c) => self.curve_aim(draft, c, [u, v], t),
+                        Sharp::Crease(o) => Aim::Crease(o),
                     };
-                    if let Some((sharp, length)) = found {
-                        *aim = (sharp, (0, length));
-                    }
                 }
             }
         }
@@ -216,21 +214,21 @@ impl<'a> Fit<'a> {
             if draft.fixed[v]
                 && let Some(aim) = aims.get_mut(&(v as u32))
             {
-                *aim = (Aim::Point(draft.targets[v]), (0, 0.0));
+                *aim = Aim::Point(draft.targets[v]);
             }
         }
-        let mut all: Vec<(u32, (Aim, (u32, f64)))> = aims.into_iter().collect();
+        let mut all: Vec<(u32, Aim)> = aims.into_iter().collect();
         all.sort_unstable_by_key(|entry| entry.0);
-        for (v, (aim, guess)) in all {
+        for (v, aim) in all {
             let row = rows.limit(v);
             if row.iter().any(|&(w, _)| self.number[w as usize] != u32::MAX) {
-                self.samples.push(Sample { row, aim, guess, last: None });
+                self.samples.push(Sample { row, aim, last: None });
             }
         }
     }
 
     /// Where `t` of an edge of the curve belongs: its chain, and the length there.
-    fn curve_aim(&self, draft: &Draft, c: u32, ends: [u32; 2], t: f64) -> (Aim, f64) {
+    fn curve_aim(&self, draft: &Draft, c: u32, ends: [u32; 2], t: f64) -> Aim {
         let chain = &self.chains[c as usize];
         // Where chains meet, the end may name another.
         let [from, to] = ends.map(|v| match draft.on_curve[v as usize] {
@@ -241,7 +239,7 @@ impl<'a> Fit<'a> {
         if chain.closed && chain.length() > 0.0 {
             apart -= chain.length() * (apart / chain.length()).round();
         }
-        (Aim::Curve(c), from + t * apart)
+        Aim::Curve(c, from + t * apart)
     }
 
     /// Fits the unknown control points; returns the steps of the solver.
@@ -288,25 +286,25 @@ impl<'a> Fit<'a> {
     fn aim(&self, sample: &mut Sample, point: DVec3, sliding: f64) -> Option<(DVec3, glam::DMat3)> {
         match sample.aim {
             Aim::Point(target) => Some((target, glam::DMat3::IDENTITY * (10.0 * SHARP_WEIGHT))),
-            Aim::Surface(o) => {
-                let foot = self.operands[usize::from(o)].foot(point, Some(sample.guess.0))?;
+            Aim::Surface(o, guess) => {
+                let foot = self.operands[usize::from(o)].foot(point, Some(guess))?;
                 let normal = if self.reversed[usize::from(o)] { -foot.normal } else { foot.normal };
                 // The foot jumped to another sheet: the last one stays the target.
                 let (target, normal) = match sample.last {
                     Some((target, known)) if known.dot(normal) < 0.5 => (target, known),
                     _ => {
-                        sample.guess.0 = foot.triangle;
+                        sample.aim = Aim::Surface(o, foot.triangle);
                         (foot.position, normal)
                     }
                 };
                 sample.last = Some((target, normal));
                 Some((target, weighted(normal, 1.0, sliding)))
             }
-            Aim::Curve(c) => {
+            Aim::Curve(c, guess) => {
                 let chain = &self.chains[c as usize];
                 let reach = 0.1 * chain.length();
-                let near = chain.nearest(point, sample.guess.1, reach);
-                sample.guess.1 = near.length;
+                let near = chain.nearest(point, guess, reach);
+                sample.aim = Aim::Curve(c, near.length);
                 let sheets = chain.sheets[near.stretch];
                 let (target, _) =
                     polished(self.operands, sheets, near.point, near.along, 0.1 * chain.length());

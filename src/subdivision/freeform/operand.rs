@@ -36,6 +36,8 @@ pub(super) struct Foot {
 
 /// Every face is split at least this often: the vertices in between are those that a cut face's cage is chosen from.
 const LEAST_STEPS: u32 = 2;
+/// Sheets that cross differ by more than 3 degrees, here as a cosine: at 5 they are refused.
+const SAME_WAY: f64 = 0.9986;
 /// Newton steps from the nearest point of the triangles to that of the surface: each squares the error, which begins at a
 /// tenth of a fine triangle.
 const CORRECTIONS: usize = 2;
@@ -69,11 +71,19 @@ impl Operand {
         self.fine.solid()
     }
 
-    /// Whether two fine triangles are one or neighbours: the surface goes on from one to the other.
+    /// Whether the surface goes on from one of two fine triangles to the other: they have a vertex in common, or look the same way.
+    /// (Where the exact result left out what rounding makes too thin, triangles side by side are not always neighbours here.)
     pub(super) fn continues(&self, one: u32, other: u32) -> bool {
         let triangles = &self.fine.mesh().triangles;
-        let other = triangles[other as usize];
-        triangles[one as usize].iter().filter(|v| other.contains(v)).count() >= 2
+        let corners = triangles[other as usize];
+        if triangles[one as usize].iter().any(|v| corners.contains(v)) {
+            return true;
+        }
+        let [p, q] = [one, other].map(|triangle| {
+            let [a, b, c] = self.corners(triangle);
+            (b - a).cross(c - a).normalize_or_zero()
+        });
+        p.dot(q) > SAME_WAY
     }
 
     /// The nearest point of the surface to `x`; nothing if `x` is not finite. A surface that crosses itself is searched from `guess` on

@@ -3,10 +3,6 @@
 use glam::{DVec3, I64Vec3};
 use rustc_hash::FxHashMap;
 
-use super::check::Fit;
-use crate::boolean::crossing_pairs;
-use crate::{Control, Error, Mesh, Solid};
-
 /// Of the size of a triangle at fault: how far around it care is taken.
 const NEARBY: f64 = 1.5;
 
@@ -27,38 +23,16 @@ pub(super) struct Fault {
     radius: f64,
 }
 
-/// The triangles of a smoothed surface that are farther off than the tolerance, or cross others. Triangles without `free` corners are as
-/// the cells made them, and no faults. `None` if the surface encloses nothing any more.
-pub(super) fn faults(
-    mesh: &Mesh,
-    free: &[bool],
-    fits: &[Fit],
-    tolerance: f64,
-    control: &Control,
-) -> Result<Option<Vec<Fault>>, Error> {
-    let changed = |triangle: usize| mesh.triangles[triangle].iter().any(|&corner| free[corner as usize]);
-    let off = |&triangle: &usize| fits[triangle].deviation > tolerance && changed(triangle);
-    let mut found: Vec<usize> = (0..fits.len()).filter(off).collect();
-    let Ok(solid) = Solid::try_from(mesh.clone()) else { return Ok(None) };
-    for pair in crossing_pairs(&solid, control)? {
-        let pair = pair.map(|triangle| triangle as usize);
-        if pair.into_iter().any(changed) {
-            found.extend(pair);
-        }
-    }
-    found.sort_unstable();
-    found.dedup();
-    let fault = |triangle: usize| {
-        let corners = mesh.triangles[triangle].map(|k| DVec3::from_array(mesh.positions[k as usize]));
+impl Fault {
+    pub(super) fn of(corners: [DVec3; 3]) -> Self {
         let middle = corners.iter().sum::<DVec3>() / 3.0;
         let radius = corners.iter().map(|corner| corner.distance(middle)).fold(0.0, f64::max);
-        Fault { middle, radius }
-    };
-    Ok(Some(found.into_iter().map(fault).collect()))
+        Self { middle, radius }
+    }
 }
 
 /// Takes more care of the vertices that are within `times` the size of a fault.
-pub(super) fn take_care(mesh: &Mesh, faults: &[Fault], times: f64, care: &mut [Care]) {
+pub(super) fn take_care(places: &[DVec3], faults: &[Fault], times: f64, care: &mut [Care]) {
     let reach = |fault: &Fault| NEARBY * times * fault.radius;
     let largest = faults.iter().map(reach).fold(0.0, f64::max);
     if !(largest > 0.0) {
@@ -72,8 +46,7 @@ pub(super) fn take_care(mesh: &Mesh, faults: &[Fault], times: f64, care: &mut [C
     }
     let beside: Vec<I64Vec3> =
         (0..27).map(|k: i64| I64Vec3::new(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)).collect();
-    for (position, care) in mesh.positions.iter().zip(care) {
-        let place = DVec3::from_array(*position);
+    for (&place, care) in places.iter().zip(care) {
         let own = box_of(place);
         let near = beside.iter().filter_map(|&step| boxes.get(&own.wrapping_add(step))).flatten();
         if near.into_iter().any(|fault| fault.middle.distance(place) <= reach(fault)) {
@@ -88,14 +61,14 @@ mod tests {
 
     #[test]
     fn care_grows_around_faults_alone() {
-        let mesh = Mesh::new(vec![[0.0; 3], [1.0, 0.0, 0.0], [-3.1, 0.0, 0.0], [2.5, 2.5, 0.0]], Vec::new());
+        let places = [DVec3::ZERO, DVec3::X, DVec3::new(-3.1, 0.0, 0.0), DVec3::new(2.5, 2.5, 0.0)];
         let mut care = vec![Care::None; 4];
         let fault = |x: f64, radius: f64| Fault { middle: DVec3::new(x, 0.0, 0.0), radius };
-        take_care(&mesh, &[fault(0.5, 0.5), fault(-3.0, 0.1)], 1.0, &mut care);
+        take_care(&places, &[fault(0.5, 0.5), fault(-3.0, 0.1)], 1.0, &mut care);
         assert_eq!(care, [Care::Calm, Care::Calm, Care::Calm, Care::None]);
-        take_care(&mesh, &[fault(0.5, 0.4)], 1.0, &mut care);
+        take_care(&places, &[fault(0.5, 0.4)], 1.0, &mut care);
         assert_eq!(care, [Care::Frozen, Care::Frozen, Care::Calm, Care::None]);
-        take_care(&mesh, &[], 1.0, &mut care);
+        take_care(&places, &[], 1.0, &mut care);
         assert_eq!(care[3], Care::None);
     }
 }

@@ -31,47 +31,38 @@ pub(super) struct Fit {
     pub(super) angle: f64,
 }
 
-/// The fits of triangles given by their corners, at their middles alone.
-pub(super) fn fits_at_middles(
-    triangles: &[[DVec3; 3]],
-    nearby: &Nearby<'_>,
-    control: &Control,
-) -> Result<Vec<Fit>, Error> {
-    measured(triangles, nearby, control, |_| &[])
-}
-
 /// The fits of triangles given by their corners; deviations of large ones are the largest of seven places.
 pub(super) fn fits(
     triangles: &[[DVec3; 3]],
     nearby: &Nearby<'_>,
     control: &Control,
 ) -> Result<Vec<Fit>, Error> {
-    let large = LARGE * nearby.reach();
-    let is_large = |[a, b, c]: &[DVec3; 3]| a.distance(*b).max(b.distance(*c)).max(c.distance(*a)) > large;
-    measured(triangles, nearby, control, |corners| if is_large(corners) { &PLACES } else { &[] })
-}
-
-fn measured(
-    triangles: &[[DVec3; 3]],
-    nearby: &Nearby<'_>,
-    control: &Control,
-    places: impl Fn(&[DVec3; 3]) -> &'static [[f64; 3]] + Sync,
-) -> Result<Vec<Fit>, Error> {
     let pieces = work::pieces(triangles.len(), AT_ONCE, control, "check", |range| {
         let mut scratch = Scratch::default();
-        let fit = |corners: &[DVec3; 3]| {
-            let [a, b, c] = *corners;
-            let normal = (b - a).cross(c - a).normalize_or_zero();
-            let mut fit = fit_at((a + b + c) / 3.0, normal, nearby, &mut scratch);
-            for [u, v, w] in places(corners) {
-                let place = a * *u + b * *v + c * *w;
-                fit.deviation = fit.deviation.max(fit_at(place, normal, nearby, &mut scratch).deviation);
-            }
-            fit
-        };
-        Ok(triangles[range].iter().map(fit).collect::<Vec<Fit>>())
+        Ok(triangles[range].iter().map(|corners| fit(*corners, nearby, &mut scratch)).collect::<Vec<Fit>>())
     })?;
     Ok(pieces.concat())
+}
+
+/// How one triangle follows the field; the deviation of a large one is the largest of seven places.
+pub(super) fn fit([a, b, c]: [DVec3; 3], nearby: &Nearby<'_>, scratch: &mut Scratch) -> Fit {
+    let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    let places: &[[f64; 3]] = if longest > LARGE * nearby.reach() { &PLACES } else { &[] };
+    let mut fit = fit_at_middle([a, b, c], nearby, scratch);
+    for [u, v, w] in places {
+        let other = fit_at(a * *u + b * *v + c * *w, normal_of([a, b, c]), nearby, scratch);
+        fit.deviation = fit.deviation.max(other.deviation);
+    }
+    fit
+}
+
+/// The same at its middle alone.
+pub(super) fn fit_at_middle(corners: [DVec3; 3], nearby: &Nearby<'_>, scratch: &mut Scratch) -> Fit {
+    fit_at(corners.iter().sum::<DVec3>() / 3.0, normal_of(corners), nearby, scratch)
+}
+
+fn normal_of([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).normalize_or_zero()
 }
 
 /// How a facet with this normal follows the field at one of its places.

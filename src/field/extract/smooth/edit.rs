@@ -14,13 +14,15 @@ pub(super) struct Limits {
 
 /// Triangles whose normal is farther off than this, in radians, are never made: 50 degrees. Together with fixed outlines this is what
 /// keeps a patch from folding over.
-const TURNED: f64 = 50.0 * std::f64::consts::PI / 180.0;
+pub(super) const TURNED: f64 = 50.0 * std::f64::consts::PI / 180.0;
 /// Of the costs before: a flip must bring at least this, so that no two of equal worth alternate.
 const GAIN: f64 = 1e-3;
 /// Times over the edges in search of flips; nearly all are found in the first three.
 const FLIP_ROUNDS: usize = 8;
 /// Times over the edges in search of collapses. Each takes at most a third of the vertices.
 const COLLAPSE_ROUNDS: usize = 12;
+/// When one in so many triangles goes, or fewer, the search ends.
+const LAST: usize = 1000;
 /// Triangles thinner than this quality do not come of a collapse, unless there were thinner ones before.
 const QUALITY: f64 = 0.3;
 /// Radians that a triangle is off when anything better will do: 20 degrees.
@@ -110,7 +112,7 @@ pub(super) fn collapse_all(net: &mut Net, limits: Limits) {
             net.neighbours(to).for_each(|vertex| changed[vertex as usize] = true);
             collapses += 1;
         }
-        if collapses * 100 <= net.present().count() {
+        if collapses * LAST <= net.present().count() {
             break;
         }
     }

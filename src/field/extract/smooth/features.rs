@@ -26,7 +26,7 @@ const ONE_SIDE: f64 = 0.3;
 /// Of the tolerance: vertices of creases that are farther from the surface are moved.
 const OFF: f64 = 1e-3;
 /// Vertices or triangles looked at before limits are checked.
-pub(super) const AT_ONCE: usize = 128;
+const AT_ONCE: usize = 128;
 
 /// The surface with what is known of its vertices. Vertices of smooth parts are put on the zero set. Those where the field says nothing
 /// are frozen.

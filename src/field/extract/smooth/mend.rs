@@ -113,7 +113,7 @@ fn changes(net: &Net, triangle: u32, short: f64) -> Vec<Change> {
 }
 
 /// Whether `from` may go into `to`: corners stay, and creases lose nothing but along themselves.
-fn may_go(net: &Net, from: u32, to: u32, short: f64) -> bool {
+pub(super) fn may_go(net: &Net, from: u32, to: u32, short: f64) -> bool {
     let [own, other] = [from, to].map(|vertex| net.vertex(vertex));
     match own.kind {
         Kind::Free => true,

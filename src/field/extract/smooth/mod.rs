@@ -10,46 +10,62 @@
 //! 3. where triangles still face another way than the field, their longest edge gets a new vertex, if it is longer than the smallest
 //!    cell;
 //! 4. triangles that face quite another way than the surface, most of them where a crease passes, are mended one by one (`mend`);
-//! 5. the field is asked at the middles of all triangles, and the exact test for crossings is run (`check`). Should there be a
-//!    crossing, or a triangle farther off than the tolerance, all begins again from the cells' surface, and the vertices around are moved
-//!    and left out only where triangles face the wrong way; then not at all; in the end the cells' surface is the result.
+//! 5. the field is asked at all triangles (`check`), and the exact test for crossings is run.
+//!
+//! This is done piece by piece (`pieces`), each for itself, and again with the pieces divided elsewhere. Should there be a crossing, or
+//! a triangle farther off than the tolerance, the pieces it is in are begun again, and the vertices around it are moved and left out only
+//! where triangles face the wrong way; then not at all (`care`); in the end the piece stays as it was, and no other knows of it.
 //!
 //! Creases stay: their vertices do not move, and are left out only where the crease is as good as straight without them.
 
 mod care;
 mod check;
+mod clear;
 mod cost;
 mod edit;
 mod features;
 mod mend;
 mod nearby;
 mod net;
+mod pieces;
 mod place;
 mod sharpen;
 
 use glam::DVec3;
 
-use care::Care;
-use check::Fit;
+use care::Fault;
 use edit::Limits;
 pub(super) use nearby::Nearby;
 use net::{Kind, Net};
+use pieces::{Patch, Piece, Surface};
 
-use crate::{Control, Error, Mesh};
+use crate::boolean::crossing_pairs;
+use crate::field::expression::Scratch;
+use crate::field::work::pieces as pieces_of_work;
+use crate::{Control, Error, Mesh, Solid};
 
 /// Of the tolerance: how far the surface may bulge out of an edge that a flip or a collapse makes. The middle of a triangle is up to
 /// four thirds as far from the surface as the middles of its edges, and the estimate from the normals of two ends is no bound.
 const SAG: f64 = 0.4;
+/// Of the tolerance: vertices no farther apart than this are on top of each other.
+const ON_TOP: f64 = 0.1;
 /// Degrees that the normals of triangles may be off after a collapse.
 const COLLAPSED_ANGLE: f64 = 3.0;
 /// Degrees off above which triangles are divided.
 const DIVIDED_ANGLE: f64 = 5.0;
+/// Degrees off above which they are not: what faces so far away does not bend with the surface, but folds, or bridges a crease, and so do
+/// its halves.
+const FOLDED_ANGLE: f64 = 50.0;
 /// Times that triangles are divided: each halves an edge.
 const DIVISIONS: usize = 4;
 /// Times that single triangles are mended, and vertices around them moved.
 const MENDINGS: usize = 3;
-/// Times that everything is tried, at most, each with more vertices frozen than before.
-const ATTEMPTS: usize = 4;
+/// Times that a piece is tried, at most, each with more vertices left as they were than before; then the piece is left as it was.
+const ATTEMPTS: usize = 5;
+/// Triangles of a piece, at most.
+const MOST: usize = 8000;
+/// Where pieces are halved, each time that the surface is worked over: seams of one time are within the pieces of the next.
+const PARTS: [f64; 3] = [0.5, 0.31, 0.42];
 
 /// Bytes held for each vertex of the cells' surface: the vertex twice, its star, and two triangles with the ways they face.
 const BYTES: usize = 500;
@@ -63,6 +79,16 @@ pub(super) struct Smooth {
     pub(super) normal_deviation: f64,
 }
 
+/// What smoothing goes by.
+#[derive(Clone, Copy)]
+struct Work<'a> {
+    nearby: &'a Nearby<'a>,
+    tolerance: f64,
+    /// No edge shorter than this is divided.
+    floor: f64,
+    control: &'a Control,
+}
+
 /// The surface made smooth, within `tolerance`; no edge shorter than `floor` is divided.
 pub(super) fn smoothed(
     mesh: Mesh,
@@ -72,39 +98,26 @@ pub(super) fn smoothed(
     control: &Control,
 ) -> Result<Smooth, Error> {
     let _account = control.reserve((mesh.positions.len() * BYTES) as u64)?;
-    let known = features::net(&mesh, nearby, control)?;
-    let mut care = vec![Care::None; mesh.positions.len()];
-    for attempt in 0..ATTEMPTS {
-        let mut net = known.clone();
-        for ((vertex, position), care) in net.vertices.iter_mut().zip(&mesh.positions).zip(&care) {
-            match care {
-                Care::None => {}
-                Care::Calm => vertex.calm = true,
-                Care::Frozen => *vertex = features::frozen_at(DVec3::from_array(*position)),
-            }
+    let work = Work { nearby, tolerance, floor, control };
+    let mut surface = Surface::new(features::net(&mesh, nearby, control)?, &mesh);
+    for part in PARTS {
+        let groups = surface.divided(MOST, part);
+        match work.worked_over(&surface, &groups)? {
+            Some(better) => surface = better,
+            None => break,
         }
-        sharpen::sharpen(&mut net, nearby, control)?;
-        improve(&mut net, nearby, tolerance, floor, control)?;
-        let (smooth, free) = finished(&net);
-        let fits = check::fits(&corners_of(&smooth), nearby, control)?;
-        let Some(faults) = care::faults(&smooth, &free, &fits, tolerance, control)? else { break };
-        if faults.is_empty() {
-            return Ok(measured(smooth, &fits));
+        if groups.len() < 2 {
+            break;
         }
-        care::take_care(&mesh, &faults, f64::from(1u32 << attempt.min(4)), &mut care);
     }
-    rough(mesh, nearby, control)
+    rough(surface.mesh(), nearby, control)
 }
 
 /// The surface as it is, measured.
 pub(super) fn rough(mesh: Mesh, nearby: &Nearby<'_>, control: &Control) -> Result<Smooth, Error> {
     let fits = check::fits(&corners_of(&mesh), nearby, control)?;
-    Ok(measured(mesh, &fits))
-}
-
-fn measured(mesh: Mesh, fits: &[Fit]) -> Smooth {
     let deviation = fits.iter().map(|fit| fit.deviation).fold(0.0, f64::max);
-    Smooth { mesh, deviation, normal_deviation: check::usual_angle(fits) }
+    Ok(Smooth { mesh, deviation, normal_deviation: check::usual_angle(&fits) })
 }
 
 fn corners_of(mesh: &Mesh) -> Vec<[DVec3; 3]> {
@@ -112,90 +125,124 @@ fn corners_of(mesh: &Mesh) -> Vec<[DVec3; 3]> {
     mesh.triangles.iter().map(|corners| corners.map(place)).collect()
 }
 
-/// Steps 2 and 3.
-fn improve(
-    net: &mut Net,
-    nearby: &Nearby<'_>,
-    tolerance: f64,
-    floor: f64,
-    control: &Control,
-) -> Result<(), Error> {
-    let limits = Limits { sag: SAG * tolerance, angle: COLLAPSED_ANGLE.to_radians() };
-    edit::flip_all(net, limits);
-    control.check()?;
-    edit::collapse_all(net, limits);
-    control.check()?;
-    edit::flip_all(net, limits);
-    place::relax(net, nearby, limits, control)?;
-    edit::flip_all(net, limits);
-    edit::collapse_all(net, limits);
-    edit::flip_all(net, limits);
-    for _ in 0..DIVISIONS {
-        place::relax(net, nearby, limits, control)?;
-        edit::flip_all(net, limits);
-        let edges = to_divide(net, nearby, tolerance, floor, control)?;
-        if edges.is_empty() || place::split(net, &edges, nearby, control)? == 0 {
-            break;
+impl Work<'_> {
+    /// The surface worked over, piece by piece: once all, and those with faults again, with more care. Nothing if it encloses nothing any
+    /// more.
+    fn worked_over(&self, surface: &Surface, groups: &[Vec<u32>]) -> Result<Option<Surface>, Error> {
+        let mut pieces: Vec<Piece> = groups.iter().map(|group| Piece::new(surface, group)).collect();
+        let mut patches: Vec<(Patch, Vec<Fault>)> = Vec::new();
+        let mut open: Vec<usize> = (0..pieces.len()).collect();
+        loop {
+            // 1. Pieces that are new, or were at fault.
+            let made: Vec<Vec<(Patch, Vec<Fault>)>> =
+                pieces_of_work(open.len(), 1, self.control, "smoothing", |range| {
+                    open[range].iter().map(|&index| self.patch(surface, &pieces[index])).collect()
+                })?;
+            let made: Vec<(Patch, Vec<Fault>)> = made.into_iter().flatten().collect();
+            if patches.is_empty() {
+                patches = made;
+            } else {
+                for (&index, patch) in open.iter().zip(made) {
+                    patches[index] = patch;
+                }
+            }
+            // 2. Triangles that cross others, where one of them is new.
+            let (joined, origins) = pieces::joined(surface, &pieces, patches.iter().map(|(patch, _)| patch));
+            let mesh = joined.mesh();
+            let corners = corners_of(&mesh);
+            let Ok(solid) = Solid::try_from(mesh) else { return Ok(None) };
+            for pair in crossing_pairs(&solid, self.control)? {
+                for (piece, changed) in pair.map(|triangle| origins[triangle as usize]) {
+                    if changed {
+                        let faults = pair.map(|triangle| Fault::of(corners[triangle as usize]));
+                        patches[piece as usize].1.extend(faults);
+                    }
+                }
+            }
+            // 3. Pieces at fault are done again.
+            open = (0..pieces.len()).filter(|&index| !patches[index].1.is_empty()).collect();
+            if open.is_empty() {
+                return Ok(Some(joined));
+            }
+            for &index in &open {
+                pieces[index].times += 1;
+                pieces[index].take_care(surface, &patches[index].1, ATTEMPTS);
+            }
         }
-        edit::flip_all(net, limits);
     }
-    let mut hopeless = mend::Hopeless::default();
-    for _ in 0..MENDINGS {
-        mend::mend(net, limits, tolerance, &mut hopeless);
-        sharpen::sharpen(net, nearby, control)?;
+
+    /// What is made of a piece, and its triangles that are too far from the field.
+    fn patch(&self, surface: &Surface, piece: &Piece) -> Result<(Patch, Vec<Fault>), Error> {
+        let mut net = piece.net(surface);
+        let mut scratch = Scratch::default();
+        if !piece.is_left() {
+            self.improve(&mut net, &mut scratch)?;
+        }
+        let patch = Patch::of(&net);
+        let is_off =
+            |corners: &[DVec3; 3]| check::fit(*corners, self.nearby, &mut scratch).deviation > self.tolerance;
+        let faults = patch.changed().filter(is_off).map(Fault::of).collect();
+        Ok((patch, faults))
+    }
+
+    /// Steps 2 to 4.
+    fn improve(&self, net: &mut Net, scratch: &mut Scratch) -> Result<(), Error> {
+        let Self { nearby, tolerance, control, .. } = *self;
+        let limits = Limits { sag: SAG * tolerance, angle: COLLAPSED_ANGLE.to_radians() };
+        clear::clear(net, ON_TOP * tolerance);
+        sharpen::sharpen(net, nearby, scratch);
         edit::flip_all(net, limits);
         edit::collapse_all(net, limits);
-        place::relax(net, nearby, limits, control)?;
+        control.check()?;
         edit::flip_all(net, limits);
-    }
-    Ok(())
-}
-
-/// The edges to get a new vertex: the longest of every triangle that is too far off, unless it is a crease or short.
-fn to_divide(
-    net: &Net,
-    nearby: &Nearby<'_>,
-    tolerance: f64,
-    floor: f64,
-    control: &Control,
-) -> Result<Vec<[u32; 2]>, Error> {
-    let present: Vec<[u32; 3]> = net
-        .present()
-        .map(|(_, corners)| corners)
-        .filter(|corners| corners.iter().all(|&c| !net.is(c, Kind::Frozen)))
-        .collect();
-    let places: Vec<[DVec3; 3]> =
-        present.iter().map(|corners| corners.map(|corner| net.place(corner))).collect();
-    let fits = check::fits_at_middles(&places, nearby, control)?;
-    let mut edges = Vec::new();
-    for ([a, b, c], fit) in present.into_iter().zip(fits) {
-        if !(fit.angle > DIVIDED_ANGLE.to_radians() || fit.deviation > 0.9 * tolerance) {
-            continue;
+        place::relax(net, nearby, limits, scratch, control)?;
+        edit::flip_all(net, limits);
+        edit::collapse_all(net, limits);
+        edit::flip_all(net, limits);
+        for _ in 0..DIVISIONS {
+            place::relax(net, nearby, limits, scratch, control)?;
+            edit::flip_all(net, limits);
+            let edges = self.to_divide(net, scratch);
+            if edges.is_empty() || place::split(net, &edges, nearby, scratch) == 0 {
+                break;
+            }
+            edit::flip_all(net, limits);
         }
-        let length = |[x, y]: [u32; 2]| net.place(x).distance(net.place(y));
-        let free = |[x, y]: [u32; 2]| net.beside(x, y).is_some_and(|beside| !net.is_crease(x, y, beside));
-        let longest = [[a, b], [b, c], [c, a]]
-            .into_iter()
-            .filter(|&edge| length(edge) > floor && free(edge))
-            .max_by(|&x, &y| length(x).total_cmp(&length(y)));
-        edges.extend(longest.map(|[x, y]| [x.min(y), x.max(y)]));
-    }
-    edges.sort_unstable();
-    edges.dedup();
-    Ok(edges)
-}
-
-/// The mesh without what was removed, and whether its vertices are not frozen.
-fn finished(net: &Net) -> (Mesh, Vec<bool>) {
-    let mut number = vec![u32::MAX; net.vertices.len()];
-    let (mut positions, mut free) = (Vec::new(), Vec::new());
-    for (vertex, number) in (0..).zip(&mut number) {
-        if !net.star(vertex).is_empty() {
-            *number = positions.len() as u32;
-            positions.push(net.place(vertex).to_array());
-            free.push(!net.is(vertex, Kind::Frozen));
+        let mut hopeless = mend::Hopeless::default();
+        for _ in 0..MENDINGS {
+            mend::mend(net, limits, tolerance, &mut hopeless);
+            sharpen::sharpen(net, nearby, scratch);
+            edit::flip_all(net, limits);
+            edit::collapse_all(net, limits);
+            place::relax(net, nearby, limits, scratch, control)?;
+            edit::flip_all(net, limits);
         }
+        Ok(())
     }
-    let triangles = net.present().map(|(_, corners)| corners.map(|corner| number[corner as usize])).collect();
-    (Mesh::new(positions, triangles), free)
+
+    /// The edges to get a new vertex: the longest of every triangle that is too far off, unless it is a crease or short.
+    fn to_divide(&self, net: &Net, scratch: &mut Scratch) -> Vec<[u32; 2]> {
+        let mut edges = Vec::new();
+        for (_, corners) in net.present() {
+            if corners.iter().any(|&corner| net.is(corner, Kind::Frozen)) {
+                continue;
+            }
+            let fit = check::fit_at_middle(corners.map(|corner| net.place(corner)), self.nearby, scratch);
+            let bends = fit.angle > DIVIDED_ANGLE.to_radians() && fit.angle < FOLDED_ANGLE.to_radians();
+            if !bends && fit.deviation <= 0.9 * self.tolerance {
+                continue;
+            }
+            let length = |[x, y]: [u32; 2]| net.place(x).distance(net.place(y));
+            let free = |[x, y]: [u32; 2]| net.beside(x, y).is_some_and(|beside| !net.is_crease(x, y, beside));
+            let [a, b, c] = corners;
+            let longest = [[a, b], [b, c], [c, a]]
+                .into_iter()
+                .filter(|&edge| length(edge) > self.floor && free(edge))
+                .max_by(|&x, &y| length(x).total_cmp(&length(y)));
+            edges.extend(longest.map(|[x, y]| [x.min(y), x.max(y)]));
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
 }

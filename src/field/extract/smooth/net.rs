@@ -62,6 +62,8 @@ pub(super) struct Net {
     /// For every triangle which way the surface there faces: it tells which of several normals of a corner is meant.
     sides: Vec<DVec3>,
     stars: Vec<Star>,
+    /// Whether triangles around a vertex have changed since it was settled.
+    stirred: Vec<bool>,
     /// What changes on trial began from.
     before: Option<Before>,
 }
@@ -83,7 +85,8 @@ impl Net {
                 stars[corner as usize].push(number);
             }
         }
-        Self { vertices, triangles, sides, stars, before: None }
+        let stirred = vec![true; vertices.len()];
+        Self { vertices, triangles, sides, stars, stirred, before: None }
     }
 
     pub(super) fn vertex(&self, vertex: u32) -> &Vertex {
@@ -178,6 +181,32 @@ impl Net {
         })
     }
 
+    /// Whether anything around a vertex has changed since [`Net::settle`].
+    pub(super) fn has_stirred(&self, vertex: u32) -> bool {
+        self.stirred[vertex as usize]
+    }
+
+    /// Notes that a vertex is well where it is, with the triangles that it has.
+    pub(super) fn settle(&mut self, vertex: u32) {
+        self.stirred[vertex as usize] = false;
+    }
+
+    /// Moves a vertex.
+    pub(super) fn displace(&mut self, vertex: u32, moved: Vertex) {
+        self.vertices[vertex as usize] = moved;
+        self.stir(vertex);
+    }
+
+    /// Notes that triangles of `vertex` have changed.
+    fn stir(&mut self, vertex: u32) {
+        self.stirred[vertex as usize] = true;
+        for &triangle in &self.stars[vertex as usize] {
+            for corner in self.triangles[triangle as usize] {
+                self.stirred[corner as usize] = true;
+            }
+        }
+    }
+
     /// Begins changes on trial, which [`Net::undo`] takes back.
     pub(super) fn try_out(&mut self) {
         let (vertices, count) = (self.vertices.len(), self.triangles.len());
@@ -211,6 +240,7 @@ impl Net {
         }
         self.vertices.truncate(before.vertices);
         self.stars.truncate(before.vertices);
+        self.stirred.truncate(before.vertices);
         self.triangles.truncate(before.count);
         self.sides.truncate(before.count);
     }
@@ -241,6 +271,9 @@ impl Net {
         self.leave(b, left);
         self.stars[c as usize].push(right);
         self.stars[d as usize].push(left);
+        for corner in [a, b, c, d] {
+            self.stirred[corner as usize] = true;
+        }
     }
 
     /// Moves `a` into its neighbour `b`. The two triangles between them go.
@@ -269,6 +302,7 @@ impl Net {
             *corners = corners.map(|corner| if corner == a { b } else { corner });
             self.stars[b as usize].push(triangle);
         }
+        self.stir(b);
     }
 
     /// Puts a vertex on the edge from `a` to `b`.
@@ -288,6 +322,8 @@ impl Net {
         self.stars[c as usize].push(first);
         self.stars[d as usize].push(first + 1);
         self.stars.push(SmallVec::from_slice(&[left, right, first, first + 1]));
+        self.stirred.push(true);
+        self.stir(middle);
     }
 
     fn leave(&mut self, vertex: u32, triangle: u32) {

@@ -1,4 +1,4 @@
-//! Vertices moved along the surface, and new ones put on it, where the field has to be asked: in parallel.
+//! Vertices moved along the surface, and new ones put on it, where the field has to be asked.
 
 use glam::DVec3;
 
@@ -7,56 +7,38 @@ use super::edit::Limits;
 use super::nearby::{Foot, Nearby};
 use super::net::{Kind, Net, Vertex};
 use crate::field::expression::Scratch;
-use crate::field::work;
 use crate::{Control, Error};
 
 /// Of the way to the middle of its neighbours: what a vertex is moved, and the second try.
 const STEPS: [f64; 2] = [1.0, 0.4];
 /// Of the costs before: what a move must bring, so that what is good already costs nothing.
 const GAIN: f64 = 0.03;
-/// Vertices moved before limits are checked.
+/// Vertices looked at before limits are checked.
 const AT_ONCE: usize = 64;
 
-/// Moves the vertices of smooth parts towards the middles of their neighbours, along the surface, where their triangles get better.
-/// Neighbours are never moved at the same time.
+/// Moves the vertices of smooth parts towards the middles of their neighbours, along the surface, where their triangles get better. Those
+/// that were asked before, and around which nothing has changed since, are not asked again: what is asked for is the field, which costs most.
 pub(super) fn relax(
     net: &mut Net,
     nearby: &Nearby<'_>,
     limits: Limits,
+    scratch: &mut Scratch,
     control: &Control,
 ) -> Result<(), Error> {
-    for group in independent(net) {
-        let moved = work::pieces(group.len(), AT_ONCE, control, "relaxation", |range| {
-            let mut scratch = Scratch::default();
-            let foot = |&vertex: &u32| better_place(net, vertex, nearby, limits, &mut scratch);
-            Ok(group[range].iter().map(foot).collect::<Vec<Option<Foot>>>())
-        })?;
-        for (&vertex, foot) in group.iter().zip(moved.into_iter().flatten()) {
-            if let Some(foot) = foot {
-                net.vertices[vertex as usize] = Vertex::free(foot.place, foot.outward);
-            }
+    for vertex in 0..net.vertices.len() as u32 {
+        let may_move = net.is(vertex, Kind::Free) && !net.vertex(vertex).calm && !net.star(vertex).is_empty();
+        if !may_move || !net.has_stirred(vertex) {
+            continue;
+        }
+        match better_place(net, vertex, nearby, limits, scratch) {
+            Some(foot) => net.displace(vertex, Vertex::free(foot.place, foot.outward)),
+            None => net.settle(vertex),
+        }
+        if vertex as usize % AT_ONCE == 0 {
+            control.check()?;
         }
     }
     Ok(())
-}
-
-/// The vertices that may move, in groups without neighbours.
-fn independent(net: &Net) -> Vec<Vec<u32>> {
-    let mut groups: Vec<Vec<u32>> = Vec::new();
-    let mut group_of = vec![usize::MAX; net.vertices.len()];
-    for vertex in 0..net.vertices.len() as u32 {
-        if !net.is(vertex, Kind::Free) || net.vertex(vertex).calm || net.star(vertex).is_empty() {
-            continue;
-        }
-        let taken = |group: usize| net.neighbours(vertex).any(|other| group_of[other as usize] == group);
-        let group = (0..).find(|&group| !taken(group)).unwrap_or(0);
-        if group == groups.len() {
-            groups.push(Vec::new());
-        }
-        groups[group].push(vertex);
-        group_of[vertex as usize] = group;
-    }
-    groups
 }
 
 fn better_place(
@@ -110,29 +92,17 @@ fn better_place(
 }
 
 /// Splits the given edges in the middle, on the surface. How many were.
-pub(super) fn split(
-    net: &mut Net,
-    edges: &[[u32; 2]],
-    nearby: &Nearby<'_>,
-    control: &Control,
-) -> Result<usize, Error> {
-    let middles = work::pieces(edges.len(), AT_ONCE, control, "new vertices", |range| {
-        let mut scratch = Scratch::default();
-        let foot = |&[a, b]: &[u32; 2]| nearby.foot((net.place(a) + net.place(b)) * 0.5, &mut scratch);
-        Ok(edges[range].iter().map(foot).collect::<Vec<Option<Foot>>>())
-    })?;
+pub(super) fn split(net: &mut Net, edges: &[[u32; 2]], nearby: &Nearby<'_>, scratch: &mut Scratch) -> usize {
     let mut count = 0;
-    for (&[a, b], foot) in edges.iter().zip(middles.into_iter().flatten()) {
-        let (Some(foot), Some(beside)) = (foot, net.beside(a, b)) else { continue };
-        if net.is_frozen(beside) {
-            continue;
-        }
+    for &[a, b] in edges {
+        let middle = (net.place(a) + net.place(b)) * 0.5;
+        let (Some(foot), Some(beside)) = (nearby.foot(middle, scratch), net.beside(a, b)) else { continue };
         let length = net.place(a).distance(net.place(b));
-        if foot.place.distance((net.place(a) + net.place(b)) * 0.5) > 0.4 * length {
+        if net.is_frozen(beside) || foot.place.distance(middle) > 0.4 * length {
             continue;
         }
         net.split(a, b, beside, Vertex::free(foot.place, foot.outward));
         count += 1;
     }
-    Ok(count)
+    count
 }

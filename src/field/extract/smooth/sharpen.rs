@@ -8,12 +8,10 @@ use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 
 use super::super::solve::least_step;
-use super::features::{AT_ONCE, LEAST_JUMP, count_creases};
+use super::features::{LEAST_JUMP, count_creases};
 use super::nearby::Nearby;
 use super::net::{Kind, Net, Vertex};
 use crate::field::expression::Scratch;
-use crate::field::work;
-use crate::{Control, Error};
 
 /// Of the way to the ends of the edge: how near to the crease its sides are looked at, step by step. Tangent planes are off by the
 /// square of that.
@@ -23,42 +21,34 @@ const NEARER: [f64; 4] = [0.5, 0.2, 0.05, 0.01];
 const KEPT: f64 = 0.5;
 /// Of the length of the edge: farther from its middle the crease is not looked for. (In a narrow wedge the crease is beside the edge, past
 /// an end.)
-const ASIDE: f64 = 1.5;
+const ASIDE: f64 = 6.0;
 
 /// Of the tolerance: how far from the surface the place found may be.
 const OFF: f64 = 0.1;
 
 /// Splits the edges that bridge a crease.
-pub(super) fn sharpen(net: &mut Net, nearby: &Nearby<'_>, control: &Control) -> Result<(), Error> {
+pub(super) fn sharpen(net: &mut Net, nearby: &Nearby<'_>, scratch: &mut Scratch) {
     let bridges: Vec<[u32; 2]> =
         net.edges().filter(|&[a, b]| may_bridge(net.vertex(a), net.vertex(b))).collect();
-    let found = work::pieces(bridges.len(), AT_ONCE, control, "creases", |range| {
-        let mut scratch = Scratch::default();
-        let crease = |&[a, b]: &[u32; 2]| on_crease(net.vertex(a), net.vertex(b), nearby, &mut scratch);
-        Ok(bridges[range].iter().map(crease).collect::<Vec<Option<Vertex>>>())
-    })?;
     let first = net.vertices.len() as u32;
-    for (&[a, b], vertex) in bridges.iter().zip(found.into_iter().flatten()) {
-        if let (Some(vertex), Some(beside)) = (vertex, net.beside(a, b))
-            && !net.is_frozen(beside)
-        {
+    for [a, b] in bridges {
+        let Some(beside) = net.beside(a, b).filter(|&beside| !net.is_frozen(beside)) else { continue };
+        if let Some(vertex) = on_crease(net.vertex(a), net.vertex(b), nearby, scratch) {
             net.split(a, b, beside, vertex);
         }
     }
     // The pieces of bridging triangles face the ways of their corners on smooth parts, or as the field says.
-    let mut scratch = Scratch::default();
     for vertex in first..net.vertices.len() as u32 {
         for triangle in net.star(vertex).to_vec() {
             let corners = net.corners(triangle).map(|corner| net.vertex(corner));
             let free = corners.iter().filter(|corner| corner.kind == Kind::Free);
             let mean = free.map(|corner| corner.normals[0]).sum::<DVec3>().try_normalize();
             let middle = corners.iter().map(|corner| corner.place).sum::<DVec3>() / 3.0;
-            let side = mean.or_else(|| nearby.look(middle, &mut scratch).map(|look| look.outward));
+            let side = mean.or_else(|| nearby.look(middle, scratch).map(|look| look.outward));
             net.turn(triangle, side.unwrap_or(net.side(triangle)));
         }
     }
     count_creases(net);
-    Ok(())
 }
 
 /// Whether the ends are on smooth parts that face different ways.
