@@ -98,10 +98,11 @@ fn embed(value: &Bound<'_, PyAny>) -> PyResult<Embed> {
     match value.extract::<String>()?.as_str() {
         "never" => Ok(Embed::Never),
         "where-needed" => Ok(Embed::WhereNeeded),
+        "near-cut" => Ok(Embed::NearCut),
         "double" => Ok(Embed::OnGrid(Grid::Double)),
         "single" => Ok(Embed::OnGrid(Grid::Single)),
         other => Err(failures::argument(&format!(
-            "unknown embed '{other}': known are never, where-needed, double, single"
+            "unknown embed '{other}': known are never, where-needed, near-cut, double, single"
         ))),
     }
 }

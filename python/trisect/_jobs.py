@@ -141,6 +141,9 @@ def _options(job: Job, name: str, verb: Verb) -> Tuple[Dict[str, Any], Dict[str,
             raise ArgumentError(f"unknown option {key!r} of {name}: known are {known}")
     if given.get("cut_faces") == "keep":
         given["cut_faces"] = "tool"
+    if "embed" in verb.settings:
+        # What the program does by itself.
+        given.setdefault("embed", "near-cut")
     if given.get("embed") is True and ending(str(job.get("output"))) in ("stl", "glb", "gltf"):
         # What the file can hold, as the program does.
         given["embed"] = "single"

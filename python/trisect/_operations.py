@@ -28,9 +28,9 @@ PlaneLike = Union[str, Tuple[str, float], Tuple[Sequence[float], float], Sequenc
 numbers, or three points. Above is where the normal points, or from where the points run counter-clockwise."""
 
 
-def _core(operand: SolidLike, place: int, count: int) -> _trisect.Core:
+def _core(operand: SolidLike, place: int, count: int, limits: Optional[Dict[str, Any]] = None) -> _trisect.Core:
     try:
-        core = core_of(operand)
+        core = core_of(operand, limits)
     except Error as error:
         if error.operand is None:
             error.operand = error._data["operand"] = place
@@ -42,12 +42,21 @@ def _core(operand: SolidLike, place: int, count: int) -> _trisect.Core:
     return core
 
 
-def cores(operands: Sequence[SolidLike]) -> List[_trisect.Core]:
-    """What stands behind operands; a single list of operands is opened."""
+_OF_OPERANDS = ("deadline", "memory", "threads")
+
+
+def _limits_of(given: Optional[Dict[str, Any]]) -> Optional[Dict[str, Any]]:
+    """What of a call's settings is for making solids of its operands too."""
+    return {key: given[key] for key in _OF_OPERANDS if key in given} or None if given else None
+
+
+def cores(operands: Sequence[SolidLike], given: Optional[Dict[str, Any]] = None) -> List[_trisect.Core]:
+    """What stands behind operands; a single list of operands is opened. Settings of the call hold for making solids of them."""
     listed: Sequence[Any] = operands
     if len(operands) == 1 and _is_list(operands[0]):
         listed = list(operands[0])
-    return [_core(operand, place, len(listed)) for place, operand in enumerate(listed)]
+    limits = _limits_of(given)
+    return [_core(operand, place, len(listed), limits) for place, operand in enumerate(listed)]
 
 
 def _is_list(operand: Any) -> bool:
@@ -59,7 +68,8 @@ def _is_list(operand: Any) -> bool:
 
 def run(operation: str, operands: Sequence[SolidLike], given: Mapping[str, Any]) -> Solid:
     """One operation."""
-    return Solid._of(_trisect.combine(operation, cores(operands), settings(given)))
+    made = settings(given)
+    return Solid._of(_trisect.combine(operation, cores(operands, made), made))
 
 
 def union(*operands: SolidLike, **given: "Unpack[Settings]") -> Solid:
@@ -135,8 +145,9 @@ def combine(expression: Union[str, Sequence[str]], *operands: SolidLike, **named
     names += named
     listed += named.values()
     texts = [expression] if isinstance(expression, str) else list(expression)
-    made = [_core(operand, place, len(listed)) for place, operand in enumerate(listed)]
-    results = [Solid._of(core) for core in _trisect.evaluate(texts, names, made, settings(given))]
+    wanted = settings(given)
+    made = cores(listed, wanted) if listed else []
+    results = [Solid._of(core) for core in _trisect.evaluate(texts, names, made, wanted)]
     return results[0] if isinstance(expression, str) else results
 
 
@@ -159,7 +170,8 @@ def resolve(operand: SolidLike, **given: "Unpack[Settings]") -> Solid:
     >>> both.volume, trisect.resolve(both).volume, trisect.resolve(both, rule="even-odd").volume
     (2.0, 1.875, 1.75)
     """
-    [core] = _trisect.evaluate(["a"], ["a"], [_core(operand, 0, 1)], settings(given))
+    wanted = settings(given)
+    [core] = _trisect.evaluate(["a"], ["a"], [_core(operand, 0, 1, _limits_of(wanted))], wanted)
     return Solid._of(core)
 
 

@@ -40,7 +40,7 @@ class Settings(Limits, total=False):
     ``snap``
         a distance, in units of the coordinates: vertices, edges and faces no further apart are made the same before.
     ``embed``
-        what becomes of crossings that rounding makes: "never", "where-needed", "double" or "single" (the numbers that
+        what becomes of crossings that rounding makes: "never", "where-needed", "near-cut", "double" or "single" (the numbers that
         coordinates are to be); ``True`` is "double".
     ``assume_clean``
         operands are taken not to cross themselves.

@@ -697,19 +697,19 @@ def _surface_of(source: Any, faces: Any) -> _trisect.Surface:
     return found
 
 
-def core_of(source: SolidLike) -> Optional[_trisect.Core]:
-    """What stands behind a solid, made of anything that one can be made of; ``None`` for anything else."""
+def core_of(source: SolidLike, limits: Optional[Dict[str, Any]] = None) -> Optional[_trisect.Core]:
+    """What stands behind a solid, made under limits of anything that one can be made of; ``None`` for anything else."""
     if isinstance(source, Solid):
         core: _trisect.Core = source._core
         return core
     if isinstance(source, _Surface):
-        return _passed(source._surface(), None, None)
+        return _passed(source._surface(), None, limits)
     if isinstance(source, tuple) and len(source) == 2:
         # Read once: a mesh between would be a copy more.
         corners, sizes = _arrays.faces(source[1])
-        return _trisect.Core.of_arrays(_arrays.points(source[0]), corners, sizes)
+        return _trisect.Core.of_arrays(_arrays.points(source[0]), corners, sizes, None, limits)
     surface = _convert.surface_of(source)
-    return None if surface is None else _passed(surface, None, None)
+    return None if surface is None else _passed(surface, None, limits)
 
 
 def _run(operation: str, operands: Tuple[SolidLike, ...], given: Mapping[str, Any]) -> Solid:
