@@ -205,9 +205,9 @@ impl<'s, 'a> Builder<'s, 'a> {
                 vertex.keep = vertex.fixed;
                 vertex.step = u8::MAX;
                 vertex.control = None;
-                // Where two sheets of one surface meet no single normal is right.
+                // Where two layers of one surface meet no single normal is right.
                 if chain.is_of_one() {
-                    vertex.set_normal(usize::from(chain.sheets[0][0].operand), DVec3::ZERO);
+                    vertex.set_normal(usize::from(chain.layers[0][0].operand), DVec3::ZERO);
                 }
                 if i + 1 < n || chain.closed {
                     self.work.sharp.insert(key(numbers[i], numbers[(i + 1) % n]), Sharp::Curve(c as u32));

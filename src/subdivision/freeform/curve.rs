@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec3};
 
-use super::meetings::{Meeting, Sheet};
+use super::meetings::{Layer, Meeting};
 use super::operand::Operand;
 
 /// A chain of the curve.
@@ -15,7 +15,7 @@ pub(super) struct Chain {
     /// Vertices of the exact result, in the same order.
     pub(super) vertices: Vec<u32>,
     /// For each stretch between points the surfaces that meet there.
-    pub(super) sheets: Vec<[Sheet; 2]>,
+    pub(super) layers: Vec<[Layer; 2]>,
     pub(super) closed: bool,
     /// Length of the chain up to each point, and in all.
     pub(super) lengths: Vec<f64>,
@@ -46,7 +46,7 @@ pub(super) struct Near {
 /// sine of the angle between them. Where they are nearly one, or the way is longer than `most`, `x` stays.
 pub(super) fn polished(
     operands: &[Operand],
-    sheets: [Sheet; 2],
+    layers: [Layer; 2],
     x: DVec3,
     along: DVec3,
     most: f64,
@@ -55,7 +55,7 @@ pub(super) fn polished(
     let mut sine = 1.0;
     for _ in 0..ROUNDS {
         let [a, b] =
-            sheets.map(|sheet| operands[usize::from(sheet.operand)].foot(point, Some(sheet.triangle)));
+            layers.map(|layer| operands[usize::from(layer.operand)].foot(point, Some(layer.triangle)));
         let (Some(a), Some(b)) = (a, b) else {
             return (x, sine);
         };
@@ -79,7 +79,7 @@ pub(super) fn polished(
 impl Chain {
     /// A chain from vertices of the exact result, polished; ends stay.
     pub(super) fn new(operands: &[Operand], positions: &[[f64; 3]], meeting: Meeting, most: f64) -> Self {
-        let Meeting { mut vertices, sheets } = meeting;
+        let Meeting { mut vertices, layers } = meeting;
         let closed = vertices.len() > 3 && vertices.first() == vertices.last();
         if closed {
             vertices.pop();
@@ -95,13 +95,13 @@ impl Chain {
                     (false, _) => (at(i - 1), at((i + 1).min(n - 1))),
                 };
                 let along = (after - before).normalize_or_zero();
-                let (point, sine) = polished(operands, sheets[i.min(sheets.len() - 1)], at(i), along, most);
+                let (point, sine) = polished(operands, layers[i.min(layers.len() - 1)], at(i), along, most);
                 crossing = crossing.min(sine);
                 point
             })
             .collect();
         let mut chain =
-            Self { points, vertices, sheets, closed, lengths: Vec::new(), features: Vec::new(), crossing };
+            Self { points, vertices, layers, closed, lengths: Vec::new(), features: Vec::new(), crossing };
         chain.measure();
         chain
     }
@@ -182,9 +182,9 @@ impl Chain {
         self.points[i - 1].lerp(self.points[i % n], t)
     }
 
-    /// Whether two sheets of one operand meet.
+    /// Whether two layers of one operand meet.
     pub(super) fn is_of_one(&self) -> bool {
-        self.sheets.first().is_some_and(|[a, b]| a.operand == b.operand)
+        self.layers.first().is_some_and(|[a, b]| a.operand == b.operand)
     }
 
     /// The point of the chain nearest to `x`, within `reach` of the length `near`.
@@ -235,18 +235,18 @@ pub(super) fn join_ends(operands: &[Operand], chains: &mut [Chain], positions: &
         }
     }
     for (v, ends) in ends {
-        let sheets_at = |&(c, i): &(usize, usize)| chains[c].sheets[i.min(chains[c].sheets.len() - 1)];
-        let mut sheets: Vec<Sheet> = ends.iter().flat_map(sheets_at).collect();
-        sheets.sort_by_key(|sheet| sheet.operand);
-        sheets.dedup_by(|a, b| {
+        let layers_at = |&(c, i): &(usize, usize)| chains[c].layers[i.min(chains[c].layers.len() - 1)];
+        let mut layers: Vec<Layer> = ends.iter().flat_map(layers_at).collect();
+        layers.sort_by_key(|layer| layer.operand);
+        layers.dedup_by(|a, b| {
             let operand = &operands[usize::from(a.operand)];
             a.operand == b.operand && (!operand.crosses_itself || operand.continues(a.triangle, b.triangle))
         });
-        if sheets.len() < 3 {
+        if layers.len() < 3 {
             continue;
         }
         let x = DVec3::from(positions[v as usize]);
-        let point = common_point(operands, &sheets, x).filter(|point| point.distance(x) <= most).unwrap_or(x);
+        let point = common_point(operands, &layers, x).filter(|point| point.distance(x) <= most).unwrap_or(x);
         for (c, i) in ends {
             chains[c].points[i] = point;
             chains[c].measure();
@@ -255,12 +255,12 @@ pub(super) fn join_ends(operands: &[Operand], chains: &mut [Chain], positions: &
 }
 
 /// The point of all tangent planes near `x`, in the sense of least squares, again and again.
-fn common_point(operands: &[Operand], sheets: &[Sheet], x: DVec3) -> Option<DVec3> {
+fn common_point(operands: &[Operand], layers: &[Layer], x: DVec3) -> Option<DVec3> {
     let mut point = x;
     for _ in 0..ROUNDS {
         let (mut normal, mut right) = (DMat3::ZERO, DVec3::ZERO);
-        for sheet in sheets {
-            let foot = operands[usize::from(sheet.operand)].foot(point, Some(sheet.triangle))?;
+        for layer in layers {
+            let foot = operands[usize::from(layer.operand)].foot(point, Some(layer.triangle))?;
             let n = foot.normal;
             normal += DMat3::from_cols(n * n.x, n * n.y, n * n.z);
             right += n * n.dot(foot.position - point);

@@ -289,7 +289,7 @@ impl<'a> Fit<'a> {
             Aim::Surface(o, guess) => {
                 let foot = self.operands[usize::from(o)].foot(point, Some(guess))?;
                 let normal = if self.reversed[usize::from(o)] { -foot.normal } else { foot.normal };
-                // The foot jumped to another sheet: the last one stays the target.
+                // The foot jumped to another layer: the last one stays the target.
                 let (target, normal) = match sample.last {
                     Some((target, known)) if known.dot(normal) < 0.5 => (target, known),
                     _ => {
@@ -305,9 +305,9 @@ impl<'a> Fit<'a> {
                 let reach = 0.1 * chain.length();
                 let near = chain.nearest(point, guess, reach);
                 sample.aim = Aim::Curve(c, near.length);
-                let sheets = chain.sheets[near.stretch];
+                let layers = chain.layers[near.stretch];
                 let (target, _) =
-                    polished(self.operands, sheets, near.point, near.along, 0.1 * chain.length());
+                    polished(self.operands, layers, near.point, near.along, 0.1 * chain.length());
                 Some((target, weighted(near.along, SHARP_WEIGHT * sliding, SHARP_WEIGHT)))
             }
             Aim::Crease(o) => {

@@ -56,7 +56,9 @@ fn tools_at_once_are_no_worse_than_one_by_one() {
         step = done.into_surface();
     }
     assert!(outcome.report().errors.largest() <= apart);
-    assert_eq!(outcome.surface().faces().len(), step.faces().len());
+    // Later steps see finer faces where earlier ones cut, so that numbers differ, but little.
+    let [at_once, one_by_one] = [outcome.surface(), &step].map(|cage| cage.faces().len() as f64);
+    assert!((0.9..1.1).contains(&(at_once / one_by_one)), "{at_once} {one_by_one}");
 }
 
 /// A tube along a figure of eight goes through itself.

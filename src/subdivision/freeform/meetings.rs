@@ -1,4 +1,4 @@
-//! Where surfaces meet in an exact result: its edges between triangles of two operands, or of two sheets of one that crosses itself.
+//! Where surfaces meet in an exact result: its edges between triangles of two operands, or of two layers of one that crosses itself.
 
 use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
@@ -8,7 +8,7 @@ use crate::Outcome;
 
 /// A part of an operand's surface: one of its fine triangles there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Sheet {
+pub(super) struct Layer {
     pub(super) operand: u16,
     pub(super) triangle: u32,
 }
@@ -18,19 +18,19 @@ pub(super) struct Sheet {
 pub(super) struct Meeting {
     /// Vertices of the result; a closed one ends with that it began with.
     pub(super) vertices: Vec<u32>,
-    /// For each edge both sheets, that of the lower operand first.
-    pub(super) sheets: Vec<[Sheet; 2]>,
+    /// For each edge both layers, that of the lower operand first.
+    pub(super) layers: Vec<[Layer; 2]>,
 }
 
 struct Edge {
     ends: [u32; 2],
-    sheets: [Sheet; 2],
+    layers: [Layer; 2],
 }
 
 impl Edge {
     /// The operands that meet, the lower one first.
     fn operands(&self) -> [u16; 2] {
-        self.sheets.map(|sheet| sheet.operand)
+        self.layers.map(|layer| layer.operand)
     }
 }
 
@@ -48,14 +48,14 @@ pub(super) fn meetings(operands: &[Operand], outcome: &Outcome) -> Vec<Meeting> 
     let mut used = vec![false; edges.len()];
     let mut found = Vec::new();
     let mut follow = |start: u32, first: usize, used: &mut Vec<bool>| {
-        let mut meeting = Meeting { vertices: vec![start], sheets: Vec::new() };
+        let mut meeting = Meeting { vertices: vec![start], layers: Vec::new() };
         let (mut here, mut edge) = (start, first);
         loop {
             used[edge] = true;
             let [u, v] = edges[edge].ends;
             here = if here == u { v } else { u };
             meeting.vertices.push(here);
-            meeting.sheets.push(edges[edge].sheets);
+            meeting.layers.push(edges[edge].layers);
             let around = &at[&here];
             match around.iter().find(|&&i| !used[i]) {
                 Some(&i) if passes(around) => edge = i,
@@ -81,23 +81,23 @@ pub(super) fn meetings(operands: &[Operand], outcome: &Outcome) -> Vec<Meeting> 
     found
 }
 
-/// The edges in which different sheets meet, in the order of their ends.
+/// The edges in which different layers meet, in the order of their ends.
 fn edges(operands: &[Operand], outcome: &Outcome) -> Vec<Edge> {
     let mesh = outcome.solid().mesh();
-    let mut beside: FxHashMap<(u32, u32), Sheet> = FxHashMap::default();
+    let mut beside: FxHashMap<(u32, u32), Layer> = FxHashMap::default();
     let mut edges = Vec::new();
     for (corners, origin) in mesh.triangles.iter().zip(outcome.origins()) {
         let operand = &operands[origin.operand as usize];
         let triangle = operand.solid().source_triangle(origin.triangle);
-        let own = Sheet { operand: origin.operand as u16, triangle };
+        let own = Layer { operand: origin.operand as u16, triangle };
         for k in 0..3 {
             let (u, v) = (corners[k], corners[(k + 1) % 3]);
             match beside.remove(&(v, u)) {
                 Some(other)
                     if other.operand != own.operand || !operand.continues(other.triangle, triangle) =>
                 {
-                    let sheets = if other.operand <= own.operand { [other, own] } else { [own, other] };
-                    edges.push(Edge { ends: [u.min(v), u.max(v)], sheets });
+                    let layers = if other.operand <= own.operand { [other, own] } else { [own, other] };
+                    edges.push(Edge { ends: [u.min(v), u.max(v)], layers });
                 }
                 Some(_) => {}
                 None => {

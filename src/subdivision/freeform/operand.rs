@@ -19,7 +19,7 @@ pub(super) struct Operand {
     /// How far its triangles may be from the surface.
     pub(super) within: f64,
     tree: TriangleTree,
-    /// Whether its surface crosses itself: the nearest point may then be on another sheet than the one that is meant.
+    /// Whether its surface crosses itself: the nearest point may then be on another layer than the one that is meant.
     pub(super) crosses_itself: bool,
     /// The triangles at each fine vertex, made when first asked for.
     stars: OnceLock<Vec<SmallVec<[u32; 8]>>>,
@@ -36,7 +36,7 @@ pub(super) struct Foot {
 
 /// Every face is split at least this often: the vertices in between are those that a cut face's cage is chosen from.
 const LEAST_STEPS: u32 = 2;
-/// Sheets that cross differ by more than 3 degrees, here as a cosine: at 5 they are refused.
+/// Layers that cross differ by more than 3 degrees, here as a cosine: at 5 they are refused.
 const SAME_WAY: f64 = 0.9986;
 /// Newton steps from the nearest point of the triangles to that of the surface: each squares the error, which begins at a
 /// tenth of a fine triangle.

@@ -110,7 +110,7 @@ fn smooth(work: &mut Work, operands: &[Operand], reversed: &[bool], v: u32) {
     let Some(foot) = operands[o].foot(here.lerp(sum / weights, 0.5), Some(seed)) else { return };
     let normal = if reversed[o] { -foot.normal } else { foot.normal };
     let known = work.vertices[v as usize].normal(o);
-    // Another sheet of the surface.
+    // Another layer of the surface.
     if known != DVec3::ZERO && known.dot(normal) < 0.5 {
         return;
     }

@@ -104,7 +104,7 @@ impl<'s> Run<'s> {
         }
         // 2. The curve.
         let meetings = meetings(&operands, &exact);
-        for [a, b] in meetings.iter().flat_map(|meeting| &meeting.sheets) {
+        for [a, b] in meetings.iter().flat_map(|meeting| &meeting.layers) {
             operands[usize::from(a.operand)].crosses_itself |= a.operand == b.operand;
         }
         let operands: &[Operand] = &operands;
