@@ -134,13 +134,19 @@ impl Patch {
         Self { vertices: net.vertices.clone(), triangles, sides }
     }
 
-    /// Its triangles that were worked over: corners, by their places.
-    pub(super) fn changed(&self) -> impl Iterator<Item = [DVec3; 3]> {
+    /// Its triangles that were worked over, by the places of their corners; of those of which a corner stays, and that are still the same
+    /// triangles, where they were before, too.
+    pub(super) fn changed(
+        &self,
+        piece: &Piece,
+        surface: &Surface,
+    ) -> impl Iterator<Item = ([DVec3; 3], Option<[DVec3; 3]>)> {
         let is_free = |corners: &&[u32; 3]| is_changed(corners, &self.vertices);
-        self.triangles
-            .iter()
-            .filter(is_free)
-            .map(|corners| corners.map(|corner| self.vertices[corner as usize].place))
+        self.triangles.iter().filter(is_free).map(|corners| {
+            let stays = corners.iter().any(|&corner| self.vertices[corner as usize].kind == Kind::Frozen);
+            let before = || corners.map(|corner| surface.places[piece.numbers[corner as usize] as usize]);
+            (corners.map(|corner| self.vertices[corner as usize].place), stays.then(before))
+        })
     }
 }
 
