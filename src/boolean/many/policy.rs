@@ -18,8 +18,7 @@ pub enum Embed {
     /// They are looked for where new triangles are no higher than rounding, and resolved.
     WhereNeeded,
     /// They are looked for where the operation made triangles, and resolved if there are any. What operands bring with them elsewhere
-    /// stays as it is. Some nanoseconds a triangle, and some tenths of a microsecond for each that was made. What the program does by
-    /// itself.
+    /// stays as it is. Some tens of nanoseconds a triangle of the result. What the program does by itself.
     NearCut,
     /// All coordinates are numbers of a grid, and what crosses on it is resolved: the result does not cross itself when it is
     /// written in a format with such numbers. Always looked for, in some tenths of a microsecond a triangle.
