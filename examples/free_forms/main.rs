@@ -8,10 +8,24 @@ mod shapes;
 
 use std::path::Path;
 
-use trisect::subdivision::{ControlMesh, FreeForm, Rules, Tags};
+use trisect::subdivision::{ControlMesh, FreeForm, FreeFormReport, Rules, Tags};
 use trisect::{Operation, primitives};
 
 use shapes::{block, cylinder, moved, torus};
+
+/// How near a result is, and what it has.
+fn described(report: &FreeFormReport) -> String {
+    format!(
+        "{} control points, {} unchanged, at most {} faces at a vertex, {} corners of three surfaces, off by {:.1e} (asked {:.1e}), {:.2} s",
+        report.vertices,
+        report.unchanged,
+        report.valence,
+        report.junctions,
+        report.errors.largest(),
+        report.asked,
+        report.seconds.iter().map(|(_, seconds)| seconds).sum::<f64>()
+    )
+}
 
 /// Takes steps one after the other, and says how near each result is.
 fn chain(
@@ -25,17 +39,7 @@ fn chain(
     for (index, (operation, next)) in steps.iter().enumerate() {
         std::fs::write(folder.join(format!("{name}-part{}.obj", index + 1)), next.to_obj())?;
         let outcome = FreeForm::new().attempts(0).run(*operation, &cage, next)?;
-        let report = outcome.report();
-        println!(
-            "{name}, {operation}: {} control points, {} unchanged, at most {} faces at a vertex, off by {:.1e} (asked {:.1e}), \
-             {:.2} s",
-            report.vertices,
-            report.unchanged,
-            report.valence,
-            report.errors.largest(),
-            report.asked,
-            report.seconds.iter().map(|(_, seconds)| seconds).sum::<f64>()
-        );
+        println!("{name}, {operation}: {}", described(outcome.report()));
         cage = outcome.into_surface();
     }
     std::fs::write(folder.join(format!("{name}.obj")), cage.to_obj())?;
@@ -50,19 +54,7 @@ fn at_once(
     cages: &[&ControlMesh],
 ) -> Result<(), Box<dyn std::error::Error>> {
     let outcome = FreeForm::new().attempts(0).run_all(operation, cages)?;
-    let report = outcome.report();
-    println!(
-        "{name}, {operation} of {} at once: {} control points, {} unchanged, at most {} faces at a vertex, {} corners of three \
-         surfaces, off by {:.1e} (asked {:.1e}), {:.2} s",
-        cages.len(),
-        report.vertices,
-        report.unchanged,
-        report.valence,
-        report.junctions,
-        report.errors.largest(),
-        report.asked,
-        report.seconds.iter().map(|(_, seconds)| seconds).sum::<f64>()
-    );
+    println!("{name}, {operation} of {} at once: {}", cages.len(), described(outcome.report()));
     std::fs::write(folder.join(format!("{name}.obj")), outcome.surface().to_obj())?;
     Ok(())
 }

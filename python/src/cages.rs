@@ -6,11 +6,9 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use serde_json::{Value, json};
 use trisect::io::WriteOptions;
 use trisect::subdivision::{
-    Cage as AnyCage, ControlMesh, Corner, Crease, FreeForm, FreeFormReport, Rules, Scheme, Sector, Tags,
-    VertexOrigin,
+    Cage as AnyCage, ControlMesh, Corner, Crease, FreeForm, Rules, Scheme, Sector, Tags, VertexOrigin,
 };
 use trisect::{Error, Mesh, Operation};
 
@@ -304,7 +302,7 @@ pub(crate) fn combine_cages<'py>(
     }
     let origins =
         (PyArray1::from_vec(py, table.0), PyArray1::from_vec(py, table.1), PyArray1::from_vec(py, table.2));
-    let report = described(outcome.report()).to_string();
+    let report = serde_json::to_string(outcome.report()).unwrap_or_default();
     let exact = Core::from(outcome.exact().clone());
     Ok((AnyCage::from(outcome.into_surface()).into(), exact, report, origins, distances))
 }
@@ -315,40 +313,4 @@ fn diagonal(cage: &AnyCage) -> f64 {
     let length = bounds
         .map_or(0.0, |bounds| (0..3).map(|k| (bounds.high[k] - bounds.low[k]).powi(2)).sum::<f64>().sqrt());
     if length > 0.0 { length } else { 1.0 }
-}
-
-/// The report, under the names that the program's has.
-fn described(found: &FreeFormReport) -> Value {
-    let seconds: serde_json::Map<String, Value> =
-        found.seconds.iter().map(|&(step, seconds)| (step.to_owned(), seconds.into())).collect();
-    json!({
-        "asked": found.asked,
-        "reached": found.reached,
-        "errors": {
-            "forward": found.errors.forward,
-            "backward": found.errors.backward,
-            "mean": found.errors.mean,
-            "curve": found.errors.curve,
-            "band": found.errors.band,
-            "outside": found.errors.outside,
-            "allowance": found.errors.allowance,
-            "volume": found.errors.volume,
-        },
-        "vertices": found.vertices,
-        "faces": found.faces,
-        "added": found.added,
-        "fitted": found.fitted,
-        "unchanged": found.unchanged,
-        "chains": found.chains,
-        "features": found.features,
-        "junctions": found.junctions,
-        "crossing_degrees": found.crossing,
-        "largest_valence": found.valence,
-        "refined": found.refined,
-        "levels": found.levels,
-        "details": found.details,
-        "exact_triangles": found.exact_triangles,
-        "seconds": seconds,
-        "warnings": found.warnings,
-    })
 }

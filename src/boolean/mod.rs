@@ -54,6 +54,8 @@ pub use many::trim::{TrimSide, Trimmed};
 pub use parting::{Cell, Imprinted, Leaf, PlaneCut, Section, SectionSide, Sections};
 pub use result::attributes::CornerOrigin;
 pub use result::certificate::{Certificate, OperandState};
+#[cfg(feature = "subdivision")]
+pub(crate) use result::chains::{Chain, chains};
 pub use result::cut_faces::CutFaces;
 pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;

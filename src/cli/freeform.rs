@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use clap::ArgMatches;
-use serde_json::{Value, json};
 use trisect::subdivision::{Cage, ControlMesh, FreeForm, FreeFormOutcome, FreeFormReport, Scheme};
 use trisect::{Error, Operation};
 
@@ -11,6 +10,7 @@ use super::argument_groups::{Drawing, Writing};
 use super::cage_arguments::FreeFormVerb;
 use super::cages::{self, Read};
 use super::fault::{Exit, Fault};
+use super::json::json_of;
 use super::output::{self, Product, Shown};
 use super::session::Session;
 use super::words;
@@ -120,7 +120,6 @@ fn combine(
     for warning in &outcome.report().warnings {
         session.warn(warning.clone());
     }
-    session.note("steps", vec![described(outcome.report())]);
     Ok(outcome)
 }
 
@@ -164,41 +163,6 @@ fn write(
     Ok(())
 }
 
-/// What the JSON report says of one operation.
-fn described(found: &FreeFormReport) -> Value {
-    let seconds: serde_json::Map<String, Value> =
-        found.seconds.iter().map(|&(step, seconds)| (step.to_owned(), seconds.into())).collect();
-    json!({
-        "asked": found.asked,
-        "reached": found.reached,
-        "errors": {
-            "forward": found.errors.forward,
-            "backward": found.errors.backward,
-            "mean": found.errors.mean,
-            "curve": found.errors.curve,
-            "band": found.errors.band,
-            "outside": found.errors.outside,
-            "allowance": found.errors.allowance,
-            "volume": found.errors.volume,
-        },
-        "vertices": found.vertices,
-        "faces": found.faces,
-        "added": found.added,
-        "fitted": found.fitted,
-        "unchanged": found.unchanged,
-        "chains": found.chains,
-        "features": found.features,
-        "junctions": found.junctions,
-        "crossing_degrees": found.crossing,
-        "largest_valence": found.valence,
-        "refined": found.refined,
-        "levels": found.levels,
-        "details": found.details,
-        "exact_triangles": found.exact_triangles,
-        "seconds": seconds,
-    })
-}
-
 fn say(found: &FreeFormReport, seconds: f64, session: &mut Session<'_>) {
     session.console.say(&format!(
         "cage: {}, {} ({} added, {} moved, {} as they were), within {} of the exact result ({})",
@@ -210,5 +174,5 @@ fn say(found: &FreeFormReport, seconds: f64, session: &mut Session<'_>) {
         words::short(found.errors.largest()),
         words::time(seconds)
     ));
-    session.note("result", described(found));
+    session.note("result", json_of(found));
 }

@@ -10,11 +10,6 @@ use trisect::{Control, Mesh};
 
 type Exact = [RBig; 3];
 
-/// How many points of those that could be tried: a quarter, all with `TRISECT_PROOF=all`, as in the proof harness.
-fn sample(all: usize) -> usize {
-    if std::env::var("TRISECT_PROOF").as_deref() == Ok("all") { all } else { all / 4 }
-}
-
 fn exact(p: [f64; 3]) -> Exact {
     p.map(|x| RBig::try_from(x).expect("finite"))
 }
@@ -111,7 +106,7 @@ fn distances_equal_exact_brute_force() {
         let corners: Vec<[Exact; 3]> =
             mesh.triangles.iter().map(|t| t.map(|v| exact(mesh.positions[v as usize]))).collect();
         let mut worst = 0f64;
-        for query in queries(&mesh, &mut random, sample(192)) {
+        for query in queries(&mesh, &mut random, 96) {
             let q = exact(query);
             let squared = corners.iter().map(|t| squared_distance(&q, t)).min().expect("triangles");
             let reference = squared.to_f64().value().sqrt();
@@ -154,7 +149,7 @@ fn the_four_signs_agree_on_clean_solids() {
     for (number, (name, mesh)) in models.into_iter().enumerate() {
         let mut random = rand::rngs::ChaCha8Rng::seed_from_u64(number as u64);
         let points: Vec<[f64; 3]> =
-            (0..sample(250_000)).map(|_| [0; 3].map(|_| random.random::<f64>() * 3.2 - 1.6)).collect();
+            (0..250_000).map(|_| [0; 3].map(|_| random.random::<f64>() * 3.2 - 1.6)).collect();
         let signs = |rule: SignRule| {
             let values = SignedDistance::of_mesh(&mesh, rule).at_all(&points, &Control::new());
             values.expect("no limits").into_iter().map(|v| v > 0.0).collect::<Vec<bool>>()

@@ -85,7 +85,7 @@ fn any_number_of_cages_is_combined_at_once() {
     let line =
         "freeform difference one.obj up.obj down.obj --tolerance 0.05 -o cut.obj --exact exact.obj --json";
     let report = folder.run(line).exits(0).json();
-    assert_eq!(report["steps"].as_array().map(Vec::len), Some(1));
+    assert!(report["result"]["seconds"]["boolean"].is_number(), "{report}");
     let found = report["result"]["chains"].as_u64().expect("a number");
     let first =
         folder.run("freeform difference one.obj up.obj --tolerance 0.05 -o a.obj --json").exits(0).json();

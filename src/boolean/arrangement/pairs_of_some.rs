@@ -3,6 +3,7 @@
 use obvhs::aabb::Aabb;
 
 use super::neighbours::Neighbours;
+use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame};
 use crate::{Error, Mesh};
@@ -11,14 +12,21 @@ use crate::{Error, Mesh};
 const TRIANGLES_AT_ONCE: usize = 1 << 14;
 
 /// The pairs of triangles of a closed surface, the lower one first, that may cross or lie on each other and of which at least one is
-/// among `some`, in order. Takes a pass over all triangles, of a few nanoseconds each away from those; no more for fans than their
-/// pairs.
+/// among `some`, in order; `bounds` are those of all. Takes a pass over all triangles, of some tens of nanoseconds each in the box of
+/// those.
 ///
 /// # Errors
 /// Only limits.
-pub(super) fn pairs_with(mesh: &Mesh, some: &[bool], runner: Runner<'_>) -> Result<Vec<[u32; 2]>, Error> {
+pub(super) fn pairs_with(
+    mesh: &Mesh,
+    bounds: &Bounds,
+    some: &[bool],
+    runner: Runner<'_>,
+) -> Result<Vec<[u32; 2]>, Error> {
     let chosen: Vec<u32> = (0..).zip(some).filter(|(_, is_one)| **is_one).map(|(t, _)| t).collect();
-    let Some(bounds) = mesh.bounds().filter(|_| !chosen.is_empty()) else { return Ok(Vec::new()) };
+    if chosen.is_empty() {
+        return Ok(Vec::new());
+    }
     // 1. What is known of neighbours: nothing of the vertices of those triangles, and of others it is not asked.
     let mut is_other = vec![true; mesh.positions.len()];
     for &t in &chosen {
@@ -32,8 +40,8 @@ pub(super) fn pairs_with(mesh: &Mesh, some: &[bool], runner: Runner<'_>) -> Resu
     let frame = Frame::of(bounds.low, bounds.high);
     let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
     let tree = BoxTree::new(&chosen, box_of);
-    let all = chosen.iter().map(|&t| box_of(t)).reduce(united).unwrap_or(Aabb::INVALID);
-    let pairs = runner.gather(mesh.triangles.len(), TRIANGLES_AT_ONCE, 0, |range, found| {
+    let all = chosen.iter().map(|&t| box_of(t)).reduce(|a, b| a.union(&b)).unwrap_or(Aabb::INVALID);
+    let mut pairs = runner.gather(mesh.triangles.len(), TRIANGLES_AT_ONCE, 0, |range, found| {
         for t in range.map(|t| t as u32) {
             let own = box_of(t);
             if !own.intersect_aabb(&all) {
@@ -48,13 +56,8 @@ pub(super) fn pairs_with(mesh: &Mesh, some: &[bool], runner: Runner<'_>) -> Resu
             });
         }
     })?;
-    let mut pairs = pairs;
     pairs.sort_unstable();
     Ok(pairs)
-}
-
-fn united(a: Aabb, b: Aabb) -> Aabb {
-    Aabb { min: a.min.min(b.min), max: a.max.max(b.max) }
 }
 
 #[cfg(test)]
@@ -80,9 +83,9 @@ mod tests {
         for step in [1, 2, 7] {
             let some: Vec<bool> = (0..mesh.triangles.len()).map(|t| t % step == 0).collect();
             let wanted = all.iter().copied().filter(|pair| pair.iter().any(|&t| some[t as usize]));
-            assert_eq!(pairs_with(&mesh, &some, runner).expect("pairs"), wanted.collect::<Vec<_>>());
+            assert_eq!(pairs_with(&mesh, &bounds, &some, runner).expect("pairs"), wanted.collect::<Vec<_>>());
         }
         let none = vec![false; mesh.triangles.len()];
-        assert!(pairs_with(&mesh, &none, runner).expect("none").is_empty());
+        assert!(pairs_with(&mesh, &bounds, &none, runner).expect("none").is_empty());
     }
 }

@@ -21,7 +21,7 @@ use crate::exact::at_hand::{largest_coordinate, size_at_hand};
 use crate::mesh::{Bounds, SelfCrossing, SelfCrossings};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame};
-use crate::{Control, Error, Mesh, Solid};
+use crate::{Control, Error, Solid};
 
 /// Units in the last place of the coordinates at hand that a rounding-level crossing may be deep. Each of two rounded
 /// surfaces is off by less than one in every direction.
@@ -124,13 +124,20 @@ pub(in crate::boolean) fn is_nearly_simple(solid: &Solid, control: &Control) -> 
     Ok(is_simple)
 }
 
-/// Whether triangles of a closed mesh cross or lie on each other, of which one is among `some`.
+/// Whether triangles of a solid cross or lie on each other, of which one is among `some`.
 ///
 /// # Errors
 /// Only limits.
-pub(in crate::boolean) fn crosses_at(mesh: &Mesh, some: &[bool], runner: Runner<'_>) -> Result<bool, Error> {
-    let pairs = pairs_with(mesh, some, runner)?;
-    let Some(bounds) = mesh.bounds().filter(|_| !pairs.is_empty()) else { return Ok(false) };
+pub(in crate::boolean) fn crosses_at(
+    solid: &Solid,
+    some: &[bool],
+    runner: Runner<'_>,
+) -> Result<bool, Error> {
+    let (mesh, Some(bounds)) = (solid.mesh(), solid.bounds()) else { return Ok(false) };
+    let pairs = pairs_with(mesh, &bounds, some, runner)?;
+    if pairs.is_empty() {
+        return Ok(false);
+    }
     let largest = bounds.largest();
     let complex = Complex::alone(Operand { positions: &mesh.positions, triangles: &mesh.triangles }, largest);
     let frame = Frame::of(bounds.low, bounds.high);

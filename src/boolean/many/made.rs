@@ -43,7 +43,7 @@ impl Made {
             Embed::NearCut if self.is_clean => {
                 let changed = changed(&self.origins, self.solid.mesh(), operands);
                 self.notes.embedding = Some(Embedding::default());
-                if crosses_at(self.solid.mesh(), &changed, runner)? {
+                if crosses_at(&self.solid, &changed, runner)? {
                     self.embed(Grid::Double, policy, has_attributes, runner)?;
                 }
             }

@@ -3,6 +3,7 @@
 pub(super) mod assemble;
 pub(super) mod attributes;
 pub(super) mod certificate;
+pub(super) mod chains;
 pub(super) mod cut_faces;
 pub(super) mod inverted;
 pub(super) mod near_contacts;

@@ -9,6 +9,7 @@ use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::embed::Embedding;
 use crate::boolean::result::attributes::{CornerOrigin, corner_origin};
 use crate::boolean::result::certificate::{Certificate, Notes, OperandState};
+use crate::boolean::result::chains::chains;
 use crate::boolean::result::cut_faces::CutFaces;
 use crate::boolean::result::near_contacts::NearContacts;
 use crate::boolean::result::origins::Origins;
@@ -201,49 +202,6 @@ impl Outcome {
         }
         edges.sort_unstable();
         edges.dedup();
-        chains(&edges)
+        chains(&edges, |_, _| true).into_iter().map(|chain| chain.vertices).collect()
     }
-}
-
-/// Edges strung together into chains: from ends and branchings first, then what is left, which is closed.
-fn chains(edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
-    let mut at: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
-    for (i, edge) in edges.iter().enumerate() {
-        for &v in edge {
-            at.entry(v).or_default().push(i);
-        }
-    }
-    let mut used = vec![false; edges.len()];
-    let mut chains = Vec::new();
-    let mut follow = |start: u32, first: usize, used: &mut Vec<bool>| {
-        let mut chain = vec![start];
-        let mut edge = first;
-        loop {
-            used[edge] = true;
-            let [u, v] = edges[edge];
-            let next = if *chain.last().unwrap_or(&start) == u { v } else { u };
-            chain.push(next);
-            let around = &at[&next];
-            match around.iter().find(|&&i| !used[i]) {
-                Some(&i) if around.len() == 2 => edge = i,
-                _ => break,
-            }
-        }
-        chains.push(chain);
-    };
-    let mut ends: Vec<u32> = at.iter().filter(|(_, around)| around.len() != 2).map(|(&v, _)| v).collect();
-    ends.sort_unstable();
-    for v in ends {
-        for &i in &at[&v] {
-            if !used[i] {
-                follow(v, i, &mut used);
-            }
-        }
-    }
-    for i in 0..edges.len() {
-        if !used[i] {
-            follow(edges[i][0], i, &mut used);
-        }
-    }
-    chains
 }

@@ -14,6 +14,7 @@ use crate::{Mesh, Outcome};
 
 /// Distances between the surface of the resulting cage and the exact result, in units of the coordinates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Errors {
     /// The largest distance of the cage's surface from the exact result.
     pub forward: f64,

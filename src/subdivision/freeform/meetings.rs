@@ -1,10 +1,10 @@
 //! Where surfaces meet in an exact result: its edges between triangles of two operands, or of two layers of one that crosses itself.
 
 use rustc_hash::FxHashMap;
-use smallvec::SmallVec;
 
 use super::operand::Operand;
 use crate::Outcome;
+use crate::boolean::{Chain, chains};
 
 /// A part of an operand's surface: one of its fine triangles there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,58 +27,18 @@ struct Edge {
     layers: [Layer; 2],
 }
 
-impl Edge {
-    /// The operands that meet, the lower one first.
-    fn operands(&self) -> [u16; 2] {
-        self.layers.map(|layer| layer.operand)
-    }
-}
-
-/// The meetings of an exact result: from ends, branchings and changes of operands first, then what is left, which is closed. O(n).
+/// The meetings of an exact result, in an order that depends on that alone; they end where operands change, too. O(n).
 pub(super) fn meetings(operands: &[Operand], outcome: &Outcome) -> Vec<Meeting> {
     let edges = edges(operands, outcome);
-    let mut at: FxHashMap<u32, SmallVec<[usize; 2]>> = FxHashMap::default();
-    for (i, edge) in edges.iter().enumerate() {
-        edge.ends.iter().for_each(|&v| at.entry(v).or_default().push(i));
-    }
-    let passes = |around: &[usize]| {
-        let [i, j] = *around else { return false };
-        edges[i].operands() == edges[j].operands()
-    };
-    let mut used = vec![false; edges.len()];
-    let mut found = Vec::new();
-    let mut follow = |start: u32, first: usize, used: &mut Vec<bool>| {
-        let mut meeting = Meeting { vertices: vec![start], layers: Vec::new() };
-        let (mut here, mut edge) = (start, first);
-        loop {
-            used[edge] = true;
-            let [u, v] = edges[edge].ends;
-            here = if here == u { v } else { u };
-            meeting.vertices.push(here);
-            meeting.layers.push(edges[edge].layers);
-            let around = &at[&here];
-            match around.iter().find(|&&i| !used[i]) {
-                Some(&i) if passes(around) => edge = i,
-                _ => break,
-            }
-        }
-        found.push(meeting);
-    };
-    let mut ends: Vec<u32> = at.iter().filter(|(_, around)| !passes(around)).map(|(&v, _)| v).collect();
-    ends.sort_unstable();
-    for v in ends {
-        for &i in &at[&v] {
-            if !used[i] {
-                follow(v, i, &mut used);
-            }
-        }
-    }
-    for i in 0..edges.len() {
-        if !used[i] {
-            follow(edges[i].ends[0], i, &mut used);
-        }
-    }
-    found
+    let ends: Vec<[u32; 2]> = edges.iter().map(|edge| edge.ends).collect();
+    let operands = |edge: usize| edges[edge].layers.map(|layer| layer.operand);
+    let strung = chains(&ends, |i, j| operands(i) == operands(j)).into_iter();
+    strung
+        .map(|Chain { vertices, edges: of_chain }| Meeting {
+            vertices,
+            layers: of_chain.into_iter().map(|edge| edges[edge].layers).collect(),
+        })
+        .collect()
 }
 
 /// The edges in which different layers meet, in the order of their ends.

@@ -4,6 +4,7 @@ use super::measure::Errors;
 
 /// What was asked for and what came of it.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct FreeFormReport {
     /// The distance asked for.
@@ -29,8 +30,10 @@ pub struct FreeFormReport {
     /// Places where curves of three and more surfaces meet.
     pub junctions: usize,
     /// The smallest angle between both surfaces along the curve, in degrees; 90 without a curve.
+    #[cfg_attr(feature = "serde", serde(rename = "crossing_degrees"))]
     pub crossing: f64,
     /// The most faces around a vertex that an operand did not have so.
+    #[cfg_attr(feature = "serde", serde(rename = "largest_valence"))]
     pub valence: usize,
     /// How often faces beside the curve were halved in size for the cage that is returned.
     pub refined: u32,
@@ -43,7 +46,14 @@ pub struct FreeFormReport {
     /// Triangles of the exact result.
     pub exact_triangles: usize,
     /// Seconds by step: limit meshes, exact boolean, curve, cage, fit, measure.
+    #[cfg_attr(feature = "serde", serde(serialize_with = "as_map"))]
     pub seconds: Vec<(&'static str, f64)>,
     /// What a user should know: tolerance not reached, and where; surfaces nearly tangential.
     pub warnings: Vec<String>,
+}
+
+/// Seconds under the names of their steps.
+#[cfg(feature = "serde")]
+fn as_map<S: serde::Serializer>(seconds: &[(&'static str, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(seconds.iter().copied())
 }

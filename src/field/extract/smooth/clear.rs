@@ -42,20 +42,13 @@ fn may_collapse(net: &Net, from: u32, to: u32, beside: [u32; 2], length: f64) ->
 mod tests {
     use glam::DVec3;
 
-    use super::super::net::Vertex;
+    use super::super::mend::tests::plane;
     use super::*;
 
     #[test]
     fn vertices_on_top_of_each_other_become_one() {
-        // A plane of six times six vertices, one of them next to its neighbour.
-        let place = |k: u32| DVec3::new(f64::from(k % 6), f64::from(k / 6), 0.0);
-        let mut vertices: Vec<Vertex> = (0..36).map(|k| Vertex::free(place(k), DVec3::Z)).collect();
-        vertices[14].place = vertices[15].place - DVec3::X * 1e-3;
-        let corner = |k: u32| k % 6 < 5 && k < 30;
-        let pair = |k: u32| [[k, k + 1, k + 7], [k, k + 7, k + 6]];
-        let triangles: Vec<[u32; 3]> = (0..36).filter(|&k| corner(k)).flat_map(pair).collect();
-        let sides = vec![DVec3::Z; triangles.len()];
-        let mut net = Net::new(vertices, triangles, sides);
+        let mut net = plane();
+        net.vertices[14].place = net.place(15) - DVec3::X * 1e-3;
         clear(&mut net, 1e-4);
         assert_eq!(net.present().count(), 50);
         clear(&mut net, 0.01);

@@ -189,21 +189,26 @@ fn badness_of(shape: Shape) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::super::net::Vertex;
     use super::*;
 
-    #[test]
-    fn a_fold_goes() {
-        // A plane of six times six vertices, one of them past its neighbour.
+    /// A plane of six times six vertices.
+    pub(in super::super) fn plane() -> Net {
         let place = |k: u32| DVec3::new(f64::from(k % 6), f64::from(k / 6), 0.0);
-        let mut vertices: Vec<Vertex> = (0..36).map(|k| Vertex::free(place(k), DVec3::Z)).collect();
-        vertices[14].place += DVec3::new(1.6, 0.1, 0.0);
+        let vertices: Vec<Vertex> = (0..36).map(|k| Vertex::free(place(k), DVec3::Z)).collect();
         let corner = |k: u32| k % 6 < 5 && k < 30;
         let pair = |k: u32| [[k, k + 1, k + 7], [k, k + 7, k + 6]];
         let triangles: Vec<[u32; 3]> = (0..36).filter(|&k| corner(k)).flat_map(pair).collect();
         let sides = vec![DVec3::Z; triangles.len()];
-        let mut net = Net::new(vertices, triangles, sides);
+        Net::new(vertices, triangles, sides)
+    }
+
+    #[test]
+    fn a_fold_goes() {
+        let mut net = plane();
+        // One vertex past its neighbour.
+        net.vertices[14].place += DVec3::new(1.6, 0.1, 0.0);
         let off = |net: &Net| net.present().filter(|&(triangle, _)| is_off(net, triangle)).count();
         assert!(off(&net) > 0);
         mend(&mut net, Limits { sag: 0.1, angle: 0.1 }, 0.1, &mut Hopeless::default());

@@ -69,8 +69,8 @@ const ATTEMPTS: usize = 5;
 /// Triangles of a piece, at most.
 const MOST: usize = 8000;
 /// Where pieces are halved, each time that the surface is worked over: seams of one time are within the pieces of the next.
-/// Those past `USUAL` are for surfaces with triangles that are too far off still, since they were at a seam each time.
 const PARTS: [f64; 6] = [0.5, 0.31, 0.42, 0.27, 0.46, 0.36];
+/// Times in any case; further ones are for surfaces with triangles that are too far off still, since they were at a seam each time.
 const USUAL: usize = 3;
 
 /// Bytes held for each vertex of the cells' surface: the vertex twice, its star, and two triangles with the ways they face.
