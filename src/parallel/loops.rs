@@ -194,6 +194,20 @@ pub(crate) fn build<T: Copy + Default + Send>(
     items
 }
 
+/// What `of_range` makes of the ranges that `0..count` is cut into, one after the other. For items that cannot be put into room made before as
+/// [`build`] does, or for which that costs a pass over memory.
+pub(crate) fn append<T: Send>(
+    count: usize,
+    smallest: usize,
+    of_range: impl Fn(Range<usize>) -> Vec<T> + Sync,
+) -> Vec<T> {
+    let mut pieces = map(ranges(count, piece_count(count, smallest)), of_range).into_iter();
+    let mut all = pieces.next().unwrap_or_default();
+    all.reserve_exact(pieces.as_slice().iter().map(Vec::len).sum());
+    pieces.for_each(|mut piece| all.append(&mut piece));
+    all
+}
+
 /// Pieces of `length` items, each with the index of its first.
 pub(super) fn places<T>(items: &mut [T], length: usize) -> Vec<(usize, &mut [T])> {
     let mut places = Vec::with_capacity(items.len().div_ceil(length));

@@ -14,7 +14,7 @@ mod loops;
 mod pools;
 mod runner;
 
-pub(crate) use loops::{all, build, join, map, map_chunks, parts, piece_count, ranges, try_map};
+pub(crate) use loops::{all, append, build, join, map, map_chunks, parts, piece_count, ranges, try_map};
 #[cfg(feature = "parallel")]
 pub(crate) use pools::run_in_pool;
 pub(crate) use runner::Runner;

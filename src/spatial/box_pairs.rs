@@ -1,7 +1,7 @@
 //! All pairs of boxes that meet, of two trees or within one: both are walked at once, pack against pack.
 
 use crate::control::{Control, Limit};
-use crate::parallel::Runner;
+use crate::parallel::{Runner, append};
 
 use super::box_tree::BoxTree;
 use super::branches::Branches;
@@ -15,6 +15,8 @@ const TASKS: usize = 256;
 const BATCH: usize = 256;
 /// Pairs of packs that are tested between two looks at the limits: less than a millisecond.
 const STEPS_BETWEEN_CHECKS: usize = 1 << 15;
+/// Packs whose marks one thread looks up at least.
+const MARKS_AT_ONCE: usize = 1 << 12;
 /// Of the pairs of lanes of one pack, those with the first lane before the second: two different items, in one order.
 const DIFFERENT_LANES: u32 = ordered_lanes(1);
 /// The same with pairs of a lane and itself, whose subtree is opened against itself.
@@ -65,14 +67,16 @@ pub(crate) fn self_overlapping_pairs(
 pub(crate) fn self_overlapping_pairs_apart(
     tree: &BoxTree,
     branches: &Branches,
-    marks_of: impl Fn(usize, u32) -> [u32; 3],
+    marks_of: impl Fn(usize, u32) -> [u32; 3] + Sync,
     runner: Runner<'_>,
     wanted: impl Fn([u32; 2]) -> bool + Sync,
 ) -> Result<Vec<[u32; 2]>, Limit> {
-    let of_pack = |(pack, items): (usize, &[u32])| {
-        Marks::new((LANES * pack..).zip(items).map(|(place, &item)| marks_of(place, item)))
+    let items = tree.items();
+    let of_pack = |pack: usize| {
+        let places = LANES * pack..(LANES * (pack + 1)).min(items.len());
+        Marks::new(places.map(|place| marks_of(place, items[place])))
     };
-    let marks: Vec<Marks> = tree.items().chunks(LANES).enumerate().map(of_pack).collect();
+    let marks = append(items.len().div_ceil(LANES), MARKS_AT_ONCE, |packs| packs.map(of_pack).collect());
     self_pairs(tree, Some((branches, &marks)), runner, wanted)
 }
 

@@ -5,6 +5,8 @@
 //! nested and fan-shaped boxes, on which agglomerative builders go quadratic, cost what all others do. The boxes of a pack
 //! are laid out so that one step tests all four at once. Pairs of boxes are found by [`visit_pairs`](super::visit_pairs).
 
+use std::ops::Range;
+
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use smallvec::{SmallVec, smallvec};
@@ -12,7 +14,7 @@ use smallvec::{SmallVec, smallvec};
 use super::pack::{LANES, Pack, for_each_bit};
 use super::read_ahead::read_ahead;
 use super::{morton, radix};
-use crate::parallel::build;
+use crate::parallel::{append, build};
 
 /// Items whose boxes are read ahead; a multiple of [`LANES`], and few enough to stay in the first-level cache.
 const AT_ONCE: usize = 64;
@@ -28,9 +30,7 @@ pub(crate) struct BoxTree {
     /// Item numbers in Morton order.
     items: Vec<u32>,
     /// The packs: the items' own boxes first, then level by level up to a single one.
-    packs: Vec<Pack>,
-    /// Where each level starts in `packs`; a last entry marks the end.
-    levels: Vec<usize>,
+    levels: Vec<Vec<Pack>>,
     /// The box of everything.
     bounds: Aabb,
 }
@@ -94,31 +94,32 @@ impl BoxTree {
                 *key = u64::from(morton::code([z as u32, y as u32, x as u32])) << 32 | u64::from(item);
             }
         });
-        radix::sort(&mut order, &mut Vec::new(), |&key| (key >> 32) as u32, morton::BITS);
-        let items: Vec<u32> = order.iter().map(|&key| key as u32).collect();
+        radix::sort_parallel(&mut order, |&key| (key >> 32) as u32, morton::BITS);
+        let items = build(count, PIECE, |first, run: &mut [u32]| {
+            run.iter_mut().zip(&order[first..]).for_each(|(item, &key)| *item = key as u32);
+        });
         drop(order);
 
-        // 2. The packs of the items, and the box of each pack.
-        let mut packs = Vec::with_capacity(items.len().div_ceil(LANES - 1) + 1);
-        let mut boxes = Vec::with_capacity(items.len().div_ceil(LANES));
-        for part in items.chunks(AT_ONCE) {
-            read_ahead(part.iter().map(|&item| box_of(item).min.x.to_bits()));
-            for group in part.chunks(LANES) {
-                let boxes_of_items = group.iter().map(|&item| box_of(item));
-                packs.push(Pack::new(boxes_of_items.clone()));
-                boxes.push(union(boxes_of_items));
+        // 2. The packs of the items; then level by level, until one pack holds everything.
+        let mut levels = vec![packs_of(items.len(), |range| {
+            let items = &items[range];
+            let mut packs = Vec::with_capacity(items.len().div_ceil(LANES));
+            for part in items.chunks(AT_ONCE) {
+                read_ahead(part.iter().map(|&item| box_of(item).min.x.to_bits()));
+                packs.extend(
+                    part.chunks(LANES).map(|group| Pack::new(group.iter().map(|&item| box_of(item)))),
+                );
             }
+            packs
+        })];
+        while let Some(below) = levels.last().filter(|below| below.len() > 1) {
+            let above = packs_of(below.len(), |range| {
+                below[range].chunks(LANES).map(|group| Pack::new(group.iter().map(Pack::hull))).collect()
+            });
+            levels.push(above);
         }
-        // 3. Level by level, until one pack holds everything.
-        let mut levels = vec![0];
-        while boxes.len() > 1 {
-            levels.push(packs.len());
-            packs.extend(boxes.chunks(LANES).map(|group| Pack::new(group.iter().copied())));
-            boxes = boxes.chunks(LANES).map(|group| union(group.iter().copied())).collect();
-        }
-        levels.push(packs.len());
-        let bounds = boxes.first().copied().unwrap_or(Aabb::INVALID);
-        Self { items, packs, levels, bounds }
+        let bounds = levels.last().and_then(|top| top.first()).map_or(Aabb::INVALID, Pack::hull);
+        Self { items, levels, bounds }
     }
 
     /// Whether there are no items.
@@ -128,7 +129,7 @@ impl BoxTree {
 
     /// The level of the single pack at the top; the items' boxes are level 0.
     pub(super) fn top(&self) -> usize {
-        self.levels.len().saturating_sub(2)
+        self.levels.len() - 1
     }
 
     /// The box of everything.
@@ -139,7 +140,7 @@ impl BoxTree {
     /// The packs of a level. Lane k of pack p is the box of pack 4 p + k of the level below, or of an item.
     #[inline]
     pub(super) fn level(&self, level: usize) -> &[Pack] {
-        &self.packs[self.levels[level]..self.levels[level + 1]]
+        &self.levels[level]
     }
 
     /// The items in the order of the lanes of the lowest level.
@@ -170,10 +171,11 @@ impl BoxTree {
     }
 }
 
-fn union(boxes: impl Iterator<Item = Aabb>) -> Aabb {
-    boxes
-        .reduce(|sum, aabb| Aabb { min: sum.min.min(aabb.min), max: sum.max.max(aabb.max) })
-        .unwrap_or(Aabb::INVALID)
+/// What `packs` makes of `0..count` boxes piece by piece, a pack of every four.
+fn packs_of(count: usize, packs: impl Fn(Range<usize>) -> Vec<Pack> + Sync) -> Vec<Pack> {
+    append(count.div_ceil(LANES), PIECE / LANES, |range| {
+        packs(LANES * range.start..(LANES * range.end).min(count))
+    })
 }
 
 #[cfg(test)]

@@ -44,6 +44,15 @@ impl Pack {
         Aabb { min: corner(&self.low), max: corner(&self.high) }
     }
 
+    /// The box round all boxes.
+    #[inline]
+    pub(super) fn hull(&self) -> Aabb {
+        // (Lanes that are not used hold no numbers, which these leave out.)
+        let low = self.low.map(|[a, b, c, d]| a.min(b).min(c.min(d)));
+        let high = self.high.map(|[a, b, c, d]| a.max(b).max(c.max(d)));
+        Aabb { min: Vec3A::from_array(low), max: Vec3A::from_array(high) }
+    }
+
     /// The lanes whose boxes meet a box (closed boxes), as bits.
     #[inline(always)]
     pub(super) fn meeting(&self, low: [f32; 3], high: [f32; 3]) -> u32 {

@@ -139,7 +139,8 @@ pub(in crate::boolean) fn crosses_at(
         return Ok(false);
     }
     let largest = bounds.largest();
-    let complex = Complex::alone(Operand { positions: &mesh.positions, triangles: &mesh.triangles }, largest);
+    let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
+    let complex = Complex::alone(operand, largest, &pairs);
     let frame = Frame::of(bounds.low, bounds.high);
     let surface = Surface::new(&complex, BoxTree::empty(), frame, &bounds, f64::EPSILON);
     let found = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
@@ -173,7 +174,7 @@ fn find(
     }
     // 2. Those that cross or touch.
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
-    let complex = Complex::alone(operand, largest);
+    let complex = Complex::alone(operand, largest, &pairs);
     let tree = tree.unwrap_or_else(|| tree_of(mesh, &frame));
     let surface = Surface::new(&complex, tree, frame, &bounds, part);
     let (mut rest, mut next, mut doubtful) = (&*pairs, PAIRS_AT_FIRST, Vec::new());
@@ -421,12 +422,12 @@ pub(super) fn count_by_all_pairs(solid: &Solid) -> (usize, usize) {
     let mesh = solid.mesh();
     let bounds = solid.bounds().expect("not empty");
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
-    let complex = Complex::alone(operand, bounds.largest());
+    let count = mesh.triangles.len() as u32;
+    let pairs: Vec<[u32; 2]> = (0..count).flat_map(|s| (s + 1..count).map(move |t| [s, t])).collect();
+    let complex = Complex::alone(operand, bounds.largest(), &pairs);
     let frame = Frame::of(bounds.low, bounds.high);
     let part = tolerance_of_one(&mesh.positions);
     let surface = Surface::new(&complex, tree_of(mesh, &frame), frame, &bounds, part);
-    let count = mesh.triangles.len() as u32;
-    let pairs = (0..count).flat_map(|s| (s + 1..count).map(move |t| [s, t]));
     let common = |[s, t]: [u32; 2]| {
         let (a, b) = (mesh.triangles[s as usize], mesh.triangles[t as usize]);
         a.iter().filter(|v| b.contains(v)).count()
@@ -435,7 +436,8 @@ pub(super) fn count_by_all_pairs(solid: &Solid) -> (usize, usize) {
         let [a, b] = pair.map(|t| surface.complex.corners_of_triangle(0, t));
         surface.examine_closely(pair, &a, &b, Look::Quadrants)
     };
-    let found: Vec<Crossing> = pairs.filter(|&pair| common(pair) != 2).filter_map(examine).collect();
+    let pairs = pairs.into_iter().filter(|&pair| common(pair) != 2);
+    let found: Vec<Crossing> = pairs.filter_map(examine).collect();
     let real = found.iter().filter(|found| found.real).count();
     (real, found.len() - real)
 }

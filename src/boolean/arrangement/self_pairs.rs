@@ -17,7 +17,7 @@ use crate::boolean::candidates::capsule_tree::{self, CapsuleTree};
 use crate::boolean::candidates::has_needles;
 use crate::boolean::candidates::refined_boxes::Corners;
 use crate::mesh::Buckets;
-use crate::parallel::Runner;
+use crate::parallel::{Runner, build};
 use crate::spatial::{BoxTree, Frame, self_overlapping_pairs, self_overlapping_pairs_apart, visit_pairs};
 use crate::{Error, Mesh};
 
@@ -31,12 +31,17 @@ const MARGIN: f32 = 1e-6;
 const CROWD: usize = 160;
 /// Triangles that stand for all where it is asked how many boxes meet theirs.
 const SAMPLE: usize = 256;
+/// Points that one thread takes at least.
+const POINTS_AT_ONCE: usize = 1 << 14;
 /// No hub.
 const NONE: u32 = u32::MAX;
 
 /// The boxes of all triangles.
 pub(super) fn tree_of(mesh: &Mesh, frame: &Frame) -> BoxTree {
-    let points: Vec<Vec3A> = mesh.positions.iter().map(|position| frame.point(position)).collect();
+    let points = build(mesh.positions.len(), POINTS_AT_ONCE, |first, run: &mut [Vec3A]| {
+        let positions = &mesh.positions[first..];
+        run.iter_mut().zip(positions).for_each(|(point, position)| *point = frame.point(position));
+    });
     BoxTree::of_triangles(&points, &mesh.triangles)
 }
 

@@ -101,11 +101,21 @@ impl<'a> Complex<'a> {
         self
     }
 
-    /// One operand to be tested against itself, shrunk: parts that touch separate.
-    pub(crate) fn alone(operand: Operand<'a>, largest: f64) -> Self {
+    /// One operand, of which some pairs of triangles are tested against each other, shrunk: parts that touch separate.
+    pub(crate) fn alone(operand: Operand<'a>, largest: f64, pairs: &[[u32; 2]]) -> Self {
+        // Directions take as long as all else where the pairs are few: only those of their vertices are made.
+        let mut is_of_pair = vec![false; operand.positions.len()];
+        for &triangle in pairs.as_flattened() {
+            operand.triangles[triangle as usize].iter().for_each(|&v| is_of_pair[v as usize] = true);
+        }
+        let is_around = |triangle: &[u32; 3]| triangle.iter().any(|&v| is_of_pair[v as usize]);
+        let near = (0..)
+            .zip(operand.triangles)
+            .filter(|(_, triangle)| is_around(triangle))
+            .map(|(t, _)| t)
+            .collect();
         let nothing = Operand { positions: &[], triangles: &[] };
-        let all = (0..operand.triangles.len() as u32).collect();
-        Self::new([operand, nothing], [&[]; 2], Motion::Shrink, largest, [all, Vec::new()])
+        Self::new([operand, nothing], [&[]; 2], Motion::Shrink, largest, [near, Vec::new()])
     }
 
     /// Triangles of an operand that may meet the other one, ascending.
