@@ -20,6 +20,24 @@ impl Projection {
         if looks_along { Self { x, y } } else { Self { x: y, y: x } }
     }
 
+    /// The same for a small part of the time; but where products vanish or overflow, and for a triangle that is nearly a line, it may be
+    /// seen from behind.
+    #[inline]
+    pub(crate) fn roughly_of([a, b, c]: &[[f64; 3]; 3]) -> Self {
+        let edge = |p: &[f64; 3], q: &[f64; 3]| [q[0] - p[0], q[1] - p[1], q[2] - p[2]];
+        let ([ux, uy, uz], [vx, vy, vz]) = (edge(a, b), edge(a, c));
+        let normal = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+        let size = normal.map(f64::abs);
+        let axis = if size[0] >= size[1].max(size[2]) {
+            0
+        } else if size[1] >= size[2] {
+            1
+        } else {
+            2
+        };
+        Self::seen_from(axis, normal[axis] >= 0.0)
+    }
+
     /// Along an axis, seen from its positive end, or else from its negative one.
     pub(crate) fn seen_from(axis: usize, positive_end: bool) -> Self {
         let (x, y) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -94,6 +112,7 @@ mod tests {
                     let projection = Projection::of(&corners);
                     let [a, b, c] = corners.map(|p| projection.project(&p));
                     assert_eq!(orient2d(a, b, c), Sign::Positive, "{scale} {turn} {flip}");
+                    assert!(scale != 1.0 || Projection::roughly_of(&corners) == projection);
                     let axis = projection.axis();
                     assert!(axis != projection.x && axis != projection.y);
                     assert_ne!(projection.reversed(), projection);

@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 
 use crate::boolean::complex::Corner;
 use crate::boolean::complex::predicates::Predicates;
-use crate::exact::{Projection, Sign, orient2d};
+use crate::exact::{Projection, Sign, orient2d, orient3d};
 
 /// Whether two triangles plainly have nothing in common but a corner: one lies on one side of the other's plane, or seen along an
 /// axis they lie on different sides of a line. Nearly all pairs are apart, and most ties are of faces in one plane.
@@ -51,28 +51,81 @@ fn has_separating_side(triangle: &[[f64; 3]; 3], other: &[[f64; 3]; 3]) -> bool 
 }
 
 /// Whether two triangles certainly have no point in common: as [`are_apart`], and where they touch the same line from its two sides,
-/// as faces in one plane do, at different places of it.
+/// as faces in one plane do, or the one touches the plane of the other, at different places of it.
 pub(super) fn are_disjoint(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> bool {
-    has_side_that_keeps_off(a, b) || has_side_that_keeps_off(b, a)
+    let seen_a = View::new(a);
+    if seen_a.has_side_that_keeps_off(b) {
+        return true;
+    }
+    let seen_b = View::new(b);
+    seen_b.has_side_that_keeps_off(a)
+        || seen_a.has_plane_that_keeps_off(b)
+        || seen_b.has_plane_that_keeps_off(a)
 }
 
-/// Whether all of `other` lies beyond a side of a triangle, or on its line beyond its ends, seen along the axis that the triangle looks
-/// along most.
-fn has_side_that_keeps_off(triangle: &[[f64; 3]; 3], other: &[[f64; 3]; 3]) -> bool {
-    let seen = Projection::of(triangle);
-    let (t, o) = (triangle.map(|p| seen.project(&p)), other.map(|p| seen.project(&p)));
-    // One that is seen as a line reaches beyond the ends of its sides.
-    orient2d(t[0], t[1], t[2]) == Sign::Positive
-        && (0..3).any(|k| {
-            let (p, q) = (t[k], t[(k + 1) % 3]);
-            let sides = o.map(|x| orient2d(p, q, x));
+/// A triangle seen along an axis that it looks along.
+struct View<'a> {
+    corners: &'a [[f64; 3]; 3],
+    seen: Projection,
+    /// Its corners as they are seen.
+    t: [[f64; 2]; 3],
+    /// Whether it is seen from the front. One that is seen as a line reaches beyond the ends of its sides.
+    is_front: bool,
+}
+
+impl<'a> View<'a> {
+    #[inline]
+    fn new(corners: &'a [[f64; 3]; 3]) -> Self {
+        let seen = Projection::roughly_of(corners);
+        let [a, b, c] = corners;
+        let t = [seen.project(a), seen.project(b), seen.project(c)];
+        Self { corners, seen, t, is_front: orient2d(t[0], t[1], t[2]) == Sign::Positive }
+    }
+
+    /// Whether all of `other` lies beyond a side of the triangle, or on its line beyond its ends.
+    fn has_side_that_keeps_off(&self, other: &[[f64; 3]; 3]) -> bool {
+        let [x, y, z] = other;
+        let o = [self.seen.project(x), self.seen.project(y), self.seen.project(z)];
+        let keeps_off = |k: usize| {
+            let (p, q) = (self.t[k], self.t[(k + 1) % 3]);
+            let mut on_line = SmallVec::<[[f64; 2]; 3]>::new();
+            for x in o {
+                match orient2d(p, q, x) {
+                    Sign::Positive => return false,
+                    Sign::Zero => on_line.push(x),
+                    Sign::Negative => {}
+                }
+            }
             let axis = usize::from(p[0] == q[0]);
             let (low, high) = (p[axis].min(q[axis]), p[axis].max(q[axis]));
-            let on_line =
-                || o.iter().zip(sides).filter(|(_, side)| *side == Sign::Zero).map(|(x, _)| x[axis]);
-            sides.iter().all(|&side| side != Sign::Positive)
-                && (on_line().all(|x| x < low) || on_line().all(|x| x > high))
-        })
+            on_line.iter().all(|x| x[axis] < low) || on_line.iter().all(|x| x[axis] > high)
+        };
+        self.is_front && (0..3).any(keeps_off)
+    }
+
+    /// Whether all of `other` lies on one side of the triangle's plane, and what of it lies in the plane beside the triangle: as a wall on
+    /// a floor does, whose corner is no corner of the floor's triangle.
+    fn has_plane_that_keeps_off(&self, other: &[[f64; 3]; 3]) -> bool {
+        let ([a, b, c], t) = (self.corners, &self.t);
+        let sides = other.map(|x| orient3d(a, b, c, &x));
+        if (sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative)) || !self.is_front {
+            return false;
+        }
+        let in_plane = other.iter().zip(sides).filter(|(_, side)| *side == Sign::Zero);
+        let in_plane: SmallVec<[[f64; 2]; 3]> = in_plane.map(|(x, _)| self.seen.project(x)).collect();
+        // (Nothing lies beyond every line.)
+        let beyond = |p: [f64; 2], q: [f64; 2]| in_plane.iter().all(|x| orient2d(p, q, *x) == Sign::Negative);
+        let is_beyond_side = || (0..3).any(|k| beyond(t[k], t[(k + 1) % 3]));
+        match in_plane.as_slice() {
+            &[p, q] => {
+                let sides = t.map(|corner| orient2d(p, q, corner));
+                (sides[0] != Sign::Zero && sides == [sides[0]; 3]) || is_beyond_side()
+            }
+            // In one plane, sides alone tell.
+            [_, _, _] => false,
+            _ => is_beyond_side(),
+        }
+    }
 }
 
 /// Whether two triangles with the corner `i` of `a` and `j` of `b` in common, and no other, have nothing else in common; false
@@ -106,7 +159,94 @@ fn are_opposite(v: [f64; 2], x: [f64; 2], y: [f64; 2]) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+
     use super::*;
+
+    type Point = [i64; 3];
+
+    fn difference(a: Point, b: Point) -> Point {
+        [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+    }
+
+    fn cross(u: Point, v: Point) -> Point {
+        [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    }
+
+    fn dot(u: Point, v: Point) -> i64 {
+        u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+    }
+
+    /// Whether a triangle of integers has the point `x / d` of its plane in it.
+    fn contains(t: &[Point; 3], x: Point, d: i64) -> bool {
+        let n = cross(difference(t[1], t[0]), difference(t[2], t[0]));
+        (0..3).all(|k| {
+            let (p, q) = (t[k], t[(k + 1) % 3]);
+            let from = difference(x, p.map(|c| c * d));
+            dot(cross(difference(q, p), from), n) * d.signum() >= 0
+        })
+    }
+
+    /// Whether a segment and a triangle, both of integers, have a point in common.
+    fn meets(t: &[Point; 3], p: Point, q: Point) -> bool {
+        let n = cross(difference(t[1], t[0]), difference(t[2], t[0]));
+        let [from, to] = [p, q].map(|end| dot(n, difference(end, t[0])));
+        if from == 0 && to == 0 {
+            // In the plane: an end in the triangle, or a side of it is crossed.
+            let crosses = |k: usize| {
+                let (a, b) = (t[k], t[(k + 1) % 3]);
+                let side = |u: Point, v: Point, x: Point| dot(cross(difference(v, u), difference(x, u)), n);
+                // (Where all lie in one line, their places on it tell.)
+                let overlap =
+                    (0..3).all(|k| a[k].min(b[k]) <= p[k].max(q[k]) && p[k].min(q[k]) <= a[k].max(b[k]));
+                overlap
+                    && side(a, b, p).signum() * side(a, b, q).signum() <= 0
+                    && side(p, q, a).signum() * side(p, q, b).signum() <= 0
+            };
+            return contains(t, p, 1) || contains(t, q, 1) || (0..3).any(crosses);
+        }
+        if from.signum() * to.signum() > 0 {
+            return false;
+        }
+        let x = std::array::from_fn(|k| from * q[k] - to * p[k]);
+        contains(t, x, from - to)
+    }
+
+    #[test]
+    fn what_is_disjoint_has_nothing_in_common() {
+        let mut random = ChaCha8Rng::seed_from_u64(2_811);
+        let (mut disjoint, mut apart, mut meeting) = (0, 0, 0);
+        for round in 0..60_000 {
+            let size = [2, 3, 5][round % 3];
+            let mut triangle = || loop {
+                let t: [Point; 3] =
+                    std::array::from_fn(|_| std::array::from_fn(|_| random.random_range(0..size)));
+                if cross(difference(t[1], t[0]), difference(t[2], t[0])) != [0; 3] {
+                    return t;
+                }
+            };
+            let (s, t) = (triangle(), triangle());
+            let meet = (0..3).any(|k| meets(&s, t[k], t[(k + 1) % 3]) || meets(&t, s[k], s[(k + 1) % 3]));
+            let [a, b] = [s, t].map(|t| t.map(|p| p.map(|x| x as f64)));
+            let found = are_disjoint(&a, &b);
+            assert!(!found || !meet, "{s:?} {t:?}");
+            (disjoint, apart, meeting) =
+                (disjoint + u32::from(found), apart + u32::from(!meet), meeting + u32::from(meet));
+        }
+        assert!(disjoint > apart * 19 / 20 && meeting > 10_000, "{disjoint} of {apart}, {meeting} meet");
+    }
+
+    #[test]
+    fn a_wall_beside_a_triangle_of_its_floor_keeps_off() {
+        let floor = [[0.0, 0.0, 0.0], [2.0, 1.0, 0.0], [0.0, 2.0, 0.0]];
+        let wall = |x: f64, to: f64| [[x, 0.5, 0.0], [x, 0.5, 3.0], [to, 0.0, 3.0]];
+        assert!(are_disjoint(&floor, &wall(2.0, 0.5)) && are_disjoint(&wall(2.0, 0.5), &floor));
+        assert!(!are_disjoint(&floor, &wall(0.5, 2.0)) && !are_disjoint(&wall(0.5, 2.0), &floor));
+        // Standing on an edge, beside it and across.
+        let standing = |x: f64| [[x, -1.0, 0.0], [x, 3.0, 0.0], [0.5, 1.0, 3.0]];
+        assert!(are_disjoint(&floor, &standing(2.5)) && !are_disjoint(&floor, &standing(1.0)));
+    }
 
     #[test]
     fn faces_of_one_plane_on_two_sides_of_a_line_keep_off() {
@@ -124,9 +264,9 @@ mod tests {
             assert_eq!(are_disjoint(&triangle, &other), expected, "{other:?}");
             assert_eq!(are_disjoint(&other, &triangle), expected, "{other:?}");
         }
-        // Over one another, and one that is seen as a line.
-        let over = triangle.map(|[x, y, _]| [x, y, 1.0]);
-        assert!(!are_disjoint(&triangle, &over));
+        // Over one another: apart, but through one another; and one that is seen as a line.
+        let over = |z: f64| triangle.map(|[x, y, _]| [x, y, z + 0.5 * x]);
+        assert!(are_disjoint(&triangle, &over(1.0)) && !are_disjoint(&triangle, &over(-0.25)));
         let wall = [[1.5, 0.0, 0.0], [3.0, 0.0, 0.0], [3.0, 0.0, 1.0]];
         assert!(are_disjoint(&triangle, &wall));
     }
