@@ -82,7 +82,7 @@ def by_trisect(program, path, _):
 
 def by_manifold_rust(program, path, _):
     try:
-        done = subprocess.run([program, str(path)], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([program, "soups", str(path)], capture_output=True, text=True, timeout=60)
     except subprocess.TimeoutExpired:
         return None, 60.0
     if done.returncode != 0:

@@ -1,42 +1,21 @@
-//! What manifold-rust's robust engine makes of soups: `trisect-peers FILE.off ...` prints a line of JSON for each.
+//! Engines in pure Rust beside trisect.
+//!
+//! - `trisect-peers pair OPERATION A B [ROUNDS]`: `union`, `intersection` or `difference` of two files by every engine, turn by turn, from
+//!   arrays to arrays;
+//! - `trisect-peers soups FILE.off ...`: what manifold-rust's robust engine makes of soups.
+//!
+//! Both print lines of JSON.
 
-use std::time::Instant;
+mod pairs;
+mod soups;
 
-use manifold_rust::manifold::Manifold;
-use manifold_rust::types::{MeshGL64, WindingRule};
+use std::error::Error;
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
-    for path in std::env::args().skip(1) {
-        let mesh = read(&path)?;
-        let start = Instant::now();
-        let soup = Manifold::from_mesh_gl64_robust(&mesh);
-        let made = soup.repair_orientation().rebuild_solid(WindingRule::Positive);
-        println!(
-            "{{\"file\": {path:?}, \"status\": \"{:?}\", \"volume\": {}, \"ms\": {:.3}}}",
-            made.status(),
-            made.volume(),
-            start.elapsed().as_secs_f64() * 1e3
-        );
+fn main() -> Result<(), Box<dyn Error>> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    match words.split_first() {
+        Some((verb, files)) if verb == "soups" => soups::run(files),
+        Some((verb, rest)) if verb == "pair" => pairs::run(rest),
+        _ => Err("trisect-peers pair OPERATION A B [ROUNDS], or trisect-peers soups FILE.off ...".into()),
     }
-    Ok(())
-}
-
-/// Reads an OFF file of triangles, as the benchmark writes it.
-fn read(path: &str) -> Result<MeshGL64, Box<dyn std::error::Error>> {
-    let text = std::fs::read_to_string(path)?;
-    let mut words = text.split_ascii_whitespace().skip(1);
-    let mut next = || words.next().ok_or("too few numbers");
-    let (vertices, faces): (usize, usize) = (next()?.parse()?, next()?.parse()?);
-    next()?;
-    let mut mesh = MeshGL64 { num_prop: 3, ..MeshGL64::default() };
-    for _ in 0..3 * vertices {
-        mesh.vert_properties.push(next()?.parse()?);
-    }
-    for _ in 0..faces {
-        next()?;
-        for _ in 0..3 {
-            mesh.tri_verts.push(next()?.parse()?);
-        }
-    }
-    Ok(mesh)
 }
