@@ -52,6 +52,10 @@ fn a_convex_wedge_has_no_tunnels() {
         let found = Extraction::new([-1.2; 3], [1.2; 3], 4.157e-3).smooth(smooth).run(&cap).unwrap();
         assert!(found.divided_cells > 0);
         assert_eq!(manifold(&found.mesh), (1, 0));
+        if smooth {
+            let most = turns(&cap, &found).into_iter().fold(0.0, f64::max);
+            assert!(most < 5.0, "{most}");
+        }
     }
 }
 
