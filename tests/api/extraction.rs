@@ -44,6 +44,22 @@ fn a_sphere_is_one_piece_within_the_tolerance() {
 }
 
 #[test]
+fn a_convex_wedge_has_no_tunnels() {
+    // The edge of the cap passes a plane of the lattice where the sphere is nearly parallel to it: for a few cells in a row the points of that
+    // plane within the cap are each the only one of a cell, and the middles of these cells are outside.
+    let cap = field("min(x + y + z - 1.0488, sphere(x, y, z, 1))");
+    for smooth in [false, true] {
+        let found = Extraction::new([-1.2; 3], [1.2; 3], 4.157e-3).smooth(smooth).run(&cap).unwrap();
+        assert!(found.divided_cells > 0);
+        assert_eq!(manifold(&found.mesh), (1, 0));
+        if smooth {
+            let most = turns(&cap, &found).into_iter().fold(0.0, f64::max);
+            assert!(most < 5.0, "{most}");
+        }
+    }
+}
+
+#[test]
 fn a_box_keeps_its_edges_and_corners() {
     let found = extract("min(1 - abs(x), 1 - abs(y), 1 - abs(z))", 1.1, 1e-3);
     report("box", &found);

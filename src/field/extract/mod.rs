@@ -26,6 +26,7 @@
 
 mod boundaries;
 mod cell_lines;
+mod centre;
 mod contour;
 mod faces;
 mod filling;

@@ -4,10 +4,10 @@ use glam::DVec3;
 
 use super::boundaries::CellFace;
 use super::cell_lines::corners_of;
+use super::centre::{SpokeEnd, centre};
 use super::filling::{Cell, Corner};
 use super::lattice::{Key, unkey};
 use super::loops::{LoopLink, chain, stretches};
-use super::octree::value_at;
 use super::solve::{crossing, deviation};
 use super::tables::{FaceLine, Tables};
 use super::tetrahedra;
@@ -134,14 +134,12 @@ fn spoke(spokes: &[(Key, u32)], point: Key) -> u32 {
     spokes.iter().find(|spoke| spoke.0 == point).map_or(0, |spoke| spoke.1)
 }
 
-/// The surface in a cell divided into tetrahedra from its middle over its faces' triangles.
+/// The surface in a cell divided into tetrahedra from a point in it over its faces' triangles.
 fn tetrahedral(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Result<CellSurface, Error> {
     let tape = tables.tape(cell)?;
-    let (low, high) = tables.lattice.corners(tables.cells[cell].cube);
-    let middle = (low + high) * 0.5;
-    let value = value_at(tape, middle, scratch)?;
+    let (middle, value) = centre(tables, cell, tape, scratch)?;
     let mut piece = CellSurface::default();
-    // Vertices between the cell's middle and a lattice point or the middle of a face.
+    // Vertices between that point and a lattice point or the middle of a face.
     let mut within: Vec<(SpokeEnd, u32)> = Vec::new();
     for CellFace { face, points: outline, inside } in tables.boundaries.of(cell) {
         let (face_low, face_high) = tables.span(face);
@@ -187,14 +185,6 @@ fn tetrahedral(tables: &Tables<'_>, cell: usize, scratch: &mut Scratch) -> Resul
         }
     }
     Ok(piece)
-}
-
-/// What a vertex inside a divided cell is on the way to.
-#[derive(Clone, Copy, PartialEq)]
-enum SpokeEnd {
-    Point(Key),
-    /// The middle of a face, doubled so that it is whole.
-    Face([u32; 3]),
 }
 
 fn inner_vertex<'v>(

@@ -1,5 +1,5 @@
 //! Cells that the surface crosses in more than one piece, or whose faces it cuts in more than one line: divided into
-//! tetrahedra over the cell's middle, each of which the surface crosses in at most one piece.
+//! tetrahedra from a point in the cell, each of which the surface crosses in at most one piece.
 
 /// A corner of a tetrahedron: its number in the cell, and whether it is inside.
 pub(super) type Corner = (u32, bool);

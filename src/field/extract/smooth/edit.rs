@@ -2,6 +2,7 @@
 
 use super::cost::{Shape, sag};
 use super::net::{Kind, Net};
+use super::stirred::Task;
 
 /// What changes must keep.
 #[derive(Clone, Copy, Debug)]
@@ -34,19 +35,10 @@ const MOST_AROUND: usize = 12;
 
 /// Flips edges as long as the triangles beside them get better.
 pub(super) fn flip_all(net: &mut Net, limits: Limits) {
-    let mut touched = vec![true; net.vertices.len()];
     for _ in 0..FLIP_ROUNDS {
-        let edges: Vec<[u32; 2]> =
-            net.edges().filter(|edge| edge.iter().any(|&end| touched[end as usize])).collect();
-        touched.fill(false);
         let mut flips = 0;
-        for [a, b] in edges {
-            if let Some([c, d]) = flip(net, a, b, limits) {
-                flips += 1;
-                for vertex in [a, b, c, d] {
-                    touched[vertex as usize] = true;
-                }
-            }
+        for [a, b] in net.stirred_edges(Task::Flip) {
+            flips += u32::from(flip(net, a, b, limits));
         }
         if flips == 0 {
             break;
@@ -54,8 +46,15 @@ pub(super) fn flip_all(net: &mut Net, limits: Limits) {
     }
 }
 
-/// Flips one edge if that is better. The ends of the new one.
-pub(super) fn flip(net: &mut Net, a: u32, b: u32, limits: Limits) -> Option<[u32; 2]> {
+/// Flips one edge if that is better. Whether it was.
+pub(super) fn flip(net: &mut Net, a: u32, b: u32, limits: Limits) -> bool {
+    let Some(beside) = better_flipped(net, a, b, limits) else { return false };
+    net.flip(a, b, beside);
+    true
+}
+
+/// The triangles beside an edge if flipping it is better.
+fn better_flipped(net: &Net, a: u32, b: u32, limits: Limits) -> Option<[u32; 2]> {
     let beside = net.beside(a, b)?;
     let [left, right] = beside;
     if net.star(a).len() < 4 || net.star(b).len() < 4 || net.is_crease(a, b, beside) {
@@ -73,23 +72,17 @@ pub(super) fn flip(net: &mut Net, a: u32, b: u32, limits: Limits) -> Option<[u32
         return None;
     }
     let sagging = |x, y| sag(net.vertex(x), net.vertex(y), side);
-    if sagging(c, d) > limits.sag.max(sagging(a, b)) {
-        return None;
-    }
-    net.flip(a, b, beside);
-    Some([c, d])
+    (sagging(c, d) <= limits.sag.max(sagging(a, b))).then_some(beside)
 }
 
 /// Collapses edges, short ones first, as long as the surface stays within the limits.
 pub(super) fn collapse_all(net: &mut Net, limits: Limits) {
-    // Vertices whose triangles have changed since edges there were last looked at.
-    let mut changed = vec![true; net.vertices.len()];
     for _ in 0..COLLAPSE_ROUNDS {
+        let looked_at = net.stirred_edges(Task::Collapse);
         let length = |[a, b]: [u32; 2]| net.place(a).distance_squared(net.place(b)).to_bits();
-        let looked_at = net.edges().filter(|edge| edge.iter().any(|&end| changed[end as usize]));
-        let mut edges: Vec<(u64, [u32; 2])> = looked_at.map(|edge| (length(edge), edge)).collect();
+        let mut edges: Vec<(u64, [u32; 2])> =
+            looked_at.into_iter().map(|edge| (length(edge), edge)).collect();
         edges.sort_unstable();
-        changed.fill(false);
         let mut touched = vec![false; net.vertices.len()];
         let mut collapses = 0;
         for (_, [a, b]) in edges {
@@ -108,8 +101,6 @@ pub(super) fn collapse_all(net: &mut Net, limits: Limits) {
             let (from, to, beside) = ways[chosen];
             net.collapse(from, to, beside);
             touched[to as usize] = true;
-            changed[to as usize] = true;
-            net.neighbours(to).for_each(|vertex| changed[vertex as usize] = true);
             collapses += 1;
         }
         if collapses * LAST <= net.present().count() {

@@ -30,6 +30,7 @@ mod net;
 mod pieces;
 mod place;
 mod sharpen;
+mod stirred;
 
 use glam::DVec3;
 
@@ -39,6 +40,7 @@ use edit::Limits;
 pub(super) use nearby::Nearby;
 use net::{Kind, Net};
 use pieces::{Patch, Piece, Surface};
+use stirred::Task;
 
 use crate::boolean::crossing_pairs;
 use crate::field::expression::Scratch;
@@ -196,7 +198,7 @@ impl Work<'_> {
         if !piece.is_left() {
             self.improve(&mut net, &mut scratch)?;
         }
-        let patch = Patch::of(&net);
+        let mut patch = Patch::of(&net);
         let mut off = |corners: [DVec3; 3]| check::fit(corners, self.nearby, &mut scratch).deviation;
         let mut faults = Vec::new();
         for (corners, before) in patch.changed(piece, surface) {
@@ -207,6 +209,7 @@ impl Work<'_> {
                 faults.push(Fault::of(corners));
             }
         }
+        patch.checked();
         Ok((patch, faults))
     }
 
@@ -252,16 +255,18 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// The edges to get a new vertex: the longest of every triangle that is off, unless it is a crease or short.
+    /// The edges to get a new vertex: the longest of every triangle that is off, unless it is a crease or short. Triangles that were looked at
+    /// before are not again: what was not off is not, and what has no such edge has none.
     fn edges_to_divide(
         &self,
-        net: &Net,
+        net: &mut Net,
         scratch: &mut Scratch,
         is_off: impl Fn(Fit) -> bool,
     ) -> Vec<[u32; 2]> {
         let mut edges = Vec::new();
         for (_, corners) in net.present() {
-            if corners.iter().any(|&corner| net.is(corner, Kind::Frozen)) {
+            let is_new = corners.iter().any(|&corner| net.stirred.for_task(corner, Task::Divide));
+            if !is_new || corners.iter().any(|&corner| net.is(corner, Kind::Frozen)) {
                 continue;
             }
             let places = corners.map(|corner| net.place(corner));
@@ -282,6 +287,7 @@ impl Work<'_> {
                 .max_by(|&x, &y| length(x).total_cmp(&length(y)));
             edges.extend(longest.map(|[x, y]| [x.min(y), x.max(y)]));
         }
+        net.stirred.settle_all(Task::Divide);
         edges.sort_unstable();
         edges.dedup();
         edges

@@ -3,6 +3,8 @@
 use glam::DVec3;
 use smallvec::SmallVec;
 
+use super::stirred::{Stirred, Task};
+
 /// What may be done with a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -62,8 +64,8 @@ pub(super) struct Net {
     /// For every triangle which way the surface there faces: it tells which of several normals of a corner is meant.
     sides: Vec<DVec3>,
     stars: Vec<Star>,
-    /// Whether triangles around a vertex have changed since it was settled.
-    stirred: Vec<bool>,
+    /// Where triangles around a vertex have changed since they were looked at.
+    pub(super) stirred: Stirred,
     /// What changes on trial began from.
     before: Option<Before>,
 }
@@ -85,7 +87,7 @@ impl Net {
                 stars[corner as usize].push(number);
             }
         }
-        let stirred = vec![true; vertices.len()];
+        let stirred = Stirred::all(vertices.len());
         Self { vertices, triangles, sides, stars, stirred, before: None }
     }
 
@@ -131,6 +133,14 @@ impl Net {
     pub(super) fn edges(&self) -> impl Iterator<Item = [u32; 2]> {
         let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
         self.present().flat_map(move |(_, corners)| sides(corners)).filter(|[a, b]| a < b)
+    }
+
+    /// The edges with an end where something has changed since they were last looked at for this, which they are now.
+    pub(super) fn stirred_edges(&mut self, task: Task) -> Vec<[u32; 2]> {
+        let is_new = |edge: &[u32; 2]| edge.iter().any(|&end| self.stirred.for_task(end, task));
+        let edges = self.edges().filter(is_new).collect();
+        self.stirred.settle_all(task);
+        edges
     }
 
     /// The two triangles at an edge: that which goes from `a` to `b`, and that which goes back.
@@ -181,16 +191,6 @@ impl Net {
         })
     }
 
-    /// Whether anything around a vertex has changed since [`Net::settle`].
-    pub(super) fn has_stirred(&self, vertex: u32) -> bool {
-        self.stirred[vertex as usize]
-    }
-
-    /// Notes that a vertex is well where it is, with the triangles that it has.
-    pub(super) fn settle(&mut self, vertex: u32) {
-        self.stirred[vertex as usize] = false;
-    }
-
     /// Moves a vertex.
     pub(super) fn displace(&mut self, vertex: u32, moved: Vertex) {
         self.vertices[vertex as usize] = moved;
@@ -199,11 +199,9 @@ impl Net {
 
     /// Notes that triangles of `vertex` have changed.
     fn stir(&mut self, vertex: u32) {
-        self.stirred[vertex as usize] = true;
+        self.stirred.stir(vertex);
         for &triangle in &self.stars[vertex as usize] {
-            for corner in self.triangles[triangle as usize] {
-                self.stirred[corner as usize] = true;
-            }
+            self.triangles[triangle as usize].into_iter().for_each(|corner| self.stirred.stir(corner));
         }
     }
 
@@ -272,7 +270,7 @@ impl Net {
         self.stars[c as usize].push(right);
         self.stars[d as usize].push(left);
         for corner in [a, b, c, d] {
-            self.stirred[corner as usize] = true;
+            self.stirred.stir(corner);
         }
     }
 
@@ -322,7 +320,7 @@ impl Net {
         self.stars[c as usize].push(first);
         self.stars[d as usize].push(first + 1);
         self.stars.push(SmallVec::from_slice(&[left, right, first, first + 1]));
-        self.stirred.push(true);
+        self.stirred.push(None);
         self.stir(middle);
     }
 

@@ -8,6 +8,7 @@ use glam::DVec3;
 use super::care::{self, Care, Fault};
 use super::features::frozen_at;
 use super::net::{Kind, Net, Vertex};
+use super::stirred::{Stirred, Task};
 use crate::Mesh;
 
 /// Times that halves are taken at another part than the middle: once along each axis of a body.
@@ -78,6 +79,8 @@ pub(super) struct Patch {
     vertices: Vec<Vertex>,
     triangles: Vec<[u32; 3]>,
     sides: Vec<DVec3>,
+    /// Where there may be something to do yet.
+    stirred: Stirred,
 }
 
 impl Piece {
@@ -109,7 +112,9 @@ impl Piece {
             }
         };
         let vertices = self.numbers.iter().zip(&self.care).map(vertex).collect();
-        Net::new(vertices, self.triangles.clone(), self.sides.clone())
+        let mut net = Net::new(vertices, self.triangles.clone(), self.sides.clone());
+        net.stirred = Stirred::of(&surface.net.stirred, &self.numbers);
+        net
     }
 
     /// Takes more care around the faults, the farther the more often it was worked over; leaves all as it was after `most` times.
@@ -131,22 +136,39 @@ impl Piece {
 impl Patch {
     pub(super) fn of(net: &Net) -> Self {
         let (triangles, sides) = net.present().map(|(number, corners)| (corners, net.side(number))).unzip();
-        Self { vertices: net.vertices.clone(), triangles, sides }
+        Self { vertices: net.vertices.clone(), triangles, sides, stirred: net.stirred.clone() }
     }
 
-    /// Its triangles that were worked over, by the places of their corners; of those of which a corner stays, and that are still the same
-    /// triangles, where they were before, too.
+    /// Its triangles that were worked over since they were checked, by the places of their corners; of those of which a corner stays, and
+    /// that are still the same triangles, where they were before, too.
     pub(super) fn changed(
         &self,
         piece: &Piece,
         surface: &Surface,
     ) -> impl Iterator<Item = ([DVec3; 3], Option<[DVec3; 3]>)> {
-        let is_free = |corners: &&[u32; 3]| is_changed(corners, &self.vertices);
-        self.triangles.iter().filter(is_free).map(|corners| {
-            let stays = corners.iter().any(|&corner| self.vertices[corner as usize].kind == Kind::Frozen);
+        let is_new = |corners: &&[u32; 3]| {
+            is_changed(corners, &self.vertices)
+                && corners.iter().any(|&corner| self.stirred.for_task(corner, Task::Check))
+        };
+        self.triangles.iter().filter(is_new).map(|corners| {
+            let stays = self.stays(corners);
             let before = || corners.map(|corner| surface.places[piece.numbers[corner as usize] as usize]);
             (corners.map(|corner| self.vertices[corner as usize].place), stays.then(before))
         })
+    }
+
+    /// Notes that what is [`Patch::changed`] was looked at. Next to vertices that stay all is looked at again, when these are within a piece.
+    pub(super) fn checked(&mut self) {
+        self.stirred.settle_all(Task::Check);
+        for corners in &self.triangles {
+            if self.stays(corners) {
+                corners.iter().for_each(|&corner| self.stirred.stir(corner));
+            }
+        }
+    }
+
+    fn stays(&self, corners: &[u32; 3]) -> bool {
+        corners.iter().any(|&corner| self.vertices[corner as usize].kind == Kind::Frozen)
     }
 }
 
@@ -162,7 +184,7 @@ pub(super) fn joined<'p>(
 ) -> (Surface, Vec<(u32, bool)>) {
     const NONE: u32 = u32::MAX;
     let mut numbers = vec![NONE; surface.places.len()];
-    let (mut vertices, mut places) = (Vec::new(), Vec::new());
+    let (mut vertices, mut places, mut stirred) = (Vec::new(), Vec::new(), Stirred::default());
     let (mut triangles, mut sides, mut origins) = (Vec::new(), Vec::new(), Vec::new());
     for (index, (piece, patch)) in (0u32..).zip(pieces.iter().zip(patches)) {
         let mut own = vec![NONE; patch.vertices.len()];
@@ -183,6 +205,7 @@ pub(super) fn joined<'p>(
                     };
                     places.push(place);
                     vertices.push(Vertex { calm: false, ..vertex.clone() });
+                    stirred.push(Some((&patch.stirred, corner)));
                 }
                 own[corner as usize] = *number;
             }
@@ -191,7 +214,9 @@ pub(super) fn joined<'p>(
         }
         sides.extend(&patch.sides);
     }
-    (Surface { net: Net::new(vertices, triangles, sides), places }, origins)
+    let mut net = Net::new(vertices, triangles, sides);
+    net.stirred = stirred;
+    (Surface { net, places }, origins)
 }
 
 #[cfg(test)]

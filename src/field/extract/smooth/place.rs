@@ -6,6 +6,7 @@ use super::cost::{Shape, sag};
 use super::edit::Limits;
 use super::nearby::{Foot, Nearby};
 use super::net::{Kind, Net, Vertex};
+use super::stirred::Task;
 use crate::field::expression::Scratch;
 use crate::{Control, Error};
 
@@ -27,12 +28,12 @@ pub(super) fn relax(
 ) -> Result<(), Error> {
     for vertex in 0..net.vertices.len() as u32 {
         let may_move = net.is(vertex, Kind::Free) && !net.vertex(vertex).calm && !net.star(vertex).is_empty();
-        if !may_move || !net.has_stirred(vertex) {
+        if !may_move || !net.stirred.for_task(vertex, Task::Move) {
             continue;
         }
         match better_place(net, vertex, nearby, limits, scratch) {
             Some(foot) => net.displace(vertex, Vertex::free(foot.place, foot.outward)),
-            None => net.settle(vertex),
+            None => net.stirred.settle(vertex, Task::Move),
         }
         if (vertex as usize).is_multiple_of(AT_ONCE) {
             control.check()?;

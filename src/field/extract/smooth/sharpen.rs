@@ -11,6 +11,7 @@ use super::super::solve::least_step;
 use super::features::{LEAST_JUMP, count_creases};
 use super::nearby::Nearby;
 use super::net::{Kind, Net, Vertex};
+use super::stirred::Task;
 use crate::field::expression::Scratch;
 
 /// Of the way to the ends of the edge: how near to the crease its sides are looked at, step by step. Tangent planes are off by the
@@ -28,8 +29,8 @@ const OFF: f64 = 0.1;
 
 /// Splits the edges that bridge a crease.
 pub(super) fn sharpen(net: &mut Net, nearby: &Nearby<'_>, scratch: &mut Scratch) {
-    let bridges: Vec<[u32; 2]> =
-        net.edges().filter(|&[a, b]| may_bridge(net.vertex(a), net.vertex(b))).collect();
+    let mut bridges = net.stirred_edges(Task::Sharpen);
+    bridges.retain(|&[a, b]| may_bridge(net.vertex(a), net.vertex(b)));
     let first = net.vertices.len() as u32;
     for [a, b] in bridges {
         let Some(beside) = net.beside(a, b).filter(|&beside| !net.is_frozen(beside)) else { continue };
