@@ -15,6 +15,7 @@ use super::remove_vertices::{Arc, fill, makes_double_edge};
 use super::{flip, short_edges};
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::rounding::distance_order;
+use crate::mesh::BitSet;
 use crate::polygon::Triangulator;
 use crate::{Control, Error};
 
@@ -70,14 +71,20 @@ const MOST_ROUNDS: u32 = 4;
 pub(super) fn flatten(patch: &mut Patch<'_>, control: &Control) -> Result<(), Error> {
     let planes = NearPlanes::of(patch);
     let mut triangulator = Triangulator::default();
+    let mut met = BitSet::new(patch.point_count());
+    let representatives = patch.source().representatives();
+    representatives
+        .into_iter()
+        .filter_map(|point| patch.find_point(point))
+        .for_each(|point| met.insert(point.0));
     for _ in 0..MOST_ROUNDS {
-        let done = leave_out(patch, &planes, &mut triangulator, control)?;
+        let done = leave_out(patch, &planes, &met, &mut triangulator, control)?;
+        patch.note_flattening(done);
+        short_edges::collapse(patch, true);
+        flip::flip_needles(patch);
         if done.vertices == 0 {
             break;
         }
-        patch.note_flattening(done);
-        short_edges::collapse(patch);
-        flip::flip_needles(patch);
     }
     Ok(())
 }
@@ -86,6 +93,7 @@ pub(super) fn flatten(patch: &mut Patch<'_>, control: &Control) -> Result<(), Er
 fn leave_out(
     patch: &mut Patch<'_>,
     planes: &NearPlanes,
+    met: &BitSet,
     triangulator: &mut Triangulator,
     control: &Control,
 ) -> Result<Flattening, Error> {
@@ -106,7 +114,7 @@ fn leave_out(
         }
         tries[point.index()] += 1;
         let Some(star) = patch.star(point) else { continue };
-        if !is_of_operation(patch, point, &star) {
+        if !met.contains(point.0) && !is_of_operation(patch, point, &star) {
             continue;
         }
         if let Some(displacement) = try_leave_out(patch, planes, triangulator, point, &star) {
@@ -138,6 +146,10 @@ fn try_leave_out(
 ) -> Option<f64> {
     let n = star.len();
     let old: Vec<LocalFace> = star.iter().map(|&(face, _)| face).collect();
+    if let Some((faces, thickness)) = thin_shell(patch, point, star) {
+        patch.replace(&faces, &[]);
+        return Some(thickness);
+    }
     // 1. The planes of its faces, which must meet at an angle. (Those back to back are a film thinner than rounding.)
     let of_faces: Vec<Option<(u32, &NearPlane)>> =
         star.iter().map(|&(face, _)| planes.of_origin(patch[face].origin)).collect();
@@ -172,6 +184,40 @@ fn try_leave_out(
     let new = filled(patch, star, &of_faces, point, triangulator)?;
     patch.replace(&old, &new);
     Some(distinct.iter().map(|(_, plane)| 2.0 * plane.distance(&position)).fold(0.0, f64::max))
+}
+
+/// The faces of a shell of two triangles, or of four that encloses nothing but rounding, and how thick it is; `None` if a point is not of
+/// such a one.
+fn thin_shell(
+    patch: &Patch<'_>,
+    point: LocalPoint,
+    star: &[(LocalFace, LocalPoint)],
+) -> Option<(Vec<LocalFace>, f64)> {
+    let mut faces: Vec<LocalFace> = star.iter().map(|&(face, _)| face).collect();
+    // What lies beyond the side opposite the point of each.
+    let beyond = |i: usize| patch.left_of(star[(i + 1) % star.len()].1, star[i].1);
+    match star.len() {
+        2 => (beyond(0) == Some(faces[1])).then_some((faces, 0.0)),
+        3 => {
+            let base = beyond(0).filter(|&base| beyond(1) == Some(base) && beyond(2) == Some(base))?;
+            faces.push(base);
+            let ring = [0, 1, 2].map(|i| star[i].1);
+            let thickness =
+                thickness([point, ring[0], ring[1], ring[2]].map(|corner| patch.position(corner)));
+            let most = ROUNDINGS * patch.source().rounding.length_at(patch.position(point));
+            (thickness <= most).then_some((faces, thickness))
+        }
+        _ => None,
+    }
+}
+
+/// The least height of a tetrahedron.
+fn thickness(corners: [&[f64; 3]; 4]) -> f64 {
+    let height = |i: usize| {
+        let [apex, a, b, c] = [0, 1, 2, 3].map(|k| *corners[(i + k) % 4]);
+        NearPlane::of([a, b, c]).map_or(0.0, |plane| plane.distance(&apex))
+    };
+    (0..4).map(height).fold(f64::INFINITY, f64::min)
 }
 
 /// The hole that a point inside one plane leaves, or one on the crease between two, triangulated in these; `None` where that is not

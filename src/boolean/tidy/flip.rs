@@ -76,15 +76,51 @@ pub(super) fn flip_needles(patch: &mut Patch<'_>) {
         }
         budget -= 1;
         let Some(flip) = Flip::of(patch, face, |a, c| patch.left_of(a, c)) else { continue };
-        let length = |u, v| distance_order(patch.position(u), patch.position(v));
-        if length(flip.b, flip.d) >= length(flip.a, flip.c) && is_low(patch, flip.other) {
+        let is_pair = is_low(patch, flip.other);
+        if is_pair && try_close(patch, &flip) {
             continue;
         }
-        let is_harmless = is_low(patch, flip.other);
-        if flip_if(patch, &flip, is_harmless) {
+        let length = |u, v| distance_order(patch.position(u), patch.position(v));
+        if is_pair && length(flip.b, flip.d) >= length(flip.a, flip.c) {
+            continue;
+        }
+        if flip_if(patch, &flip, is_pair) {
             queue.extend([flip.flat, flip.other].into_iter().filter(|&face| is_low(patch, face)));
         }
     }
+}
+
+/// Closes a slit: drops both triangles of a flip, whose middle corners are no further apart than rounding, and makes one of these. False
+/// if that would move a vertex of an operand, or leave no 2-manifold.
+fn try_close(patch: &mut Patch<'_>, flip: &Flip) -> bool {
+    let &Flip { flat, other, a, b, c, d } = flip;
+    let (p, q) = (*patch.position(b), *patch.position(d));
+    if b == d || !patch.source().rounding.is_short(&p, &q) || !patch.is_complete(b) || !patch.is_complete(d) {
+        return false;
+    }
+    // 1. The one that the operation made goes.
+    let (gone, kept, [of_gone, of_kept]) =
+        if patch.is_new(b) || p == q { (b, d, [flat, other]) } else { (d, b, [other, flat]) };
+    if !patch.is_new(gone) && p != q {
+        return false;
+    }
+    // 2. No edge twice.
+    let Some(star) = patch.star(gone) else { return false };
+    let is_apart = |&(_, x): &(LocalFace, LocalPoint)| {
+        x == a || x == c || (x != kept && !patch.has_edge(x, kept) && !patch.has_edge(kept, x))
+    };
+    if !star.iter().all(is_apart) {
+        return false;
+    }
+    let mut old = vec![of_gone, of_kept];
+    let mut new = Vec::with_capacity(star.len());
+    for (face, _) in star.into_iter().filter(|entry| entry.0 != of_gone) {
+        let corners = patch[face].corners.map(|corner| if corner == gone { kept } else { corner });
+        new.push((corners, patch[face].origin));
+        old.push(face);
+    }
+    patch.replace(&old, &new);
+    true
 }
 
 /// Flips if the surface stays a sound 2-manifold; whether two triangles have been made.

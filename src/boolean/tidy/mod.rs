@@ -141,8 +141,10 @@ fn attempt(
             remove_vertices::remove_vertices(&mut patch, candidates.clone(), control)?;
         }
         // 6. Edges within rounding are collapsed, and slivers within rounding flipped.
-        short_edges::collapse(&mut patch);
-        flip::flip_low(&mut patch, Rounding::is_low);
+        short_edges::collapse(&mut patch, false);
+        if !settings.flatten {
+            flip::flip_low(&mut patch, Rounding::is_low);
+        }
         // 7. What is in one plane but for rounding becomes one face.
         if settings.flatten {
             flip::flip_needles(&mut patch);

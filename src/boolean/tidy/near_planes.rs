@@ -40,7 +40,7 @@ pub(super) struct NearPlane {
 
 impl NearPlane {
     /// The plane of a triangle; `None` where it has no area.
-    fn of(base: [[f64; 3]; 3]) -> Option<Self> {
+    pub(super) fn of(base: [[f64; 3]; 3]) -> Option<Self> {
         Some(Self { base, normal: unit_normal(&base)?, projection: Projection::of(&base) })
     }
 
