@@ -174,7 +174,8 @@ fn build(
     let mut pieces = sums.pieces;
     pieces.extend(cut.pieces);
     // 8. Tidying, near the curve only.
-    let flatten = settings.flatten && (cut.has_slivers || has_nearly_parallel(arrangement));
+    let flatten =
+        settings.flatten && (cut.has_slivers || !sums.done.is_empty() || has_nearly_parallel(arrangement));
     let tidy_settings = tidy::Settings {
         remove_vertices: settings.remove_vertices,
         rounding,

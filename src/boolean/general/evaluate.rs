@@ -63,7 +63,8 @@ pub(crate) fn evaluate(
     let cut = cut(&shape, &sums.done, rounding, runner)?;
     sums.pieces.extend(cut.pieces);
     // 3. Tidying.
-    let flatten = finish.flatten && (cut.has_slivers || has_nearly_parallel(general));
+    let flatten =
+        finish.flatten && (cut.has_slivers || !sums.done.is_empty() || has_nearly_parallel(general));
     let settings = tidy::Settings {
         remove_vertices: finish.remove_vertices,
         rounding,

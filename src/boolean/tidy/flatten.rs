@@ -81,7 +81,7 @@ pub(super) fn flatten(patch: &mut Patch<'_>, control: &Control) -> Result<(), Er
         let done = leave_out(patch, &planes, &met, &mut triangulator, control)?;
         patch.note_flattening(done);
         short_edges::collapse(patch, true);
-        flip::flip_needles(patch);
+        flip::flip_slivers(patch);
         if done.vertices == 0 {
             break;
         }
@@ -288,7 +288,7 @@ fn merged(
         // The last of a body.
         return None;
     }
-    // 3. All look the way they did, and none becomes a needle.
+    // 3. All look the way they did, and none becomes a sliver.
     let mut new = Vec::with_capacity(n - 2);
     for i in staying {
         let [old, corners] = [point, target].map(|first| [first, ring(i), ring(i + 1)]);

@@ -62,7 +62,7 @@ pub(super) fn flip_low(patch: &mut Patch<'_>, is_low: IsLow) {
 
 /// Flips triangles no higher than rounding, also where the one on the other side is no higher: as long as edges get shorter, so
 /// that it comes to an end. Which way these look is chance, so nobody asks.
-pub(super) fn flip_needles(patch: &mut Patch<'_>) {
+pub(super) fn flip_slivers(patch: &mut Patch<'_>) {
     let is_low = |patch: &Patch<'_>, face: LocalFace| is_lower(patch, face, Rounding::is_low);
     let mut queue: Vec<LocalFace> = patch.face_numbers().filter(|&face| is_low(patch, face)).collect();
     let mut budget = FLIPS_PER_TRIANGLE * queue.len();

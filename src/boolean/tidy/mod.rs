@@ -147,7 +147,7 @@ fn attempt(
         }
         // 7. What is in one plane but for rounding becomes one face.
         if settings.flatten {
-            flip::flip_needles(&mut patch);
+            flip::flip_slivers(&mut patch);
             flatten::flatten(&mut patch, control)?;
         }
         // 8. Again, if that has left triangles without area.
