@@ -101,9 +101,9 @@ pub mod subdivision;
 
 pub use boolean::{
     BooleanOptions, Cell, Certificate, Contact, CornerOrigin, CutFaces, Embed, Embedding, Expression,
-    ExpressionError, Grid, Imprinted, Leaf, NearContact, NearContacts, OperandState, Operation, Origin,
-    Outcome, PlaneCut, Rule, Section, SectionSide, Sections, Snapping, Solidified, Solidify, SolidifyReport,
-    TrimSide, Trimmed, UnknownName, boolean,
+    ExpressionError, Flattening, Grid, Imprinted, Leaf, NearContact, NearContacts, OperandState, Operation,
+    Origin, Outcome, PlaneCut, Rule, Section, SectionSide, Sections, Snapping, Solidified, Solidify,
+    SolidifyReport, TrimSide, Trimmed, UnknownName, boolean,
 };
 pub use control::{CancelToken, Control, Limit};
 pub use error::{Error, Failure, FileAction};

@@ -219,6 +219,14 @@ class Embedding(Record):
 
 
 @dataclass(frozen=True)
+class Flattening(Record):
+    """What lay in one plane but for rounding and became one face: ``vertices`` left out, by how much the surface moved at most."""
+
+    vertices: int = 0
+    displacement: float = 0.0
+
+
+@dataclass(frozen=True)
 class Snapping(Record):
     """What snapping moved and split before the operation."""
 
@@ -276,6 +284,7 @@ class Certificate(Record):
     three_face_points: int = 0
     walls_left: int = 0
     embedding: Optional[Embedding] = _of(Embedding.of)
+    flattening: Flattening = field(default_factory=Flattening, metadata={"of": Flattening.of})
     snapping: Optional[Snapping] = _of(Snapping.of)
     operands: List[OperandState] = field(
         default_factory=list, metadata={"of": lambda states: [OperandState.of(state) for state in states]}

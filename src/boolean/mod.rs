@@ -61,6 +61,7 @@ pub use result::near_contacts::{NearContact, NearContacts};
 pub use result::outcome::Outcome;
 pub use snapping::report::Snapping;
 pub use solidify::{Solidified, Solidify, SolidifyReport};
+pub use tidy::Flattening;
 
 use crate::{Error, Solid};
 

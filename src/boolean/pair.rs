@@ -13,6 +13,7 @@ use crate::boolean::classify::winding::Windings;
 use crate::boolean::complex::classes;
 use crate::boolean::complex::operation::Operation;
 use crate::boolean::complex::origin::Origin;
+use crate::boolean::complex::planes::are_nearly_parallel;
 use crate::boolean::complex::predicates::Perturbed;
 use crate::boolean::complex::rounding::Rounding;
 use crate::boolean::complex::{Complex, Motion, Operand};
@@ -20,7 +21,7 @@ use crate::boolean::cut::piece::has_low;
 use crate::boolean::cut::{cut, plane_sums};
 use crate::boolean::result::assemble::{Assembled, assemble};
 use crate::boolean::result::origins::{Origins, Sequence};
-use crate::boolean::tidy::{self, Ground, tidy};
+use crate::boolean::tidy::{self, Flattening, Ground, tidy};
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
@@ -37,6 +38,8 @@ pub(super) struct Settings<'a> {
     pub(super) glue: bool,
     /// Whether vertices that nobody needs are removed.
     pub(super) remove_vertices: bool,
+    /// Whether what lies in one plane but for rounding becomes one face.
+    pub(super) flatten: bool,
     /// Whether it is asked if rounding may have made something cross.
     pub(super) find_low: bool,
     /// The result's group of each triangle of A and of B; empty if there are no groups.
@@ -171,21 +174,24 @@ fn build(
     let mut pieces = sums.pieces;
     pieces.extend(cut.pieces);
     // 8. Tidying, near the curve only.
+    let flatten =
+        settings.flatten && (cut.has_slivers || !sums.done.is_empty() || has_nearly_parallel(arrangement));
     let tidy_settings = tidy::Settings {
         remove_vertices: settings.remove_vertices,
         rounding,
         glue: settings.glue,
         contacts,
-        always: cut.has_slivers || !sums.done.is_empty(),
+        flatten,
+        always: cut.has_slivers || flatten || !sums.done.is_empty(),
     };
     let tidied = tidy(Ground::Body(body), &pieces, &tidy_settings, runner)?;
     runner.control.check()?;
     // 9. The result: untouched triangles in their order, then the pieces.
-    let (pieces, replaced, clean_up_stopped) = match tidied {
-        None => (pieces, None, 0),
+    let (pieces, replaced, clean_up_stopped, flattening) = match tidied {
+        None => (pieces, None, 0, Flattening::default()),
         Some(tidied) => {
             arrangement.points.add(tidied.copies.into_iter().map(AddedPoint::Copy));
-            (tidied.new, Some(tidied.replaced), tidied.stopped)
+            (tidied.new, Some(tidied.replaced), tidied.stopped, tidied.flattening)
         }
     };
     let body = Body { arrangement, windings, parts };
@@ -193,7 +199,16 @@ fn build(
     let has_inverted = cut.has_inverted;
     let may_cross = settings.find_low
         && (has_inverted || has_low(&pieces, rounding, |point| body.arrangement.points.position(point)));
-    Ok(Assembled { has_inverted, may_cross, clean_up_stopped, ..assembled })
+    Ok(Assembled { has_inverted, may_cross, clean_up_stopped, flattening, ..assembled })
+}
+
+/// Whether two faces that cross lie in one plane, but for an angle that rounding can have made.
+fn has_nearly_parallel(arrangement: &Arrangement<'_>) -> bool {
+    let Curve { complex, crossings, .. } = &arrangement.curve;
+    crossings.segments().any(|(_, segment)| {
+        let [of_a, of_b] = segment.faces.map(|face| complex.positions(face));
+        are_nearly_parallel(&of_a, &of_b)
+    })
 }
 
 /// The parts that are summed up together. The halves of a symmetric difference share no inside and touch in the curve, so

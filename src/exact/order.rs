@@ -9,6 +9,7 @@ use super::Sign;
 use super::filter::orient3d_filter;
 use super::integer::Integer;
 use super::lattice::Lattice;
+use super::orient::near_heights;
 use super::perturbed::{
     COEFFICIENTS, EXPONENTS, LOW_COEFFICIENTS, PerturbedPoint, Polynomial, low_coefficients,
 };
@@ -39,6 +40,38 @@ pub(crate) fn compare_filter(
         + 4.0 * f64::EPSILON * (left.abs() + right.abs());
     // The bounds hold a floor far above what underflow can lose; overflow makes this comparison fail.
     if n.abs() > bound { Some(order_from(n > 0.0, p_above_1, p_above_2)) } else { None }
+}
+
+/// The same in twice the precision: for faces nearly in one plane, over which the ends of the edge are as high as rounding made them.
+#[must_use]
+pub(crate) fn compare_in_double_double(
+    p: &[f64; 3],
+    q: &[f64; 3],
+    first: [&[f64; 3]; 3],
+    second: [&[f64; 3]; 3],
+    p_above_1: bool,
+    p_above_2: bool,
+) -> Option<Sign> {
+    // A product of two heights keeps all of its digits from here on.
+    const LOW: f64 = f64::from_bits((1023 - 900) << 52);
+    // Products and their difference are off by less than 2^-100 of themselves.
+    const ERROR: f64 = f64::from_bits((1023 - 97) << 52);
+    let [(a0, a0_bound), (a1, a1_bound)] = near_heights([p, q], first)?;
+    let [(b0, b0_bound), (b1, b1_bound)] = near_heights([p, q], second)?;
+    let (left, right) = (a0 * b1, b0 * a1);
+    let n = left - right;
+    let [a0, a1, b0, b1, left, right] = [a0, a1, b0, b1, left, right].map(|x| x.high.abs());
+    if left < LOW || right < LOW {
+        return None;
+    }
+    // (The last factor is for the rounding of the bound itself.)
+    let bound = ((a0 + a0_bound) * b1_bound
+        + b1 * a0_bound
+        + (b0 + b0_bound) * a1_bound
+        + a1 * b0_bound
+        + ERROR * (left + right))
+        * (1.0 + 16.0 * f64::EPSILON);
+    (n.high.abs() > bound).then(|| order_from(n.high > 0.0, p_above_1, p_above_2))
 }
 
 fn order_from(n_positive: bool, p_above_1: bool, p_above_2: bool) -> Sign {
@@ -112,13 +145,54 @@ mod tests {
     use std::collections::BTreeMap;
 
     use crate::exact::perturbed::tests::{degenerate, lowest, minus, reference, times};
-    use rand::SeedableRng;
     use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+
+    #[test]
+    fn faces_nearly_in_one_plane_with_the_edge_agree_with_integers() {
+        let mut rng = ChaCha8Rng::seed_from_u64(6);
+        let (mut told, mut tried) = (0, 0);
+        for round in 0..4_000 {
+            let scale = 10f64.powi(round % 60 - 30);
+            // Points of one plane askew, each coordinate rounded.
+            let mut point = || {
+                let [s, t]: [f64; 2] = std::array::from_fn(|_| rng.random_range(-1.0..1.0));
+                let position = [s + 0.3 * t + 0.7, 0.2 * s - t + 0.1, 0.6 * s + 0.5 * t - 0.4];
+                PerturbedPoint { position: position.map(|x| x * scale), first: [0; 3], second: [0; 3] }
+            };
+            let points: [PerturbedPoint; 8] = std::array::from_fn(|_| point());
+            let [p, q, rest @ ..] = points.each_ref();
+            let (first, second) = ([rest[0], rest[1], rest[2]], [rest[3], rest[4], rest[5]]);
+            let side = |t: [&PerturbedPoint; 3], x: &PerturbedPoint| {
+                crate::exact::orient3d(&t[0].position, &t[1].position, &t[2].position, &x.position)
+            };
+            let sides = [side(first, p), side(first, q), side(second, p), side(second, q)];
+            if sides.contains(&Sign::Zero) || sides[0] == sides[1] || sides[2] == sides[3] {
+                continue;
+            }
+            tried += 1;
+            let [t1, t2] = [first, second].map(|t| t.map(|x| x.position));
+            let above = |sign: Sign| sign == Sign::Positive;
+            let found = compare_in_double_double(
+                &p.position,
+                &q.position,
+                t1.each_ref(),
+                t2.each_ref(),
+                above(sides[0]),
+                above(sides[2]),
+            );
+            if let Some(sign) = found {
+                told += 1;
+                assert_eq!(sign, compare(p, q, first, second), "{points:?}");
+            }
+        }
+        assert!(tried > 300 && told * 10 > tried * 9, "{told} of {tried}");
+    }
 
     #[test]
     fn agrees_with_rationals_at_every_order() {
         let mut rng = ChaCha8Rng::seed_from_u64(5);
-        let (mut orders, mut filtered, mut tried) = ([0u32; 49], 0, 0);
+        let (mut orders, mut filtered, mut in_double_double, mut tried) = ([0u32; 49], 0, 0, 0);
         for round in 0..60_000 {
             let scale = [1.0, 0.3, 1e-90][round % 3];
             let points: [PerturbedPoint; 8] =
@@ -161,7 +235,19 @@ mod tests {
                 filtered += 1;
                 assert_eq!(sign, expected, "filter");
             }
+            if let Some(sign) = compare_in_double_double(
+                &p.position,
+                &q.position,
+                t1.each_ref(),
+                t2.each_ref(),
+                above(sides[0]),
+                above(sides[2]),
+            ) {
+                in_double_double += 1;
+                assert_eq!(sign, expected, "twice the precision");
+            }
         }
+        assert!(in_double_double >= filtered, "{in_double_double} {filtered}");
         assert!(tried > 10_000 && filtered > 500, "{tried} {filtered}");
         for exponent in [0, 1, 2, 3, 16, 17, 18, 32] {
             assert!(orders[exponent] > 0, "order {exponent} must occur: {orders:?}");

@@ -105,6 +105,12 @@ pub(super) fn orient3d_exact(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64;
 /// The sign in twice the precision, where that tells: for nearly all points that are off a plane by rounding alone, a tenth of
 /// what expansions take. All magnitudes must be within those of expansions.
 fn orient3d_in_double_double(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> Option<Sign> {
+    let (determinant, bound) = near_orient3d(a, b, c, d);
+    (determinant.high.abs() > bound).then(|| Sign::of_f64(determinant.high))
+}
+
+/// The determinant in twice the precision, and a bound on its error. All magnitudes must be within those of expansions.
+fn near_orient3d(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64; 3]) -> (DoubleDouble, f64) {
     // Every operation is off by less than 2^-101 of its result, and there are five between a difference and the determinant.
     const ERROR: f64 = f64::from_bits((1023 - 97) << 52);
     let row = |p: &[f64; 3]| [0, 1, 2].map(|k| DoubleDouble::difference(p[k], d[k]));
@@ -114,7 +120,20 @@ fn orient3d_in_double_double(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64;
         determinant = determinant + u[i] * (v[j] * w[k] - v[k] * w[j]);
         permanent += u[i].high.abs() * ((v[j].high * w[k].high).abs() + (v[k].high * w[j].high).abs());
     }
-    (determinant.high.abs() > ERROR * permanent).then(|| Sign::of_f64(determinant.high))
+    (determinant, ERROR * permanent)
+}
+
+/// The heights of both ends of an edge over a triangle, times twice its area, in twice the precision, and bounds on their errors; `None`
+/// where magnitudes leave the range in which that holds.
+pub(super) fn near_heights(
+    ends: [&[f64; 3]; 2],
+    triangle: [&[f64; 3]; 3],
+) -> Option<[(DoubleDouble, f64); 2]> {
+    let [a, b, c] = triangle;
+    let magnitudes = ends.into_iter().chain(triangle).flatten().map(|x| x.abs()).filter(|&x| x != 0.0);
+    let (low, high) = magnitudes.fold((f64::INFINITY, 0.0f64), |(low, high), x| (low.min(x), high.max(x)));
+    let is_in_range = low > EXPANSION_LOW && high < EXPANSION_HIGH;
+    is_in_range.then(|| ends.map(|end| near_orient3d(a, b, c, end)))
 }
 
 /// Within these magnitudes (2^-240 and 2^240) every product of three coordinate differences and its last bit stay far

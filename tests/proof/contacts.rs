@@ -216,7 +216,7 @@ fn bars_turned_together_pass_their_own_check() {
 }
 
 /// A cube of side 3^depth and, per axis, the square bars that bore it.
-fn menger(depth: u32) -> Vec<Solid> {
+pub(super) fn menger(depth: u32) -> Vec<Solid> {
     let size = 3i64.pow(depth);
     let mut operands = vec![common::cube([0.0; 3], size as f64)];
     for axis in 0..3 {

@@ -23,3 +23,4 @@ mod same_bits;
 mod scales;
 mod snapping;
 mod trial;
+mod turned;

@@ -135,6 +135,10 @@ fn compare(complex: &Complex<'_>, predicates: &Predicates<'_>, x: &Crossing, y: 
         y.leaves,
     )
     .or_else(|| compare_by_sides(predicates, &t1, &t2, x.leaves, y.leaves))
+    .or_else(|| {
+        let (t1, t2) = (first.each_ref(), second.each_ref());
+        order::compare_in_double_double(&p.position, &q.position, t1, t2, x.leaves, y.leaves)
+    })
     .unwrap_or_else(|| {
         let point = |corner: &Corner| complex.perturbed(corner);
         let (t1, t2) = (t1.each_ref().map(point), t2.each_ref().map(point));

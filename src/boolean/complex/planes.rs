@@ -3,6 +3,8 @@
 use super::Complex;
 use super::ids::FaceId;
 use super::origin::Origin;
+use glam::DVec3;
+
 use crate::exact::{PlaneFilter, Projection, Sign, collinear, orient2d, orient3d, orient3d_filter};
 
 impl Complex<'_> {
@@ -74,6 +76,26 @@ pub(crate) fn look_same_way(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
     let seen = Projection::of(x);
     let [a, b, c] = y.map(|p| seen.project(&p));
     orient2d(a, b, c) == Sign::Positive
+}
+
+/// The unit normal of a triangle; `None` where it has none.
+pub(crate) fn unit_normal([a, b, c]: &[[f64; 3]; 3]) -> Option<DVec3> {
+    let [a, b, c] = [a, b, c].map(|corner| DVec3::from_array(*corner));
+    let (u, v) = (b - a, c - a);
+    let size = u.abs().max_element().max(v.abs().max_element());
+    (u / size).cross(v / size).try_normalize()
+}
+
+/// Whether two triangles have normals that differ, or are opposite, by no more than what rounding turns faces by that were
+/// flush: an angle of a millionth, in radians.
+pub(crate) fn are_nearly_parallel(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
+    const ANGLE: f64 = 1e-6;
+    let normal = |t: &[[f64; 3]; 3]| {
+        let [a, b, c] = t.map(DVec3::from_array);
+        (b - a).cross(c - a)
+    };
+    let (n, m) = (normal(x), normal(y));
+    n.cross(m).length_squared() <= ANGLE * ANGLE * n.length_squared() * m.length_squared()
 }
 
 /// Whether two triangles that lie in one plane, exactly, have area in common.

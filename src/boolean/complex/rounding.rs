@@ -41,6 +41,12 @@ impl Rounding {
         longest <= length(self.largest) && longest <= length(size_at_hand(self.largest, own()))
     }
 
+    /// The length that rounding can give to something at a point.
+    #[inline]
+    pub(crate) fn length_at(&self, point: &[f64; 3]) -> f64 {
+        ROUNDING_ULPS * self.unit * size_at_hand(self.largest, largest_coordinate(point))
+    }
+
     /// Whether a triangle is no higher over its longest side than rounding.
     #[inline]
     pub(crate) fn is_low(&self, corners: [&[f64; 3]; 3]) -> bool {

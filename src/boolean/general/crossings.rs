@@ -208,6 +208,10 @@ pub(crate) fn compare_on_edge(
         low_inside,
     )
     .or_else(|| compare_with_plane(predicates, &t1, &t2, low_inside))
+    .or_else(|| {
+        let (t1, t2) = (first.each_ref(), second.each_ref());
+        order::compare_in_double_double(&p.position, &q.position, t1, t2, node.leaves, low_inside)
+    })
     .unwrap_or_else(|| {
         let point = |corner: &Corner| surfaces.perturbed(corner);
         let (t1, t2) = (t1.each_ref().map(point), t2.each_ref().map(point));

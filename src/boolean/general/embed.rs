@@ -117,8 +117,9 @@ pub(crate) fn embed(
         let inside: Vec<bool> =
             general.faces.labels.all().iter().map(|label| winding(label, 0) > 0).collect();
         let unit = grid.unit() * f64::from(coarser(report.rounds)).exp2();
-        let arrays =
-            evaluate(&general, &inside, Finish { remove_vertices, unit, find_low: false }, runner)?.arrays;
+        let finish = Finish { remove_vertices, unit, flatten: remove_vertices, find_low: false };
+        let arrays = evaluate(&general, &inside, finish, runner)?.arrays;
+        report.displacement += arrays.flattening.displacement;
         let before = &parts;
         let origins = arrays.origins.iter().map(|origin| {
             let source = before.origins[origin.triangle as usize];

@@ -8,6 +8,7 @@ use crate::Error;
 use crate::boolean::arrangement::points::AddedPoint;
 use crate::boolean::complex::ids::{FaceId, PointId};
 use crate::boolean::complex::origin::Origin;
+use crate::boolean::complex::planes::are_nearly_parallel;
 use crate::boolean::complex::predicates::Perturbed;
 use crate::boolean::complex::rounding::Rounding;
 use crate::boolean::cut::piece::{Piece, has_low};
@@ -15,7 +16,7 @@ use crate::boolean::cut::plane_sums::{SheetEdge, SheetFaces, SheetSource};
 use crate::boolean::cut::{Cut, Filler};
 use crate::boolean::result::assemble::Assembled;
 use crate::boolean::result::origins::Origins;
-use crate::boolean::tidy::{self, Ground, tidy};
+use crate::boolean::tidy::{self, Flattening, Ground, tidy};
 use crate::exact::Projection;
 use crate::mesh::BitSet;
 use crate::parallel::Runner;
@@ -38,6 +39,8 @@ pub(crate) struct Finish {
     pub(crate) remove_vertices: bool,
     /// The distance from 1 to the next number that coordinates are rounded to; what is thinner is cleaned up.
     pub(crate) unit: f64,
+    /// Whether what lies in one plane but for rounding becomes one face.
+    pub(crate) flatten: bool,
     /// Whether it is asked if rounding may have made something cross.
     pub(crate) find_low: bool,
 }
@@ -60,6 +63,8 @@ pub(crate) fn evaluate(
     let cut = cut(&shape, &sums.done, rounding, runner)?;
     sums.pieces.extend(cut.pieces);
     // 3. Tidying.
+    let flatten =
+        finish.flatten && (cut.has_slivers || !sums.done.is_empty() || has_nearly_parallel(general));
     let settings = tidy::Settings {
         remove_vertices: finish.remove_vertices,
         rounding,
@@ -67,25 +72,36 @@ pub(crate) fn evaluate(
         // tells which faces bound the same material.
         glue: true,
         contacts: general.contacts,
-        always: cut.has_slivers || !sums.done.is_empty(),
+        flatten,
+        always: cut.has_slivers || flatten || !sums.done.is_empty(),
     };
     let tidied = tidy(Ground::Shape(&shape), &sums.pieces, &settings, runner)?;
     runner.control.check()?;
     // 4. The arrays.
-    let (pieces, replaced, clean_up_stopped) = match tidied {
-        None => (sums.pieces, None, 0),
+    let (pieces, replaced, clean_up_stopped, flattening) = match tidied {
+        None => (sums.pieces, None, 0, Flattening::default()),
         Some(tidied) => {
             shape.added.extend(tidied.copies.into_iter().map(AddedPoint::Copy));
             let [replaced, _] = tidied.replaced;
-            (tidied.new, Some(replaced), tidied.stopped)
+            (tidied.new, Some(replaced), tidied.stopped, tidied.flattening)
         }
     };
     let arrays = assemble(&shape, &pieces, replaced.as_ref());
     let has_inverted = cut.has_inverted;
     let may_cross =
         finish.find_low && (has_inverted || has_low(&pieces, rounding, |point| shape.position(point)));
-    let arrays = Assembled { has_inverted, may_cross, clean_up_stopped, ..arrays };
+    let arrays = Assembled { has_inverted, may_cross, clean_up_stopped, flattening, ..arrays };
     Ok(Evaluated { arrays, walls_left: sums.declined })
+}
+
+/// Whether two faces that cross lie in one plane, but for an angle that rounding can have made.
+fn has_nearly_parallel(general: &General) -> bool {
+    let positions = |face: FaceId| general.surfaces.positions(face);
+    let mut segments = general.crossings.segments.iter();
+    segments.any(|segment| {
+        let [f, g] = segment.faces.map(positions);
+        are_nearly_parallel(&f, &g)
+    })
 }
 
 /// What is left of the faces of all sheets.

@@ -205,15 +205,19 @@ impl<'a> Shape<'a> {
 
     /// Whether two sources look the same way from the same plane and belong to the same group.
     pub(crate) fn are_mergeable(&self, x: Origin, y: Origin) -> bool {
-        let surfaces = &self.general.surfaces;
-        let group = |origin: Origin| surfaces.group(FaceId::new(origin.triangle));
-        if group(x) != group(y) {
+        if !self.belong_together(x, y) {
             return false;
         }
         if x.triangle == y.triangle {
             return x.reversed == y.reversed;
         }
         self.are_coplanar(x, y) && look_same_way(&self.source(x), &self.source(y))
+    }
+
+    /// Whether two sources belong to the same group.
+    pub(crate) fn belong_together(&self, x: Origin, y: Origin) -> bool {
+        let group = |origin: Origin| self.general.surfaces.group(FaceId::new(origin.triangle));
+        group(x) == group(y)
     }
 
     /// Whether two sources lie in the same plane, exactly; false for triangles without area.

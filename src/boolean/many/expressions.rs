@@ -123,6 +123,7 @@ impl Arranged<'_> {
         let finish = Finish {
             remove_vertices: policy.remove_vertices,
             unit: f64::EPSILON,
+            flatten: policy.flattens(),
             find_low: policy.embed == Embed::WhereNeeded,
         };
         let made = evaluate(self.general, &inside, finish, runner)?;
@@ -143,6 +144,7 @@ impl Arranged<'_> {
             contacts: self.general.contacts,
             inverted,
             clean_up_stopped: arrays.clean_up_stopped,
+            flattening: arrays.flattening,
             three_face_points: self.general.lines.triples.len() as u64,
             walls_left: made.walls_left,
             operands: self.states.clone(),
@@ -223,7 +225,7 @@ fn states(
 fn inward_volume(general: &General, operand: u32, runner: Runner<'_>) -> Result<f64, Error> {
     let labels = general.faces.labels.all();
     let inwards: Vec<bool> = labels.iter().map(|label| winding(label, operand) < 0).collect();
-    let finish = Finish { remove_vertices: true, unit: f64::EPSILON, find_low: false };
+    let finish = Finish { remove_vertices: true, unit: f64::EPSILON, flatten: false, find_low: false };
     let arrays = evaluate(general, &inwards, finish, runner)?.arrays;
     Ok(Mesh::new(arrays.positions, arrays.triangles).volume())
 }

@@ -18,6 +18,7 @@ use crate::boolean::result::certificate::{Notes, OperandState};
 use crate::boolean::result::inverted::count_inverted;
 use crate::boolean::result::origins::Origins;
 use crate::boolean::result::outcome::Outcome;
+use crate::boolean::tidy::Flattening;
 use crate::mesh::FaceGroups;
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
@@ -40,6 +41,8 @@ struct Partial<'a> {
     may_cross: bool,
     /// How often a step of the clean-up stopped at its bound on the way.
     clean_up_stopped: u64,
+    /// What became one plane that was so but for rounding, on the way.
+    flattening: Flattening,
 }
 
 impl<'a> Partial<'a> {
@@ -52,6 +55,7 @@ impl<'a> Partial<'a> {
             may_be_inverted: false,
             may_cross: false,
             clean_up_stopped: 0,
+            flattening: Flattening::default(),
         }
     }
 
@@ -104,6 +108,7 @@ pub(super) fn run(
             0
         },
         clean_up_stopped: result.clean_up_stopped,
+        flattening: result.flattening,
         operands: operands.iter().map(|solid| OperandState::of(solid)).collect(),
         ..Notes::default()
     };
@@ -206,6 +211,7 @@ impl Engine<'_> {
             fuse: self.policy.contact == Contact::Fuse,
             glue: operation == Operation::SymmetricDifference,
             remove_vertices: self.policy.remove_vertices,
+            flatten: self.policy.flattens(),
             find_low: self.policy.embed == Embed::WhereNeeded,
             groups: [&a.groups, &b.groups],
             attributed: self.givens.map(|givens| Attributed { givens, origins: [&a.origins, &b.origins] }),
@@ -233,6 +239,7 @@ impl Engine<'_> {
             may_be_inverted: a.may_be_inverted || b.may_be_inverted || made.has_inverted,
             may_cross: a.may_cross || b.may_cross || made.may_cross,
             clean_up_stopped: a.clean_up_stopped + b.clean_up_stopped + made.clean_up_stopped,
+            flattening: a.flattening.beside(b.flattening).and(made.flattening),
         })
     }
 }

@@ -42,6 +42,13 @@ pub(crate) struct Policy {
     pub(crate) snap: Option<f64>,
 }
 
+impl Policy {
+    /// Whether what lies in one plane but for rounding becomes one face: not where every point is to stay as it was rounded.
+    pub(crate) fn flattens(&self) -> bool {
+        self.remove_vertices && self.embed != Embed::Never
+    }
+}
+
 /// The error of a call without operands.
 pub(super) fn no_operands() -> Error {
     Error::InvalidArgument("a boolean needs at least one operand".into())

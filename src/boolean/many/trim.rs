@@ -67,6 +67,7 @@ impl BooleanOptions {
                 glue: false,
                 // (Faces that are merged might differ in their attributes.)
                 remove_vertices: policy.remove_vertices && sheet.attributes.is_empty(),
+                flatten: false,
                 find_low: false,
                 groups: [&sheet.groups.of_triangle, &[]],
                 attributed: None,

@@ -11,6 +11,7 @@ use crate::boolean::complex::origin::Origin;
 use crate::boolean::cut::piece::Piece;
 use crate::boolean::result::numbers::Numbers;
 use crate::boolean::result::origins::{Kept, Origins};
+use crate::boolean::tidy::Flattening;
 use crate::mesh::BitSet;
 use crate::parallel::{Runner, parts, ranges};
 
@@ -26,6 +27,8 @@ pub(crate) struct Assembled {
     pub(crate) may_cross: bool,
     /// How often a step of the clean-up stopped at its bound with work left.
     pub(crate) clean_up_stopped: u64,
+    /// What became one plane that was so but for rounding.
+    pub(crate) flattening: Flattening,
 }
 
 impl Assembled {
@@ -37,7 +40,8 @@ impl Assembled {
         if self.triangles.is_empty() {
             let clean_up_stopped = self.clean_up_stopped + other.clean_up_stopped;
             let may_cross = self.may_cross || other.may_cross;
-            return Ok(Self { clean_up_stopped, may_cross, ..other });
+            let flattening = self.flattening.beside(other.flattening);
+            return Ok(Self { clean_up_stopped, may_cross, flattening, ..other });
         }
         let vertices = self.positions.len() + other.positions.len();
         if vertices > u32::MAX as usize {
@@ -50,6 +54,7 @@ impl Assembled {
         self.has_inverted |= other.has_inverted;
         self.may_cross |= other.may_cross;
         self.clean_up_stopped += other.clean_up_stopped;
+        self.flattening = self.flattening.beside(other.flattening);
         Ok(self)
     }
 }

@@ -6,6 +6,7 @@ use crate::Solid;
 use crate::boolean::general::embed::Embedding;
 use crate::boolean::result::near_contacts::NearContacts;
 use crate::boolean::snapping::report::Snapping;
+use crate::boolean::tidy::Flattening;
 use crate::exact::collinear;
 use crate::parallel::map_chunks;
 
@@ -51,6 +52,8 @@ pub struct Certificate {
     pub walls_left: u64,
     /// What was done about crossings that rounding makes; `None` where nothing gave reason to look for any.
     pub embedding: Option<Embedding>,
+    /// What became one plane that was so but for rounding: nothing where it is not asked that crossings be looked for.
+    pub flattening: Flattening,
     /// What was moved and split by snapping; `None` where that was not asked for.
     pub snapping: Option<Snapping>,
     /// For each operand what is known of its crossings with itself.
@@ -110,6 +113,7 @@ pub(crate) struct Notes {
     pub(crate) three_face_points: u64,
     pub(crate) walls_left: u64,
     pub(crate) embedding: Option<Embedding>,
+    pub(crate) flattening: Flattening,
     pub(crate) snapping: Option<Snapping>,
     pub(crate) operands: Vec<OperandState>,
 }
@@ -147,6 +151,7 @@ impl Certificate {
             three_face_points: notes.three_face_points,
             walls_left: notes.walls_left,
             embedding: notes.embedding,
+            flattening: notes.flattening,
             snapping: notes.snapping,
             operands: notes.operands.clone(),
         }

@@ -8,6 +8,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use crate::boolean::complex::origin::Origin;
+use crate::boolean::complex::planes::unit_normal;
 use crate::exact::at_hand::largest_coordinate;
 use crate::exact::{Projection, Sign, orient2d, orient3d};
 use crate::mesh::Bounds;
@@ -211,14 +212,6 @@ impl<'a> Region<'a> {
         let is_over = [(p, q), (q, r), (r, p)].iter().all(|&(u, v)| orient2d(u, v, x) != Sign::Negative);
         (is_over && orient3d(a, b, c, point) != Sign::Zero).then_some(distance)
     }
-}
-
-/// The unit normal of a triangle; `None` where it has none.
-fn unit_normal([a, b, c]: &[[f64; 3]; 3]) -> Option<DVec3> {
-    let [a, b, c] = [a, b, c].map(|corner| DVec3::from_array(*corner));
-    let (u, v) = (b - a, c - a);
-    let size = u.abs().max_element().max(v.abs().max_element());
-    (u / size).cross(v / size).try_normalize()
 }
 
 #[cfg(test)]

@@ -207,7 +207,7 @@ impl Work<'_> {
 
     fn boundary(&self, general: &General, inside: &[bool]) -> Result<Assembled, Error> {
         let remove_vertices = self.policy.remove_vertices && self.soup.mesh.attributes.is_empty();
-        let finish = Finish { remove_vertices, unit: f64::EPSILON, find_low: true };
+        let finish = Finish { remove_vertices, unit: f64::EPSILON, flatten: false, find_low: true };
         Ok(evaluate(general, inside, finish, self.runner)?.arrays)
     }
 

@@ -4,7 +4,7 @@
 use super::face::{LocalFace, LocalPoint};
 use super::flatness::{is_flat, is_lower, middle};
 use super::patch::Patch;
-use crate::boolean::complex::rounding::IsLow;
+use crate::boolean::complex::rounding::{IsLow, Rounding, distance_order};
 
 /// Flips per triangle that is low at the start. Each flip moves a vertex off a longest side, so few are needed; the bound
 /// ends cycles among triangles that all have no area.
@@ -60,8 +60,76 @@ pub(super) fn flip_low(patch: &mut Patch<'_>, is_low: IsLow) {
     }
 }
 
+/// Flips triangles no higher than rounding, also where the one on the other side is no higher: as long as edges get shorter, so
+/// that it comes to an end. Which way these look is chance, so nobody asks.
+pub(super) fn flip_slivers(patch: &mut Patch<'_>) {
+    let is_low = |patch: &Patch<'_>, face: LocalFace| is_lower(patch, face, Rounding::is_low);
+    let mut queue: Vec<LocalFace> = patch.face_numbers().filter(|&face| is_low(patch, face)).collect();
+    let mut budget = FLIPS_PER_TRIANGLE * queue.len();
+    while let Some(face) = queue.pop() {
+        if !is_low(patch, face) {
+            continue;
+        }
+        if budget == 0 {
+            patch.count_stop();
+            break;
+        }
+        budget -= 1;
+        let Some(flip) = Flip::of(patch, face, |a, c| patch.left_of(a, c)) else { continue };
+        let is_pair = is_low(patch, flip.other);
+        if is_pair && try_close(patch, &flip) {
+            continue;
+        }
+        let length = |u, v| distance_order(patch.position(u), patch.position(v));
+        if is_pair && length(flip.b, flip.d) >= length(flip.a, flip.c) {
+            continue;
+        }
+        if flip_if(patch, &flip, is_pair) {
+            queue.extend([flip.flat, flip.other].into_iter().filter(|&face| is_low(patch, face)));
+        }
+    }
+}
+
+/// Closes a slit: drops both triangles of a flip, whose middle corners are no further apart than rounding, and makes one of these. False
+/// if that would move a vertex of an operand, or leave no 2-manifold.
+fn try_close(patch: &mut Patch<'_>, flip: &Flip) -> bool {
+    let &Flip { flat, other, a, b, c, d } = flip;
+    let (p, q) = (*patch.position(b), *patch.position(d));
+    if b == d || !patch.source().rounding.is_short(&p, &q) || !patch.is_complete(b) || !patch.is_complete(d) {
+        return false;
+    }
+    // 1. The one that the operation made goes.
+    let (gone, kept, [of_gone, of_kept]) =
+        if patch.is_new(b) || p == q { (b, d, [flat, other]) } else { (d, b, [other, flat]) };
+    if !patch.is_new(gone) && p != q {
+        return false;
+    }
+    // 2. No edge twice.
+    let Some(star) = patch.star(gone) else { return false };
+    let is_apart = |&(_, x): &(LocalFace, LocalPoint)| {
+        x == a || x == c || (x != kept && !patch.has_edge(x, kept) && !patch.has_edge(kept, x))
+    };
+    if !star.iter().all(is_apart) {
+        return false;
+    }
+    let mut old = vec![of_gone, of_kept];
+    let mut new = Vec::with_capacity(star.len());
+    for (face, _) in star.into_iter().filter(|entry| entry.0 != of_gone) {
+        let corners = patch[face].corners.map(|corner| if corner == gone { kept } else { corner });
+        new.push((corners, patch[face].origin));
+        old.push(face);
+    }
+    patch.replace(&old, &new);
+    true
+}
+
 /// Flips if the surface stays a sound 2-manifold; whether two triangles have been made.
 fn try_flip(patch: &mut Patch<'_>, flip: &Flip) -> bool {
+    flip_if(patch, flip, is_flat(patch, flip.flat))
+}
+
+/// The same; it is not asked which way both look afterwards where that is harmless.
+fn flip_if(patch: &mut Patch<'_>, flip: &Flip, is_harmless: bool) -> bool {
     let &Flip { flat, other, a, b, c, d } = flip;
     if d == b {
         // The same triangle turned over: both enclose nothing.
@@ -74,9 +142,8 @@ fn try_flip(patch: &mut Patch<'_>, flip: &Flip) -> bool {
     }
     let origin = patch[other].origin;
     let new = [([a, b, d], origin), ([b, c, d], origin)];
-    let is_harmless =
-        is_flat(patch, flat) || new.iter().all(|&(corners, origin)| patch.is_sound(corners, origin));
-    if !is_harmless || patch.has_edge(b, d) || patch.has_edge(d, b) {
+    let is_fine = is_harmless || new.iter().all(|&(corners, origin)| patch.is_sound(corners, origin));
+    if !is_fine || patch.has_edge(b, d) || patch.has_edge(d, b) {
         return false;
     }
     patch.replace(&[flat, other], &new);

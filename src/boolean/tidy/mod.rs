@@ -12,9 +12,11 @@ mod chain;
 mod edge_points;
 mod face;
 mod flatness;
+mod flatten;
 mod flip;
 mod gather;
 mod lines;
+mod near_planes;
 mod patch;
 mod point_grid;
 mod remove_vertices;
@@ -32,6 +34,7 @@ use crate::boolean::cut::piece::Piece;
 use crate::parallel::Runner;
 use crate::{Control, Error};
 use face::LocalPoint;
+pub use flatten::Flattening;
 use patch::{Patch, Tidied};
 use separate::Separation;
 pub(crate) use source::Ground;
@@ -52,6 +55,8 @@ pub(super) struct Settings {
     pub(super) glue: bool,
     /// How many decisions plain coordinates left open: without any, nothing touches.
     pub(super) contacts: u64,
+    /// Whether what lies in one plane but for rounding becomes one face.
+    pub(super) flatten: bool,
     /// Whether to clean up even where the arrangement gives no reason to: cutting left slivers, or faces were added up.
     pub(super) always: bool,
 }
@@ -136,9 +141,16 @@ fn attempt(
             remove_vertices::remove_vertices(&mut patch, candidates.clone(), control)?;
         }
         // 6. Edges within rounding are collapsed, and slivers within rounding flipped.
-        short_edges::collapse(&mut patch);
-        flip::flip_low(&mut patch, Rounding::is_low);
-        // 7. Again, if that has left triangles without area.
+        short_edges::collapse(&mut patch, false);
+        if !settings.flatten {
+            flip::flip_low(&mut patch, Rounding::is_low);
+        }
+        // 7. What is in one plane but for rounding becomes one face.
+        if settings.flatten {
+            flip::flip_slivers(&mut patch);
+            flatten::flatten(&mut patch, control)?;
+        }
+        // 8. Again, if that has left triangles without area.
         if !flatness::has_flat(&patch) {
             break;
         }
@@ -189,6 +201,7 @@ mod tests {
             rounding: Rounding::up_to(6.0),
             glue: false,
             contacts: 0,
+            flatten: false,
             always: true,
         };
         tidy(Ground::Body(body), pieces, &settings, runner).unwrap().expect("it was asked for")

@@ -8,6 +8,7 @@ use super::adjacency::Adjacency;
 #[cfg(debug_assertions)]
 use super::face::{Edge, edge_between};
 use super::face::{Face, LocalFace, LocalPoint};
+use super::flatten::Flattening;
 use super::source::Source;
 use crate::boolean::complex::ids::PointId;
 use crate::boolean::complex::origin::Origin;
@@ -25,6 +26,8 @@ pub(crate) struct Tidied {
     pub(crate) copies: Vec<[f64; 3]>,
     /// How often a step stopped at its bound with work left.
     pub(crate) stopped: u64,
+    /// What became one plane that was so but for rounding.
+    pub(crate) flattening: Flattening,
 }
 
 /// What a patch begins with.
@@ -64,6 +67,8 @@ pub(super) struct Patch<'a> {
     taken: [Vec<u32>; 2],
     /// How often a step stopped at its bound with work left.
     stopped: u64,
+    /// What became one plane that was so but for rounding.
+    flattening: Flattening,
 }
 
 impl Index<LocalFace> for Patch<'_> {
@@ -89,6 +94,7 @@ impl<'a> Patch<'a> {
             outer_edges,
             taken,
             stopped: 0,
+            flattening: Flattening::default(),
         }
     }
 
@@ -139,6 +145,11 @@ impl<'a> Patch<'a> {
     /// Notes that a step stopped at its bound with work left.
     pub(super) fn count_stop(&mut self) {
         self.stopped += 1;
+    }
+
+    /// Adds to what became one plane.
+    pub(super) fn note_flattening(&mut self, more: Flattening) {
+        self.flattening = self.flattening.and(more);
     }
 
     /// Whether the operation made a point.
@@ -334,6 +345,6 @@ impl<'a> Patch<'a> {
         }
         new.sort_by_key(|triangle| (triangle.origin.operand, triangle.origin.triangle));
         let copies = self.positions[self.numbers.len()..].to_vec();
-        Tidied { new, replaced, copies, stopped: self.stopped }
+        Tidied { new, replaced, copies, stopped: self.stopped, flattening: self.flattening }
     }
 }

@@ -53,9 +53,9 @@ enum Verdict {
 }
 
 /// Part of the outline of a hole, and the face whose plane it is to be filled in.
-struct Arc {
-    outline: Vec<LocalPoint>,
-    origin: Origin,
+pub(super) struct Arc {
+    pub(super) outline: Vec<LocalPoint>,
+    pub(super) origin: Origin,
 }
 
 fn try_remove(patch: &mut Patch<'_>, point: LocalPoint, triangulator: &mut Triangulator) -> Verdict {
@@ -118,7 +118,7 @@ fn is_straight(patch: &Patch<'_>, point: LocalPoint, ends: [LocalPoint; 2], plan
 }
 
 /// Triangulates an outline in the plane of its face; false if that is not possible soundly.
-fn fill(
+pub(super) fn fill(
     patch: &Patch<'_>,
     Arc { outline, origin }: &Arc,
     triangulator: &mut Triangulator,
@@ -138,7 +138,11 @@ fn fill(
 }
 
 /// Whether the new triangles would use a directed edge that is taken.
-fn makes_double_edge(patch: &Patch<'_>, ring: &[LocalPoint], new: &[([LocalPoint; 3], Origin)]) -> bool {
+pub(super) fn makes_double_edge(
+    patch: &Patch<'_>,
+    ring: &[LocalPoint],
+    new: &[([LocalPoint; 3], Origin)],
+) -> bool {
     let n = ring.len();
     let is_freed = |edge: (LocalPoint, LocalPoint)| (0..n).any(|i| (ring[i], ring[(i + 1) % n]) == edge);
     let mut edges: Vec<(LocalPoint, LocalPoint)> =

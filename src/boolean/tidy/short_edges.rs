@@ -4,12 +4,12 @@
 use super::face::{Face, LocalPoint};
 use super::patch::Patch;
 
-/// Collapses edges no longer than rounding at points made by the operation.
-pub(super) fn collapse(patch: &mut Patch<'_>) {
+/// Collapses edges no longer than rounding at points made by the operation, or at `all`.
+pub(super) fn collapse(patch: &mut Patch<'_>, all: bool) {
     let mut queue: Vec<(LocalPoint, LocalPoint)> = Vec::new();
     for (_, face) in patch.faces().filter(|(_, face)| !face.untouched) {
         for (u, v) in face.sides() {
-            if patch.is_new(u) && is_short(patch, u, v) {
+            if (all || patch.is_new(u)) && is_short(patch, u, v) {
                 queue.push((u, v));
             }
         }

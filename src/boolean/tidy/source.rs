@@ -157,6 +157,14 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// Whether what is cut from two faces of one plane may be one face.
+    pub(super) fn belong_together(&self, x: Origin, y: Origin) -> bool {
+        match self.ground {
+            Ground::Body(body) => body.complex().belong_together(x, y),
+            Ground::Shape(shape) => shape.belong_together(x, y),
+        }
+    }
+
     /// Whether three points lay on one line before they were rounded; false if one of them is a copy.
     pub(super) fn were_collinear(&self, points: [PointId; 3]) -> bool {
         match self.ground {

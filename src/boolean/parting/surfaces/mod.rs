@@ -162,7 +162,7 @@ impl Parting<'_> {
         inside[cell] = true;
         let has_attributes = self.meshes.iter().any(|mesh| !mesh.attributes.is_empty());
         let remove_vertices = self.policy.remove_vertices && !has_attributes;
-        let finish = Finish { remove_vertices, unit: f64::EPSILON, find_low: false };
+        let finish = Finish { remove_vertices, unit: f64::EPSILON, flatten: false, find_low: false };
         let arrays = evaluate(general, &inside, finish, self.runner)?.arrays;
         let origins: Vec<Origin> = arrays.origins.iter().collect();
         let mut mesh = Mesh::new(arrays.positions, arrays.triangles);
