@@ -1,7 +1,7 @@
 //! Assemblies whose bodies were flush before they were turned: what lies in one plane but for rounding is one face.
 
 use trisect::Operation::{Difference, Union};
-use trisect::{BooleanOptions, Control, Embed, Operation, Outcome, Solid};
+use trisect::{BooleanOptions, Control, Embed, Mesh, Operation, Outcome, Solid, primitives};
 
 use crate::common::solid;
 use crate::contacts::menger;
@@ -16,8 +16,7 @@ fn turned(solids: &[Solid], (angle, axis): (f64, [f64; 3])) -> Vec<Solid> {
 }
 
 fn run(operation: Operation, operands: &[Solid], embed: Embed) -> Outcome {
-    let operands: Vec<&Solid> = operands.iter().collect();
-    BooleanOptions::new().embed(embed).run(operation, &operands).expect("no limits")
+    BooleanOptions::new().embed(embed).run(operation, operands).expect("no limits")
 }
 
 /// Closed, a 2-manifold of the volume that is expected, without a crossing.
@@ -54,6 +53,22 @@ fn turned_bars_united_have_hardly_more_triangles_than_others() {
         assert_sound(&united, plain.volume, &format!("{turn:?}"));
         let certificate = united.certificate();
         assert!(certificate.triangles * 4 <= plain.triangles * 5, "{turn:?}: {certificate}, not {plain}");
+    }
+}
+
+#[test]
+fn turned_cubes_that_touch_in_one_mesh_become_one() {
+    let mut cubes = Mesh::default();
+    for cell in 0..27 {
+        let low = [cell % 3, cell / 3 % 3, cell / 9].map(f64::from);
+        let cube = primitives::cuboid(low, low.map(|x| x + 1.0)).expect("a box");
+        cubes.append(&cube).expect("few");
+    }
+    for turn in TURNS {
+        let [cubes] = &turned(&[solid(cubes.clone())], turn)[..] else { panic!("one operand") };
+        let one = BooleanOptions::new().embed(Embed::NearCut).resolve(cubes).expect("no limits");
+        assert_sound(&one, 27.0, &format!("{turn:?}"));
+        assert!(one.certificate().triangles <= 24, "{turn:?}: {}", one.certificate());
     }
 }
 
