@@ -247,7 +247,7 @@ mod tests {
                 assert_eq!(sign, expected, "twice the precision");
             }
         }
-        assert!(in_double_double >= filtered, "{in_double_double} {filtered}");
+        assert!(in_double_double > 100, "{in_double_double}");
         assert!(tried > 10_000 && filtered > 500, "{tried} {filtered}");
         for exponent in [0, 1, 2, 3, 16, 17, 18, 32] {
             assert!(orders[exponent] > 0, "order {exponent} must occur: {orders:?}");

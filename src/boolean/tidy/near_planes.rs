@@ -225,16 +225,12 @@ impl Growing {
     /// A plane that goes further than this one and holds all of its corners and those of another face.
     fn wider(&self, face: &[[f64; 3]; 3]) -> Option<NearPlane> {
         let points = [self.plane.base, *face].concat();
+        let triples = (0..6).flat_map(|i| (i + 1..6).flat_map(move |j| (j + 1..6).map(move |k| [i, j, k])));
         let mut best = (LARGER * doubled_area(&self.plane.base), None);
-        for i in 0..6 {
-            for j in i + 1..6 {
-                for k in j + 1..6 {
-                    let base = [points[i], points[j], points[k]];
-                    let area = doubled_area(&base);
-                    if area > best.0 {
-                        best = (area, Some(base));
-                    }
-                }
+        for base in triples.map(|triple: [usize; 3]| triple.map(|i| points[i])) {
+            let area = doubled_area(&base);
+            if area > best.0 {
+                best = (area, Some(base));
             }
         }
         let wider = NearPlane::of(best.1?)?.turned(self.plane.normal);
