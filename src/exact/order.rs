@@ -148,6 +148,15 @@ mod tests {
     use rand::rngs::ChaCha8Rng;
     use rand::{RngExt, SeedableRng};
 
+    type Compare = fn(&[f64; 3], &[f64; 3], [&[f64; 3]; 3], [&[f64; 3]; 3], bool, bool) -> Option<Sign>;
+
+    /// What a stage without perturbation tells of an edge and two triangles, given the sides of its ends.
+    fn answer(compare: Compare, points: &[PerturbedPoint; 8], sides: [Sign; 4]) -> Option<Sign> {
+        let [p, q, a, b, c, d, e, f] = points.each_ref().map(|point| &point.position);
+        let above = |sign: Sign| sign == Sign::Positive;
+        compare(p, q, [a, b, c], [d, e, f], above(sides[0]), above(sides[2]))
+    }
+
     #[test]
     fn faces_nearly_in_one_plane_with_the_edge_agree_with_integers() {
         let mut rng = ChaCha8Rng::seed_from_u64(6);
@@ -171,16 +180,7 @@ mod tests {
                 continue;
             }
             tried += 1;
-            let [t1, t2] = [first, second].map(|t| t.map(|x| x.position));
-            let above = |sign: Sign| sign == Sign::Positive;
-            let found = compare_in_double_double(
-                &p.position,
-                &q.position,
-                t1.each_ref(),
-                t2.each_ref(),
-                above(sides[0]),
-                above(sides[2]),
-            );
+            let found = answer(compare_in_double_double, &points, sides);
             if let Some(sign) = found {
                 told += 1;
                 assert_eq!(sign, compare(p, q, first, second), "{points:?}");
@@ -221,28 +221,11 @@ mod tests {
             if let Some(count) = orders.get_mut(order) {
                 *count += 1;
             }
-            let plain = |t: [&'_ PerturbedPoint; 3]| t.map(|x| x.position);
-            let (t1, t2) = (plain(first), plain(second));
-            let above = |sign: Sign| sign == Sign::Positive;
-            if let Some(sign) = compare_filter(
-                &p.position,
-                &q.position,
-                t1.each_ref(),
-                t2.each_ref(),
-                above(sides[0]),
-                above(sides[2]),
-            ) {
+            if let Some(sign) = answer(compare_filter, &points, sides) {
                 filtered += 1;
                 assert_eq!(sign, expected, "filter");
             }
-            if let Some(sign) = compare_in_double_double(
-                &p.position,
-                &q.position,
-                t1.each_ref(),
-                t2.each_ref(),
-                above(sides[0]),
-                above(sides[2]),
-            ) {
+            if let Some(sign) = answer(compare_in_double_double, &points, sides) {
                 in_double_double += 1;
                 assert_eq!(sign, expected, "twice the precision");
             }

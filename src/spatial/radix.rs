@@ -54,17 +54,20 @@ pub(crate) fn sort<T: Copy + Default>(
     key: impl Fn(&T) -> u32,
     bits: u32,
 ) {
-    if other.is_empty() {
-        // Fresh memory is zero without being written to.
-        *other = vec![T::default(); items.len()];
+    if items.len() >= FEW {
+        if other.is_empty() {
+            // Fresh memory is zero without being written to.
+            *other = vec![T::default(); items.len()];
+        }
+        other.resize(items.len(), T::default());
     }
-    other.resize(items.len(), T::default());
     if sort_digits(items, other, &key, bits) {
         std::mem::swap(items, other);
     }
 }
 
-/// Sorts by the lowest `bits` bits of a key; whether the result is in `other`, which has as many items.
+/// Sorts by the lowest `bits` bits of a key; whether the result is in `other`, which has as many items (unless they are
+/// few: those are compared).
 fn sort_digits<T: Copy>(items: &mut [T], other: &mut [T], key: &impl Fn(&T) -> u32, bits: u32) -> bool {
     // Digits of about equal size.
     let passes = bits.div_ceil(DIGIT).max(1);

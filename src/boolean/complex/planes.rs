@@ -1,10 +1,10 @@
 //! Which faces lie in one plane, exactly.
 
+use glam::DVec3;
+
 use super::Complex;
 use super::ids::FaceId;
 use super::origin::Origin;
-use glam::DVec3;
-
 use crate::exact::{PlaneFilter, Projection, Sign, collinear, orient2d, orient3d, orient3d_filter};
 
 impl Complex<'_> {

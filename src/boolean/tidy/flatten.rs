@@ -24,7 +24,8 @@ use crate::{Control, Error};
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Flattening {
-    /// Vertices left out because all faces at them lay in one plane, or in two that meet there, but for rounding.
+    /// Vertices left out because all faces at them lay in one plane, or in two that meet there, but for rounding; or because they were
+    /// within rounding of another.
     pub vertices: u64,
     /// The surface moved by no more than this, in units of the coordinates.
     pub displacement: f64,
@@ -79,8 +80,8 @@ pub(super) fn flatten(patch: &mut Patch<'_>, control: &Control) -> Result<(), Er
         .for_each(|point| met.insert(point.0));
     for _ in 0..MOST_ROUNDS {
         let done = leave_out(patch, &planes, &met, &mut triangulator, control)?;
-        patch.note_flattening(done);
-        short_edges::collapse(patch, true);
+        let collapsed = short_edges::collapse(patch, true);
+        patch.note_flattening(done.and(collapsed));
         flip::flip_slivers(patch);
         if done.vertices == 0 {
             break;

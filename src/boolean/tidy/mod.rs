@@ -140,17 +140,16 @@ fn attempt(
             flip::flip_low(&mut patch, Rounding::has_no_height);
             remove_vertices::remove_vertices(&mut patch, candidates.clone(), control)?;
         }
-        // 6. Edges within rounding are collapsed, and slivers within rounding flipped.
+        // 6. Edges within rounding are collapsed, and slivers within rounding flipped; or what is in one plane but for rounding becomes
+        //    one face.
         short_edges::collapse(&mut patch, false);
-        if !settings.flatten {
-            flip::flip_low(&mut patch, Rounding::is_low);
-        }
-        // 7. What is in one plane but for rounding becomes one face.
         if settings.flatten {
             flip::flip_slivers(&mut patch);
             flatten::flatten(&mut patch, control)?;
+        } else {
+            flip::flip_low(&mut patch, Rounding::is_low);
         }
-        // 8. Again, if that has left triangles without area.
+        // 7. Again, if that has left triangles without area.
         if !flatness::has_flat(&patch) {
             break;
         }
