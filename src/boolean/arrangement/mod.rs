@@ -27,6 +27,7 @@ pub(super) mod points;
 pub(in crate::boolean) mod self_crossings;
 mod self_pairs;
 pub(super) mod sheets;
+mod star;
 mod unrounded;
 
 use crate::Error;

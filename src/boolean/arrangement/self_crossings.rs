@@ -14,6 +14,7 @@ use super::neighbours::Neighbours;
 use super::pairs_of_some::pairs_with;
 use super::penetration;
 use super::self_pairs::{self_pairs, tree_of};
+use super::star::is_star_shaped;
 use crate::boolean::complex::planes;
 use crate::boolean::complex::predicates::Predicates;
 use crate::boolean::complex::{Complex, Corner, Operand};
@@ -98,6 +99,9 @@ fn known_or_found<'a>(
         return Ok((Cow::Owned(many), None));
     }
     let (mesh, largest) = (solid.mesh(), bounds.largest());
+    if is_star_shaped(mesh, bounds, runner)? {
+        return Ok((Cow::Borrowed(solid.remember_near_pairs(Vec::new())), None));
+    }
     // (Of neighbours of any lifetime, which the method itself is not.)
     #[allow(clippy::redundant_closure_for_method_calls, reason = "lifetimes")]
     let may_meet = |neighbours: &Neighbours<'_>, pair: [u32; 2]| neighbours.may_meet(pair);
