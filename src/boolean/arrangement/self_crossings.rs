@@ -8,7 +8,7 @@
 
 use std::borrow::Cow;
 
-use super::apart::{are_plainly_apart, common_corners};
+use super::apart::{are_plainly_apart, common_corners, meet_in_common_places_alone};
 use super::beside::Look;
 use super::neighbours::Neighbours;
 use super::pairs_of_some::pairs_with;
@@ -142,9 +142,8 @@ pub(in crate::boolean) fn crosses_at(
     if pairs.is_empty() {
         return Ok(false);
     }
-    let largest = bounds.largest();
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
-    let complex = Complex::alone(operand, largest, &pairs);
+    let complex = Complex::alone(operand, bounds.largest(), &pairs);
     let frame = Frame::of(bounds.low, bounds.high);
     let surface = Surface::new(&complex, BoxTree::empty(), frame, &bounds, f64::EPSILON);
     let found = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
@@ -189,9 +188,16 @@ fn find(
             pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
         })?;
         for found in found.into_iter().flatten() {
-            let Found::Crossing(found) = found else {
-                result.touching += 1;
-                continue;
+            let found = match found {
+                Found::Crossing(found) => found,
+                Found::Touching => {
+                    result.touching += 1;
+                    continue;
+                }
+                Found::AtOnePlace(pair) => {
+                    doubtful.push(pair);
+                    continue;
+                }
             };
             if !found.real || found.shallow {
                 doubtful.push(found.crossing.triangles);
@@ -215,7 +221,8 @@ fn find(
             if result.places.iter().any(|known| known.triangles == found.triangles) {
                 result.shallow -= 1;
             } else {
-                (result.count, result.tolerated) = (result.count + 1, result.tolerated - 1);
+                result.count += 1;
+                result.tolerated -= usize::from(!surface.touch_at_one_place(found.triangles));
                 result.places.push(found);
             }
         }
@@ -241,6 +248,8 @@ enum Found {
     Crossing(Crossing),
     /// They lie on each other in one plane.
     Touching,
+    /// They have corners at one place, and meet there alone.
+    AtOnePlace([u32; 2]),
 }
 
 struct Crossing {
@@ -285,7 +294,8 @@ impl<'a> Surface<'a> {
             return None;
         }
         if let Some(crossing) = self.examine_closely(pair, &a, &b, Look::Quadrants) {
-            return Some(Found::Crossing(crossing));
+            let touches = !crossing.real && self.touch_at_one_place(pair);
+            return Some(if touches { Found::AtOnePlace(pair) } else { Found::Crossing(crossing) });
         }
         self.lie_on_each_other(pair).then_some(Found::Touching)
     }
@@ -301,7 +311,14 @@ impl<'a> Surface<'a> {
             &[corners] => self.crossing_at_common_corner(&a, &b, corners).is_some(),
             corners => corners.len() > 2,
         };
-        crosses || self.lie_on_each_other(pair)
+        (crosses && !self.touch_at_one_place(pair)) || self.lie_on_each_other(pair)
+    }
+
+    /// Whether triangles have corners, or a side, at one place and nothing else in common. Fans that touch in a point have vertices of
+    /// their own there, in every result; these part as the surface shrinks, and where they bound two hollows they cross then.
+    fn touch_at_one_place(&self, pair: [u32; 2]) -> bool {
+        let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t));
+        meet_in_common_places_alone(&positions(&a), &positions(&b))
     }
 
     /// The crossing of a pair that crosses by no more than some roundings, if the surface overlaps beside it all the same.

@@ -10,6 +10,7 @@ use super::segment_labels::SegmentLabels;
 use super::surfaces::Surfaces;
 use super::walk::FaceLabels;
 use super::{seeds, sheets, triples};
+use crate::boolean::arrangement::apart::meet_in_common_places_alone;
 use crate::boolean::arrangement::identify::Identification;
 use crate::boolean::arrangement::sheets::Sheet;
 use crate::boolean::complex::ids::{FaceId, VertexId};
@@ -150,11 +151,17 @@ impl Crossed {
         self
     }
 
-    /// The faces that cross others or lie on others, ascending, as triangles of their operands.
+    /// The faces that cross others or lie on others, ascending, as triangles of their operands. Not those of fans that touch in one point:
+    /// where they bound two hollows they cross there, as the material between them shrinks, and nothing could be mended.
     pub(crate) fn troubled(&self) -> Vec<u32> {
+        let surfaces = &self.ready.surfaces;
         let pairs = self.crossings.segments.iter().map(|segment| &segment.faces);
+        let pairs = pairs.filter(|faces| {
+            let [a, b] = faces.map(|face| surfaces.positions(face));
+            !meet_in_common_places_alone(&a, &b)
+        });
         let faces = pairs.chain(&self.crossings.touching).flatten();
-        let mut triangles: Vec<u32> = faces.map(|&face| self.ready.surfaces.triangle(face)).collect();
+        let mut triangles: Vec<u32> = faces.map(|&face| surfaces.triangle(face)).collect();
         triangles.sort_unstable();
         triangles.dedup();
         triangles

@@ -55,6 +55,10 @@ const COARSER_FROM: u32 = 2;
 /// by so many bits a round. (With 1, what rounding moves crosses new neighbours in round after round: of 1,200 results of random
 /// bodies on coarse grids, turned and not, five grew without end; see docs/proof.md.)
 const BITS_A_ROUND: u32 = 3;
+/// by no more than so many bits: on a grid that is coarser by a dozen and more, corners of large triangles move so far that what they enclose is another
+/// solid (in single precision by a third of the size, before there was a bound). Of 120 results in single precision (rows of boxes turned
+/// together, boxes and cylinders anywhere) four triangles of one still cross with any bound from 6 bits to 24; the furthest point moves by 1.2e-5 and 2.7e-4.
+const MOST_BITS: u32 = 6;
 /// Where more triangles cross than so many times the fewest so far, or there are so many times the triangles that there were, it
 /// is given up: bodies that lie flush but for rounding cross in ever more needles.
 const GROWTH: usize = 2;
@@ -145,7 +149,7 @@ fn descendants(of: &[u32], sources: &[u32]) -> Vec<u32> {
 
 /// By how many bits the grid is coarser in a round.
 fn coarser(rounds: u32) -> u32 {
-    BITS_A_ROUND * (rounds + 1).saturating_sub(COARSER_FROM)
+    (BITS_A_ROUND * (rounds + 1).saturating_sub(COARSER_FROM)).min(MOST_BITS)
 }
 
 /// Rounds all positions to the grid, those of some triangles to one that is coarser by some bits. Returns how far a point has
