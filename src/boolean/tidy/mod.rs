@@ -17,6 +17,7 @@ mod flip;
 mod gather;
 mod lines;
 mod near_planes;
+mod near_sums;
 mod patch;
 mod point_grid;
 mod remove_vertices;
@@ -113,6 +114,10 @@ fn attempt(
     let merge = settings.remove_vertices;
     if has_contacts {
         flatness::mark_flat(&mut patch);
+    }
+    // 0. Faces in one plane but for rounding are added up.
+    if settings.flatten {
+        near_sums::add_up(&mut patch, control)?;
     }
     for round in 1.. {
         // 1. Triangles without area: first all those of one line at once, then what is left one by one.

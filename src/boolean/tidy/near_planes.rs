@@ -2,8 +2,8 @@
 //!
 //! Faces that were flush before their bodies were turned are off one plane by some units in the last place. Which faces of a
 //! patch are so is told from the triangles they were cut from: those of one *near plane* have all their corners within rounding
-//! of it, look the same way and hang together in the result. So what is in one is so however many faces there are, and a round
-//! surface is not taken for a plane step by step.
+//! of it and hang together in the result; and they look the same way, where that is asked for. So what is in one is so however many
+//! faces there are, and a round surface is not taken for a plane step by step.
 
 use std::collections::VecDeque;
 
@@ -62,11 +62,25 @@ impl NearPlane {
         nearer(nearer(a, b), c).dot(self.normal).abs()
     }
 
+    /// How the plane is seen, whichever way it looks.
+    pub(super) fn along_axis(&self) -> Projection {
+        self.projection.along_axis()
+    }
+
     /// Whether three points are in counter-clockwise order, seen from the front.
     pub(super) fn sees(&self, corners: [&[f64; 3]; 3]) -> bool {
         let [a, b, c] = corners.map(|corner| self.projection.project(corner));
         orient2d(a, b, c) == Sign::Positive
     }
+}
+
+/// Which faces of one near plane belong together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Looking {
+    /// Those that look the same way, and may be one face.
+    SameWay,
+    /// All.
+    EitherWay,
 }
 
 /// The near planes of the faces of a patch.
@@ -77,7 +91,7 @@ pub(super) struct NearPlanes {
 
 impl NearPlanes {
     /// Finds them. O(n log n) for n faces, some fifty nanoseconds each.
-    pub(super) fn of(patch: &Patch<'_>) -> Self {
+    pub(super) fn of(patch: &Patch<'_>, looking: Looking) -> Self {
         let sources = Sources::of(patch);
         let rounding = patch.source().rounding;
         let mut found = Self { planes: Vec::new(), of_origin: FxHashMap::default() };
@@ -88,7 +102,8 @@ impl NearPlanes {
                 continue;
             }
             // The largest first: a plane is that of its largest face, and grows from there.
-            let Some(mut growing) = Growing::new(sources.corners[seed as usize], rounding) else { continue };
+            let of_seed = Growing::new(sources.corners[seed as usize], looking, rounding);
+            let Some(mut growing) = of_seed else { continue };
             let number = found.planes.len() as u32;
             let mut queue = VecDeque::from([seed]);
             is_taken[seed as usize] = true;
@@ -99,8 +114,9 @@ impl NearPlanes {
                         continue;
                     }
                     for &next in sources.at_hub.get(hub as usize) {
-                        let may_join = !is_taken[next as usize] && sources.belong_together(seed, next);
-                        if may_join && growing.take(&sources.corners[next as usize]) {
+                        let belong_together =
+                            || looking == Looking::EitherWay || sources.belong_together(seed, next);
+                        if !is_taken[next as usize] && belong_together() && growing.take(&sources.corners[next as usize]) {
                             is_taken[next as usize] = true;
                             queue.push_back(next);
                         }
@@ -110,6 +126,16 @@ impl NearPlanes {
             found.planes.push(growing.plane);
         }
         found
+    }
+
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.planes.len()
+    }
+
+    /// The one with a number.
+    pub(super) fn get(&self, number: usize) -> &NearPlane {
+        &self.planes[number]
     }
 
     /// The near plane of what was cut from a face; `None` where that face is so thin that it has none.
@@ -189,23 +215,25 @@ struct Growing {
     plane: NearPlane,
     /// The corners of its faces.
     corners: Vec<[f64; 3]>,
+    looking: Looking,
     rounding: Rounding,
 }
 
 impl Growing {
     /// The plane of a face, if it has one.
-    fn new(face: [[f64; 3]; 3], rounding: Rounding) -> Option<Self> {
+    fn new(face: [[f64; 3]; 3], looking: Looking, rounding: Rounding) -> Option<Self> {
         if rounding.is_low(face.each_ref()) {
             return None;
         }
-        Some(Self { plane: NearPlane::of(face)?, corners: face.to_vec(), rounding })
+        Some(Self { plane: NearPlane::of(face)?, corners: face.to_vec(), looking, rounding })
     }
 
     /// Takes a face in, if its corners are within rounding of the plane, or of another that has all faces so far as well.
     fn take(&mut self, face: &[[f64; 3]; 3]) -> bool {
-        // 1. It must look the same way, if it does any.
+        // 1. It must look the same way, if it does any and that matters.
         let normal = if self.rounding.is_low(face.each_ref()) { None } else { unit_normal(face) };
-        if normal.is_some_and(|normal| normal.dot(self.plane.normal) <= 0.0) {
+        let is_opposite = normal.is_some_and(|normal| normal.dot(self.plane.normal) <= 0.0);
+        if is_opposite && self.looking == Looking::SameWay {
             return false;
         }
         // 2. Whether it is in the plane as it is, or as another that goes further.
