@@ -98,6 +98,7 @@ pub(crate) fn embed(
         let solid = Solid::from_closed_unchecked(Mesh::new(positions, triangles));
         let crossed = Crossed::new(&[&solid], runner)?;
         troubled = crossed.troubled();
+        if std::env::var("G15").is_ok() { eprintln!("embed round {} triangles {} left {}", report.rounds, solid.mesh().triangles.len(), troubled.len()); }
         report.left = troubled.len();
         let fewest = best.as_ref().map_or(usize::MAX, |(_, report)| report.left);
         let is_hopeless = report.rounds == MOST_ROUNDS

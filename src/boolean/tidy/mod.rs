@@ -29,7 +29,7 @@ mod source;
 mod split_faces;
 mod splits;
 
-use crate::boolean::complex::ids::PointId;
+use crate::boolean::complex::ids::{FaceId, PointId};
 use crate::boolean::complex::rounding::Rounding;
 use crate::boolean::cut::piece::Piece;
 use crate::parallel::Runner;
@@ -47,7 +47,7 @@ const MOST_ROUNDS: usize = 3;
 
 /// Settings of the clean-up.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Settings {
+pub(super) struct Settings<'a> {
     /// Whether needless vertices are removed, and faces of one plane triangulated together.
     pub(super) remove_vertices: bool,
     /// Edges and heights that are not worth a triangle.
@@ -56,6 +56,8 @@ pub(super) struct Settings {
     pub(super) glue: bool,
     /// How many decisions plain coordinates left open: without any, nothing touches.
     pub(super) contacts: u64,
+    /// Pairs of faces in one plane but for rounding, whether they cross or not.
+    pub(super) nearly_flush: &'a [[FaceId; 2]],
     /// Whether what lies in one plane but for rounding becomes one face.
     pub(super) flatten: bool,
     /// Whether to clean up even where the arrangement gives no reason to: cutting left slivers, or faces were added up.
@@ -70,10 +72,15 @@ pub(super) struct Settings {
 pub(crate) fn tidy(
     ground: Ground<'_>,
     pieces: &[Piece],
-    settings: &Settings,
+    settings: &Settings<'_>,
     runner: Runner<'_>,
 ) -> Result<Option<Tidied>, Error> {
-    let source = Source { ground, rounding: settings.rounding, has_contacts: settings.contacts > 0 };
+    let source = Source {
+        ground,
+        rounding: settings.rounding,
+        has_contacts: settings.contacts > 0,
+        nearly_flush: if settings.flatten { settings.nearly_flush } else { &[] },
+    };
     if !settings.always && !source.needs_clean_up() {
         return Ok(None);
     }
@@ -85,6 +92,7 @@ pub(crate) fn tidy(
     // Where an operand touches itself, triangles may come apart at points that are not wholly in the patch. Then all starts
     // again with those; each is taken in but once.
     let mut extra: Vec<PointId> = source.points_on_pinched_edges();
+    extra.extend(source.nearly_flush.iter().flatten().flat_map(|&face| source.points_of_face(face)));
     loop {
         let patch = gather::gather(source, pieces, &extra);
         // Candidates outside the patch have nothing that changed around them.
@@ -107,7 +115,7 @@ enum Attempt {
 fn attempt(
     mut patch: Patch<'_>,
     mut candidates: Vec<LocalPoint>,
-    settings: &Settings,
+    settings: &Settings<'_>,
     control: &Control,
 ) -> Result<Attempt, Error> {
     let has_contacts = patch.source().has_contacts;
@@ -205,6 +213,7 @@ mod tests {
             rounding: Rounding::up_to(6.0),
             glue: false,
             contacts: 0,
+            nearly_flush: &[],
             flatten: false,
             always: true,
         };

@@ -14,6 +14,7 @@ use super::face::LocalPoint;
 use super::flatness::is_triangle_low;
 use super::patch::Patch;
 use super::source::Source;
+use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::planes::unit_normal;
 use crate::boolean::complex::rounding::Rounding;
@@ -151,7 +152,7 @@ struct Sources<'a> {
     origins: Vec<Origin>,
     /// By origin.
     corners: Vec<[[f64; 3]; 3]>,
-    /// The origins at each hub, a place where some meet: a vertex, or a face no higher than rounding with all its vertices.
+    /// The origins at each hub, a place where some meet: a vertex, a face no higher than rounding with all its vertices, or a pair that lie on each other.
     at_hub: Buckets<u32>,
     /// By origin the hubs where it is.
     hubs_of: Buckets<u32>,
@@ -188,6 +189,15 @@ impl<'a> Sources<'a> {
             list.sort_unstable();
             list.dedup();
             at.extend(list.into_iter().map(|place| (hubs, place)));
+            hubs += 1;
+        }
+        // 3. Where faces lie on one another that do not meet.
+        for pair in source.nearly_flush {
+            let of_face = |face: FaceId| {
+                let origin = source.origin(face);
+                [origin, Origin { reversed: true, ..origin }].into_iter().filter_map(|origin| places.get(&origin))
+            };
+            at.extend(pair.iter().flat_map(|&face| of_face(face)).map(|&place| (hubs, place)));
             hubs += 1;
         }
         let at_hub = Buckets::new(hubs as usize, at.iter().copied());

@@ -26,21 +26,41 @@ use crate::{Control, Error};
 /// Only limits.
 pub(super) fn add_up(patch: &mut Patch<'_>, control: &Control) -> Result<(), Error> {
     let planes = NearPlanes::of(patch, Looking::EitherWay);
-    let number = |face: LocalFace| planes.of_origin(patch[face].origin).map(|(number, _)| number);
+    let number_of = |origin: Origin| planes.of_origin(origin).map(|(number, _)| number);
+    let number = |face: LocalFace| number_of(patch[face].origin);
     let in_planes = patch.faces().filter_map(|(face, _)| Some((number(face)?, face)));
     let by_plane = Buckets::new(planes.len(), in_planes.collect::<Vec<_>>().into_iter());
+    let has_films = with_films(patch, &planes);
+    let mut done = Flattening::default();
     for (number, faces) in (0..).zip(by_plane.each()) {
         control.check()?;
-        if !has_reason(patch, faces) {
+        if !has_films[number] && !has_reason(patch, faces) {
             continue;
         }
         let plane = planes.get(number);
         if let Some(sum) = Sum::of(patch, plane, faces) {
-            sum.take_the_place_of(patch, faces);
+            done = done.beside(sum.take_the_place_of(patch, faces));
         }
     }
+    patch.note_flattening(done);
     patch.cancel();
     Ok(())
+}
+
+/// Which planes have faces that lie on one another, and so perhaps a film between them.
+fn with_films(patch: &Patch<'_>, planes: &NearPlanes) -> Vec<bool> {
+    let mut has_films = vec![false; planes.len()];
+    let source = patch.source();
+    for pair in source.nearly_flush {
+        let both = |reversed: bool| {
+            let number = |face| planes.of_origin(Origin { reversed, ..source.origin(face) }).map(|of| of.0);
+            pair.map(number)
+        };
+        for number in [false, true].into_iter().flat_map(both).flatten() {
+            has_films[number as usize] = true;
+        }
+    }
+    has_films
 }
 
 /// Whether faces were cut, and are of one plane but not exactly.
@@ -127,12 +147,12 @@ impl Sum {
     }
 
     /// Puts the sum into the place of the faces.
-    fn take_the_place_of(self, patch: &mut Patch<'_>, faces: &[LocalFace]) {
+    fn take_the_place_of(self, patch: &mut Patch<'_>, faces: &[LocalFace]) -> Flattening {
         faces.iter().for_each(|&face| patch.drop_face(face));
         for (corners, origin, is_flat) in self.left {
             patch.add_face(corners, origin, is_flat);
         }
-        patch.note_flattening(Flattening { vertices: self.gone, displacement: self.displacement });
+        Flattening { vertices: self.gone, displacement: self.displacement }
     }
 }
 
