@@ -150,6 +150,11 @@ impl Crossed {
         self
     }
 
+    /// In how many places two faces cross.
+    pub(crate) fn segment_count(&self) -> usize {
+        self.crossings.segments.len()
+    }
+
     /// The faces that cross others or lie on others, ascending, as triangles of their operands.
     pub(crate) fn troubled(&self) -> Vec<u32> {
         let pairs = self.crossings.segments.iter().map(|segment| &segment.faces);

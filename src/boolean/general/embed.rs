@@ -61,6 +61,11 @@ const GROWTH: usize = 2;
 /// Triangles that there may be in any case.
 const ALWAYS_ALLOWED: usize = 256;
 
+/// Work of all rounds together, in triangles and segments, for each triangle that there was: bounds the time by a multiple of that of one look,
+/// whatever crosses. (Ten rounds of a result where few triangles cross stay below 11; needles that cross in bundles have segments by the
+/// square of their number.)
+const MOST_WORK: usize = 16;
+
 /// A result that is to be freed of crossings: for each triangle where it came from and its group.
 #[derive(Clone, Debug)]
 pub(crate) struct Parts {
@@ -85,6 +90,7 @@ pub(crate) fn embed(
     let mut troubled: Vec<u32> = Vec::new();
     let mut best: Option<(Parts, Embedding)> = None;
     let most_triangles = ALWAYS_ALLOWED.max(GROWTH * parts.triangles.len());
+    let mut work_left = MOST_WORK * most_triangles / GROWTH;
     loop {
         // 1. The grid: a coarser one where it goes on too long.
         report.displacement += round(&mut parts, grid, coarser(report.rounds), &troubled);
@@ -100,8 +106,10 @@ pub(crate) fn embed(
         troubled = crossed.troubled();
         if std::env::var("G15").is_ok() { eprintln!("embed round {} triangles {} left {}", report.rounds, solid.mesh().triangles.len(), troubled.len()); }
         report.left = troubled.len();
+        let work = solid.mesh().triangles.len() + crossed.segment_count();
         let fewest = best.as_ref().map_or(usize::MAX, |(_, report)| report.left);
         let is_hopeless = report.rounds == MOST_ROUNDS
+            || work > work_left
             || report.left > GROWTH.saturating_mul(fewest)
             || solid.mesh().triangles.len() > most_triangles;
         if report.left < fewest {
@@ -114,6 +122,7 @@ pub(crate) fn embed(
         }
         // 3. Its resolution; what is thinner than the next grid is cleaned up.
         report.rounds += 1;
+        work_left -= work;
         let general = General::new(crossed.with_groups(vec![parts.groups.clone()]), true, runner)?;
         let inside: Vec<bool> =
             general.faces.labels.all().iter().map(|label| winding(label, 0) > 0).collect();

@@ -38,6 +38,7 @@ pub(super) fn add_up(patch: &mut Patch<'_>, control: &Control) -> Result<(), Err
             continue;
         }
         let plane = planes.get(number);
+        if std::env::var("G15").is_ok() { eprintln!("sum plane {} faces {}", number, faces.len()); }
         if let Some(sum) = Sum::of(patch, plane, faces) {
             done = done.beside(sum.take_the_place_of(patch, faces));
         }
@@ -110,7 +111,9 @@ impl Sum {
                 flat.push(place);
                 flat.len() as u32 - 1
             }))
-        })?;
+        });
+        if std::env::var("G15").is_ok() && found.is_none() { eprintln!("  DECLINED winding: faces {} edges {}", faces.len(), edges.len()); if faces.len() < 30 { for edge in &edges { if edge.count != 0 { let [p,q]=edge.ends.map(|i| flat[i as usize]); eprintln!("   {:?} {} {:?} {:?}", edge.ends, edge.count, p, q); } } } }
+        let found = found?;
         // 3. Each triangle comes from a face around it. (One that rounding has turned over, as thin as that, comes from any.)
         let origins = origins(patch, seen, faces);
         let mut left: Vec<([u32; 3], Origin, bool)> = Vec::new();
@@ -119,12 +122,10 @@ impl Sum {
         for ((triangle, winding), is_sliver) in triangles.chain(slivers) {
             let upward = winding > 0;
             let place = triangle.map(|i| flat[i as usize]);
-            let own = origins.find(place, upward);
-            let origin = own.or_else(|| origins.find(place, !upward))?;
+            let origin = origins.find(place, upward).or_else(|| origins.find(place, !upward))?;
             let [a, b, c] = triangle;
             let corners = if upward { [a, b, c] } else { [a, c, b] };
-            let is_flat = is_sliver || own.is_none();
-            left.extend(std::iter::repeat_n((corners, origin, is_flat), winding.unsigned_abs() as usize));
+            left.extend(std::iter::repeat_n((corners, origin, is_sliver), winding.unsigned_abs() as usize));
         }
         // 4. No new edge that triangles elsewhere may have as well.
         let mut is_left = vec![false; known];
@@ -140,6 +141,7 @@ impl Sum {
         let left: Vec<Left> = left.collect();
         let sides = left.iter().flat_map(|&([a, b, c], ..)| [(a, b), (b, c), (c, a)]);
         if sides.into_iter().any(|(u, v)| patch.has_outer_edge(u, v)) && adds_outer_edge(patch, faces, &left) {
+            if std::env::var("G15").is_ok() { eprintln!("  DECLINED outer"); }
             return None;
         }
         let gone = is_left.iter().filter(|&&is_left| !is_left).count() as u64;
