@@ -99,21 +99,23 @@ pub(crate) fn are_nearly_parallel(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool 
     n.cross(m).length_squared() <= ANGLE * ANGLE * n.length_squared() * m.length_squared()
 }
 
-/// Whether one of two triangles has all corners within twice the rounding of the other's plane, but not all of them in it, exactly: they
-/// were flush, perhaps, before their bodies were turned.
+/// Whether the smaller of two triangles has all corners within twice the rounding of the other's plane, but not all of them in it, exactly:
+/// they were flush, perhaps, before their bodies were turned.
 pub(crate) fn are_nearly_flush(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3], rounding: Rounding) -> bool {
-    let is_near = |plane: &[[f64; 3]; 3], points: &[[f64; 3]; 3]| {
-        let [a, b, c] = plane.map(DVec3::from_array);
-        let normal = (b - a).cross(c - a);
-        let is_near = |p: &[f64; 3]| {
-            let height = normal.dot(DVec3::from_array(*p) - a);
-            let most = 2.0 * rounding.length_at(p);
-            height * height <= most * most * normal.length_squared()
-        };
-        points.iter().all(is_near)
+    let normal = |t: &[[f64; 3]; 3]| {
+        let [a, b, c] = t.map(DVec3::from_array);
+        (b - a).cross(c - a)
+    };
+    let (n, m) = (normal(x), normal(y));
+    let is_larger = n.length_squared() >= m.length_squared();
+    let (plane, normal, points) = if is_larger { (x, n, y) } else { (y, m, x) };
+    let most = 2.0 * points.iter().map(|p| rounding.length_at(p)).fold(0.0, f64::max);
+    let is_near = |p: &[f64; 3]| {
+        let height = normal.dot(DVec3::from_array(*p) - DVec3::from_array(plane[0]));
+        height * height <= most * most * normal.length_squared()
     };
     // (Nearly always the first point says no.)
-    (is_near(x, y) || is_near(y, x)) && are_nearly_parallel(x, y) && {
+    points.iter().all(is_near) && are_nearly_parallel(x, y) && {
         let has_area = |[a, b, c]: &[[f64; 3]; 3]| !collinear(a, b, c);
         has_area(x) && has_area(y) && !lie_in_one_plane(x, y)
     }

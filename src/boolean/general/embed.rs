@@ -104,7 +104,6 @@ pub(crate) fn embed(
         let solid = Solid::from_closed_unchecked(Mesh::new(positions, triangles));
         let crossed = Crossed::new(&[&solid], runner)?;
         troubled = crossed.troubled();
-        if std::env::var("G15").is_ok() { eprintln!("embed round {} triangles {} left {}", report.rounds, solid.mesh().triangles.len(), troubled.len()); }
         report.left = troubled.len();
         let work = solid.mesh().triangles.len() + crossed.segment_count();
         let fewest = best.as_ref().map_or(usize::MAX, |(_, report)| report.left);
@@ -118,7 +117,8 @@ pub(crate) fn embed(
             best = Some((Parts { positions, triangles, origins, groups }, report));
         }
         if report.left == 0 || is_hopeless {
-            return Ok(best.expect("the first round is better than none"));
+            let (parts, report) = best.expect("the first round is better than none");
+            return Ok((if grid == Grid::Double { separated(parts) } else { parts }, report));
         }
         // 3. Its resolution; what is thinner than the next grid is cleaned up.
         report.rounds += 1;
@@ -145,6 +145,24 @@ pub(crate) fn embed(
         let sources: Vec<u32> = arrays.origins.iter().map(|origin| origin.triangle).collect();
         troubled = descendants(&troubled, &sources);
         parts = made;
+    }
+}
+
+/// Parts a surface in edges where it touches itself since points have become one. (Not in single precision, where a middle of an edge would be no number
+/// of the grid, and files tell points apart by their places alone.)
+fn separated(parts: Parts) -> Parts {
+    let solid = Solid::from_closed_unchecked(Mesh::new(parts.positions, parts.triangles));
+    if solid.is_manifold() {
+        let Mesh { positions, triangles, .. } = solid.into_mesh();
+        return Parts { positions, triangles, ..parts };
+    }
+    let (solid, sources) = solid.separated();
+    let Mesh { positions, triangles, .. } = solid.into_mesh();
+    Parts {
+        positions,
+        triangles,
+        origins: sources.iter().map(|&source| parts.origins[source as usize]).collect(),
+        groups: sources.iter().filter_map(|&source| parts.groups.get(source as usize).copied()).collect(),
     }
 }
 

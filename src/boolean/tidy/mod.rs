@@ -17,6 +17,7 @@ mod flip;
 mod gather;
 mod lines;
 mod near_planes;
+mod near_points;
 mod near_sums;
 mod patch;
 mod point_grid;
@@ -95,12 +96,11 @@ pub(crate) fn tidy(
     extra.extend(source.nearly_flush.iter().flatten().flat_map(|&face| source.points_of_face(face)));
     loop {
         let patch = gather::gather(source, pieces, &extra);
-        if std::env::var("G15").is_ok() { eprintln!("tidy attempt: faces {} flatten {}", patch.face_count(), settings.flatten); }
         // Candidates outside the patch have nothing that changed around them.
         let local = candidates.iter().filter_map(|&point| patch.find_point(point)).collect();
         match attempt(patch, local, settings, runner.control)? {
             Attempt::Done(tidied) => return Ok(Some(tidied)),
-            Attempt::Widen(points) => { if std::env::var("G15").is_ok() { eprintln!("  WIDEN {}", points.len()); } extra.extend(points) }
+            Attempt::Widen(points) => extra.extend(points),
         }
     }
 }
@@ -121,22 +121,20 @@ fn attempt(
 ) -> Result<Attempt, Error> {
     let has_contacts = patch.source().has_contacts;
     let merge = settings.remove_vertices;
-    let start = std::time::Instant::now();
-    let say = |what: &str| if std::env::var("G15").is_ok() { eprintln!("   {:.1} ms {}", start.elapsed().as_secs_f64() * 1e3, what); };
     if has_contacts {
         flatness::mark_flat(&mut patch);
     }
-    // 0. Faces in one plane but for rounding are added up.
+    // 0. Points in one place but for rounding become one, and faces in one plane but for rounding are added up.
     if settings.flatten {
+        let snapped = near_points::snap(&mut patch);
+        patch.note_flattening(snapped);
         near_sums::add_up(&mut patch, control)?;
     }
-    say("sums");
     for round in 1.. {
         // 1. Triangles without area: first all those of one line at once, then what is left one by one.
         lines::remove_flat_by_line(&mut patch, merge);
         chain::remove_flat(&mut patch);
         patch.cancel();
-        say("flats");
         // 2. The ends of edges that cannot come apart become one; all points at the same place do where that is asked for.
         snap::snap_ends(&mut patch);
         if settings.glue && has_contacts && round == 1 {
@@ -144,7 +142,6 @@ fn attempt(
         }
         // 3. Edges that lie on one another are subdivided alike; coplanar strips are triangulated as one.
         let half_edges = shared_edges::subdivide(&mut patch, has_contacts, merge, control)?;
-        say("subdivided");
         // 4. Triangles are paired at edges, and vertices with several fans are split: a 2-manifold.
         match separate::separate(&mut patch, &half_edges) {
             Separation::Connected(points) => candidates.extend(points),
@@ -154,13 +151,11 @@ fn attempt(
             }
         }
         control.check()?;
-        say("separated");
         // 5. Needless vertices are removed.
         if settings.remove_vertices {
             flip::flip_low(&mut patch, Rounding::has_no_height);
             remove_vertices::remove_vertices(&mut patch, candidates.clone(), control)?;
         }
-        say("removed");
         // 6. Edges within rounding are collapsed, and slivers within rounding flipped; or what is in one plane but for rounding becomes
         //    one face.
         short_edges::collapse(&mut patch, false);
@@ -170,12 +165,12 @@ fn attempt(
         } else {
             flip::flip_low(&mut patch, Rounding::is_low);
         }
-        say("flattened");
         // 7. Again, if that has left triangles without area.
-        if !flatness::has_flat(&patch) {
+        let has_flat =
+            if settings.flatten { flatness::has_exactly_flat(&patch) } else { flatness::has_flat(&patch) };
+        if !has_flat {
             break;
         }
-        if std::env::var("G15").is_ok() { eprintln!("   flats left {}", patch.face_numbers().filter(|&face| !patch[face].untouched && flatness::is_flat(&patch, face)).count()); }
         if round == MOST_ROUNDS {
             patch.count_stop();
             break;

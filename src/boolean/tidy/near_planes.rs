@@ -223,8 +223,8 @@ impl<'a> Sources<'a> {
 /// A near plane that takes in faces.
 struct Growing {
     plane: NearPlane,
-    /// The corners of its faces.
-    corners: Vec<[f64; 3]>,
+    /// The corners of its faces, and what rounding can have made of each.
+    corners: Vec<([f64; 3], f64)>,
     looking: Looking,
     rounding: Rounding,
 }
@@ -235,7 +235,9 @@ impl Growing {
         if rounding.is_low(face.each_ref()) {
             return None;
         }
-        Some(Self { plane: NearPlane::of(face)?, corners: face.to_vec(), looking, rounding })
+        let own = length_at_face(&face, rounding);
+        let corners = face.map(|corner| (corner, own)).to_vec();
+        Some(Self { plane: NearPlane::of(face)?, corners, looking, rounding })
     }
 
     /// Takes a face in, if its corners are within rounding of the plane, or of another that has all faces so far as well.
@@ -247,21 +249,22 @@ impl Growing {
             return false;
         }
         // 2. Whether it is in the plane as it is, or as another that goes further.
-        let is_in = face.iter().all(|corner| self.holds(&self.plane, corner));
+        let own = length_at_face(face, self.rounding);
+        let is_in = face.iter().all(|corner| self.plane.distance(corner) <= own);
         let is_parallel =
             normal.is_some_and(|normal| normal.cross(self.plane.normal).length() <= NEARLY_PARALLEL);
-        let wider = if is_parallel { self.wider(face) } else { None };
+        let wider = if is_parallel { self.wider(face, own) } else { None };
         if let Some(wider) = wider {
             self.plane = wider;
         } else if !is_in {
             return false;
         }
-        self.corners.extend(face);
+        self.corners.extend(face.iter().map(|&corner| (corner, own)));
         true
     }
 
     /// A plane that goes further than this one and holds all of its corners and those of another face.
-    fn wider(&self, face: &[[f64; 3]; 3]) -> Option<NearPlane> {
+    fn wider(&self, face: &[[f64; 3]; 3], own: f64) -> Option<NearPlane> {
         let points = [self.plane.base, *face].concat();
         let triples = (0..6).flat_map(|i| (i + 1..6).flat_map(move |j| (j + 1..6).map(move |k| [i, j, k])));
         let mut best = (LARGER * doubled_area(&self.plane.base), None);
@@ -272,13 +275,17 @@ impl Growing {
             }
         }
         let wider = NearPlane::of(best.1?)?.turned(self.plane.normal);
-        let mut corners = face.iter().chain(&self.corners);
-        corners.all(|corner| self.holds(&wider, corner)).then_some(wider)
+        let holds = |corner: &[f64; 3], most: f64| wider.distance(corner) <= most;
+        let is_wider =
+            face.iter().all(|corner| holds(corner, own)) && self.corners.iter().all(|(corner, most)| holds(corner, *most));
+        is_wider.then_some(wider)
     }
+}
 
-    fn holds(&self, plane: &NearPlane, corner: &[f64; 3]) -> bool {
-        plane.distance(corner) <= self.rounding.length_at(corner)
-    }
+/// The length that rounding can give to something at a face: that at the corner where it is largest, as a corner near the origin may have been
+/// computed from others.
+fn length_at_face(face: &[[f64; 3]; 3], rounding: Rounding) -> f64 {
+    face.iter().map(|corner| rounding.length_at(corner)).fold(0.0, f64::max)
 }
 
 /// Twice the area of a triangle; infinite or zero where that is no number.

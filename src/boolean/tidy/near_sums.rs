@@ -38,7 +38,6 @@ pub(super) fn add_up(patch: &mut Patch<'_>, control: &Control) -> Result<(), Err
             continue;
         }
         let plane = planes.get(number);
-        if std::env::var("G15").is_ok() { eprintln!("sum plane {} faces {}", number, faces.len()); }
         if let Some(sum) = Sum::of(patch, plane, faces) {
             done = done.beside(sum.take_the_place_of(patch, faces));
         }
@@ -112,7 +111,6 @@ impl Sum {
                 flat.len() as u32 - 1
             }))
         });
-        if std::env::var("G15").is_ok() && found.is_none() { eprintln!("  DECLINED winding: faces {} edges {}", faces.len(), edges.len()); if faces.len() < 30 { for edge in &edges { if edge.count != 0 { let [p,q]=edge.ends.map(|i| flat[i as usize]); eprintln!("   {:?} {} {:?} {:?}", edge.ends, edge.count, p, q); } } } }
         let found = found?;
         // 3. Each triangle comes from a face around it. (One that rounding has turned over, as thin as that, comes from any.)
         let origins = origins(patch, seen, faces);
@@ -141,7 +139,6 @@ impl Sum {
         let left: Vec<Left> = left.collect();
         let sides = left.iter().flat_map(|&([a, b, c], ..)| [(a, b), (b, c), (c, a)]);
         if sides.into_iter().any(|(u, v)| patch.has_outer_edge(u, v)) && adds_outer_edge(patch, faces, &left) {
-            if std::env::var("G15").is_ok() { eprintln!("  DECLINED outer"); }
             return None;
         }
         let gone = is_left.iter().filter(|&&is_left| !is_left).count() as u64;
