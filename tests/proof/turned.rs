@@ -104,7 +104,8 @@ fn assert_as_not_turned(what: &str, operation: Operation, operands: &[Solid]) {
         let what = format!("{what}, {turn:?}");
         let outcome = run(operation, &turned(operands, turn), Embed::NearCut);
         assert_sound(&outcome, plain.certificate().volume, &what);
-        let [is, was] = [&outcome, &plain].map(|outcome| (outcome.solid().components(), outcome.solid().genus()));
+        let [is, was] =
+            [&outcome, &plain].map(|outcome| (outcome.solid().components(), outcome.solid().genus()));
         assert_eq!(is, was, "{what}");
         let [is, was] = [&outcome, &plain].map(|outcome| outcome.certificate().triangles);
         assert!(is * 4 <= was * 5 + 48, "{what}: {is} triangles, not {was}");

@@ -5,10 +5,10 @@
 
 use crate::Error;
 use crate::boolean::candidates::Candidates;
-use crate::boolean::complex::{Complex, Operand};
 use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::planes::are_nearly_flush;
 use crate::boolean::complex::rounding::Rounding;
+use crate::boolean::complex::{Complex, Operand};
 use crate::parallel::Runner;
 
 /// The pairs of such faces whose boxes meet, ascending. Some ten nanoseconds a candidate.

@@ -28,9 +28,8 @@ impl SheetOrigins {
         let high = all().fold([f64::NEG_INFINITY; 2], |high, p| [high[0].max(p[0]), high[1].max(p[1])]);
         let frame = Frame::of(upright(low), upright(high));
         let numbers: Vec<u32> = (0..sources.len() as u32).collect();
-        let tree = BoxTree::new(&numbers, |i| {
-            frame.triangle(sources[i as usize].corners.map(upright).each_ref())
-        });
+        let tree =
+            BoxTree::new(&numbers, |i| frame.triangle(sources[i as usize].corners.map(upright).each_ref()));
         Self { sources, frame, tree }
     }
 

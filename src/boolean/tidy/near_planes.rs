@@ -14,7 +14,6 @@ use super::face::LocalPoint;
 use super::flatness::is_triangle_low;
 use super::patch::Patch;
 use super::source::Source;
-use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::planes::unit_normal;
 use crate::boolean::complex::rounding::Rounding;
@@ -117,7 +116,10 @@ impl NearPlanes {
                     for &next in sources.at_hub.get(hub as usize) {
                         let belong_together =
                             || looking == Looking::EitherWay || sources.belong_together(seed, next);
-                        if !is_taken[next as usize] && belong_together() && growing.take(&sources.corners[next as usize]) {
+                        if !is_taken[next as usize]
+                            && belong_together()
+                            && growing.take(&sources.corners[next as usize])
+                        {
                             is_taken[next as usize] = true;
                             queue.push_back(next);
                         }
@@ -191,13 +193,20 @@ impl<'a> Sources<'a> {
             at.extend(list.into_iter().map(|place| (hubs, place)));
             hubs += 1;
         }
-        // 3. Where faces lie on one another that do not meet.
+        // 3. Where faces lie on one another that do not meet. (What was cut from faces of one plane comes from one of them; then what is at
+        //    the corners stands for the others.)
         for pair in source.nearly_flush {
-            let of_face = |face: FaceId| {
+            for &face in pair {
                 let origin = source.origin(face);
-                [origin, Origin { reversed: true, ..origin }].into_iter().filter_map(|origin| places.get(&origin))
-            };
-            at.extend(pair.iter().flat_map(|&face| of_face(face)).map(|&place| (hubs, place)));
+                let own = [false, true].map(|reversed| places.get(&Origin { reversed, ..origin }).copied());
+                let before = at.len();
+                at.extend(own.into_iter().flatten().map(|place| (hubs, place)));
+                if at.len() == before {
+                    let corners = source.points_of_face(face).map(|point| patch.find_point(point));
+                    let around = corners.into_iter().flatten().flat_map(|point| at_vertex.get(point.index()));
+                    at.extend(around.map(|&place| (hubs, place)));
+                }
+            }
             hubs += 1;
         }
         let at_hub = Buckets::new(hubs as usize, at.iter().copied());
@@ -276,8 +285,8 @@ impl Growing {
         }
         let wider = NearPlane::of(best.1?)?.turned(self.plane.normal);
         let holds = |corner: &[f64; 3], most: f64| wider.distance(corner) <= most;
-        let is_wider =
-            face.iter().all(|corner| holds(corner, own)) && self.corners.iter().all(|(corner, most)| holds(corner, *most));
+        let is_wider = face.iter().all(|corner| holds(corner, own))
+            && self.corners.iter().all(|(corner, most)| holds(corner, *most));
         is_wider.then_some(wider)
     }
 }

@@ -20,15 +20,20 @@ pub(super) fn snap(patch: &mut Patch<'_>) -> Flattening {
     let points = complete_points(patch);
     let grid = PointGrid::new(&points, |point| patch.position(point));
     let rounding = patch.source().rounding;
+    // Next to the origin points are as exact as those they were computed from, which are about as large as most.
+    let mut sizes: Vec<f64> = points.iter().map(|&point| rounding.length_at(patch.position(point))).collect();
+    let middle = sizes.len() / 2;
+    let usual = if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 };
     let mut stands_for: Vec<LocalPoint> = (0..patch.point_count() as u32).map(LocalPoint).collect();
     let mut done = Flattening::default();
     for &point in &points {
         let at = patch.position(point);
-        let most = rounding.length_at(at);
+        let most = rounding.length_at(at).max(usual);
+        let is_near = |p: &[f64; 3]| (0..3).all(|k| (p[k] - at[k]).abs() <= most);
         let mut first = point;
         grid.visit_box(&at.map(|x| x - most), &at.map(|x| x + most), MOST_CELLS, |other| {
             let is_earlier = other < first && stands_for[other.index()] == other;
-            if is_earlier && rounding.is_short(patch.position(other), at) {
+            if is_earlier && is_near(patch.position(other)) {
                 first = other;
             }
         });

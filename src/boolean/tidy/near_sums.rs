@@ -91,7 +91,8 @@ impl Sum {
         points.sort_unstable();
         points.dedup();
         let known = points.len();
-        let mut flat: Vec<[f64; 2]> = points.iter().map(|&point| seen.project(patch.position(point))).collect();
+        let mut flat: Vec<[f64; 2]> =
+            points.iter().map(|&point| seen.project(patch.position(point))).collect();
         // 2. What the sides of all wind around.
         let edges = edges(patch, faces, &points);
         let mut copies: Vec<[f64; 3]> = Vec::new();
@@ -130,7 +131,8 @@ impl Sum {
         for &(corners, ..) in &left {
             corners.iter().filter(|&&i| (i as usize) < known).for_each(|&i| is_left[i as usize] = true);
         }
-        let displacement = points.iter().map(|&point| plane.distance(patch.position(point))).fold(0.0, f64::max);
+        let displacement =
+            points.iter().map(|&point| plane.distance(patch.position(point))).fold(0.0, f64::max);
         points.extend(copies.into_iter().map(|copy| patch.add_point(copy)));
         let left = left.into_iter().map(|(corners, origin, is_flat)| {
             let corners = corners.map(|i| points[i as usize]);
@@ -138,7 +140,8 @@ impl Sum {
         });
         let left: Vec<Left> = left.collect();
         let sides = left.iter().flat_map(|&([a, b, c], ..)| [(a, b), (b, c), (c, a)]);
-        if sides.into_iter().any(|(u, v)| patch.has_outer_edge(u, v)) && adds_outer_edge(patch, faces, &left) {
+        if sides.into_iter().any(|(u, v)| patch.has_outer_edge(u, v)) && adds_outer_edge(patch, faces, &left)
+        {
             return None;
         }
         let gone = is_left.iter().filter(|&&is_left| !is_left).count() as u64;
