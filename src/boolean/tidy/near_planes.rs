@@ -14,6 +14,7 @@ use super::face::LocalPoint;
 use super::flatness::is_triangle_low;
 use super::patch::Patch;
 use super::source::Source;
+use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::planes::unit_normal;
 use crate::boolean::complex::rounding::Rounding;
@@ -193,8 +194,9 @@ impl<'a> Sources<'a> {
             at.extend(list.into_iter().map(|place| (hubs, place)));
             hubs += 1;
         }
-        // 3. Where faces lie on one another that do not meet. (What was cut from faces of one plane comes from one of them; then what is at
-        //    the corners stands for the others.)
+        // 3. Where faces lie on one another that do not meet. (What was cut from faces of one plane comes from one of them, which stands for
+        //    the others.)
+        let mut stand_ins: FxHashMap<FaceId, Option<u32>> = FxHashMap::default();
         for pair in source.nearly_flush {
             for &face in pair {
                 let origin = source.origin(face);
@@ -202,9 +204,13 @@ impl<'a> Sources<'a> {
                 let before = at.len();
                 at.extend(own.into_iter().flatten().map(|place| (hubs, place)));
                 if at.len() == before {
-                    let corners = source.points_of_face(face).map(|point| patch.find_point(point));
-                    let around = corners.into_iter().flatten().flat_map(|point| at_vertex.get(point.index()));
-                    at.extend(around.map(|&place| (hubs, place)));
+                    let stand_in = stand_ins.entry(face).or_insert_with(|| {
+                        let corners = source.points_of_face(face).map(|point| patch.find_point(point));
+                        let mut around =
+                            corners.into_iter().flatten().flat_map(|point| at_vertex.get(point.index()));
+                        around.find(|&&place| source.are_coplanar(origin, origins[place as usize])).copied()
+                    });
+                    at.extend(stand_in.map(|place| (hubs, place)));
                 }
             }
             hubs += 1;
