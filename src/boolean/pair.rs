@@ -3,6 +3,7 @@
 use crate::boolean::arrangement::Arrangement;
 use crate::boolean::arrangement::crossings::Crossings;
 use crate::boolean::arrangement::curve::Curve;
+use crate::boolean::arrangement::nearly_flush::find_nearly_flush;
 use crate::boolean::arrangement::points::AddedPoint;
 use crate::boolean::arrangement::sheets::{self, Rule};
 use crate::boolean::candidates::Candidates;
@@ -11,6 +12,7 @@ use crate::boolean::classify::body::Body;
 use crate::boolean::classify::multiplicity::{self, Keep, Part};
 use crate::boolean::classify::winding::Windings;
 use crate::boolean::complex::classes;
+use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::operation::Operation;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::planes::are_nearly_parallel;
@@ -137,6 +139,11 @@ fn combine_parts(
     let crossings = Crossings::find(&complex, &candidates, runner)?;
     let rule = sheet_rule(parts);
     let sheets = sheets::find_sheets(&complex, &candidates, crossings.contacts, rule, runner)?;
+    let nearly_flush = if settings.flatten {
+        find_nearly_flush(&complex, &candidates, Rounding::up_to(complex.largest_coordinate()), runner)?
+    } else {
+        Vec::new()
+    };
     drop(candidates);
     // 4. Order: the crossings along each edge, and by face.
     let curve = Curve::new(&complex, crossings, &sheets, runner)?;
@@ -147,11 +154,20 @@ fn combine_parts(
     let contacts = curve.contacts() + windings.contacts;
     let mut arrangement = Arrangement::new(curve, sheets, settings.remove_vertices, runner)?;
 
+    let found = Found { contacts, nearly_flush: &nearly_flush };
     let mut result = Assembled::default();
     for parts in bodies(parts, settings.fuse && !arrangement.sheets.is_empty()) {
-        result = result.append(build(&mut arrangement, &windings, parts, contacts, settings, runner)?)?;
+        result = result.append(build(&mut arrangement, &windings, parts, &found, settings, runner)?)?;
     }
     Ok(Combined { arrays: result, contacts })
+}
+
+/// What was found on the way that the clean-up has to know.
+#[derive(Clone, Copy)]
+struct Found<'a> {
+    /// How many decisions plain coordinates left open.
+    contacts: u64,
+    nearly_flush: &'a [[FaceId; 2]],
 }
 
 /// The sum of some parts of the result.
@@ -159,7 +175,7 @@ fn build(
     arrangement: &mut Arrangement<'_>,
     windings: &Windings,
     parts: &[Part],
-    contacts: u64,
+    found: &Found<'_>,
     settings: Settings<'_>,
     runner: Runner<'_>,
 ) -> Result<Assembled, Error> {
@@ -174,13 +190,17 @@ fn build(
     let mut pieces = sums.pieces;
     pieces.extend(cut.pieces);
     // 8. Tidying, near the curve only.
-    let flatten =
-        settings.flatten && (cut.has_slivers || !sums.done.is_empty() || has_nearly_parallel(arrangement));
+    let flatten = settings.flatten
+        && (cut.has_slivers
+            || !sums.done.is_empty()
+            || !found.nearly_flush.is_empty()
+            || has_nearly_parallel(arrangement));
     let tidy_settings = tidy::Settings {
         remove_vertices: settings.remove_vertices,
         rounding,
         glue: settings.glue,
-        contacts,
+        contacts: found.contacts,
+        nearly_flush: found.nearly_flush,
         flatten,
         always: cut.has_slivers || flatten || !sums.done.is_empty(),
     };

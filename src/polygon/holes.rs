@@ -163,14 +163,14 @@ fn sight_line(
 ) -> Option<usize> {
     let start = hole[from];
     let p = points[start as usize];
-    let distance = |i: &usize| {
-        let q = points[joined[*i] as usize];
+    let distance = |vertex: &u32| {
+        let q = points[*vertex as usize];
         (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2)
     };
-    let mut order: Vec<usize> = (0..joined.len()).collect();
-    order.sort_by(|i, j| distance(i).total_cmp(&distance(j)).then(i.cmp(j)));
+    let mut order: Vec<(f64, usize)> = joined.iter().map(distance).zip(0..).collect();
+    order.sort_unstable_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
     let n = hole.len();
-    order.into_iter().find(|&at| {
+    order.into_iter().map(|(_, at)| at).find(|&at| {
         let target = joined[at];
         if target == start {
             return false;
@@ -203,9 +203,14 @@ pub(super) fn in_cone(before: [f64; 2], here: [f64; 2], after: [f64; 2], target:
 /// Whether the segment between two vertices meets an edge of a loop other than at the vertices themselves.
 fn blocked(points: &[[f64; 2]], ring: &[u32], start: u32, target: u32) -> bool {
     let (p, q) = (points[start as usize], points[target as usize]);
+    let (low, high): ([f64; 2], [f64; 2]) = ([0, 1].map(|k| p[k].min(q[k])), [0, 1].map(|k| p[k].max(q[k])));
     (0..ring.len()).any(|i| {
         let (u, v) = (ring[i], ring[(i + 1) % ring.len()]);
         let (a, b) = (points[u as usize], points[v as usize]);
+        // Nearly all edges lie beside the box of the segment.
+        if (0..2).any(|k| a[k].max(b[k]) < low[k] || high[k] < a[k].min(b[k])) {
+            return false;
+        }
         let on_segment = |x: u32| {
             x != start && x != target && {
                 let c = points[x as usize];

@@ -7,7 +7,7 @@
 //! 5. `points`: where crossings are (`location`), and one numbering for all points;
 //! 6. `identify`: which points have become one.
 //!
-//! `self_crossings` asks the same predicates of one surface against itself.
+//! `nearly_flush` finds faces in one plane but for rounding, and `self_crossings` asks the same predicates of one surface against itself.
 
 pub(super) mod apart;
 mod beside;
@@ -19,6 +19,7 @@ pub(super) mod face_walk;
 mod height_fields;
 pub(super) mod identify;
 pub(super) mod location;
+pub(super) mod nearly_flush;
 mod neighbours;
 mod pairs_of_some;
 mod penetration;

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::Complex;
 use super::ids::FaceId;
 use super::origin::Origin;
+use super::rounding::Rounding;
 use crate::exact::{PlaneFilter, Projection, Sign, collinear, orient2d, orient3d, orient3d_filter};
 
 impl Complex<'_> {
@@ -96,6 +97,28 @@ pub(crate) fn are_nearly_parallel(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool 
     };
     let (n, m) = (normal(x), normal(y));
     n.cross(m).length_squared() <= ANGLE * ANGLE * n.length_squared() * m.length_squared()
+}
+
+/// Whether the smaller of two triangles has all corners within twice the rounding of the other's plane, but not all of them in it, exactly:
+/// they were flush, perhaps, before their bodies were turned.
+pub(crate) fn are_nearly_flush(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3], rounding: Rounding) -> bool {
+    let normal = |t: &[[f64; 3]; 3]| {
+        let [a, b, c] = t.map(DVec3::from_array);
+        (b - a).cross(c - a)
+    };
+    let (n, m) = (normal(x), normal(y));
+    let is_larger = n.length_squared() >= m.length_squared();
+    let (plane, normal, points) = if is_larger { (x, n, y) } else { (y, m, x) };
+    let most = 2.0 * points.iter().map(|p| rounding.length_at(p)).fold(0.0, f64::max);
+    let is_near = |p: &[f64; 3]| {
+        let height = normal.dot(DVec3::from_array(*p) - DVec3::from_array(plane[0]));
+        height * height <= most * most * normal.length_squared()
+    };
+    // (Nearly always the first point says no.)
+    points.iter().all(is_near) && are_nearly_parallel(x, y) && {
+        let has_area = |[a, b, c]: &[[f64; 3]; 3]| !collinear(a, b, c);
+        has_area(x) && has_area(y) && !lie_in_one_plane(x, y)
+    }
 }
 
 /// Whether two triangles that lie in one plane, exactly, have area in common.

@@ -10,6 +10,7 @@
 
 pub(super) mod piece;
 pub(super) mod plane_sums;
+pub(super) mod sheet_origins;
 
 use rustc_hash::FxHashSet;
 use smallvec::SmallVec;

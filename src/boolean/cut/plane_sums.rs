@@ -7,6 +7,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::piece::Piece;
+use super::sheet_origins::{FlatSource, SheetOrigins};
 use crate::Error;
 use crate::boolean::arrangement::points::SheetCrossing;
 use crate::boolean::arrangement::sheets::Sheet;
@@ -17,7 +18,6 @@ use crate::exact::perturbed::PerturbedPoint;
 use crate::exact::{Projection, Sign, orient2d, position};
 use crate::parallel::Runner;
 use crate::polygon;
-use crate::spatial::{BoxTree, Frame};
 
 /// What is left of the faces of all sheets.
 #[derive(Debug, Default)]
@@ -223,56 +223,26 @@ impl Sum<'_> {
         Some(SheetCrossing { position, edge, triangle })
     }
 
-    /// The triangles with the faces they come from: those around their middle that look their way.
+    /// The triangles with the faces they come from.
     fn attach_origins(&self, found: &polygon::Found) -> Option<Vec<Piece>> {
         // 1. The faces each part of the body takes from the sheet, and which way they look.
-        let sources: Vec<(Origin, bool, [[f64; 2]; 3])> = self
-            .of
-            .sources
-            .iter()
-            .map(|source| {
-                let flat = source.corners.map(|p| self.project(&p));
-                let looks_up = orient2d(flat[0], flat[1], flat[2]) == Sign::Positive;
-                (source.origin, looks_up != source.origin.reversed, flat)
-            })
-            .collect();
-        // 2. A tree over them: a sheet may have thousands.
-        let upright = |p: [f64; 2]| [p[0], p[1], 0.0];
-        let all = || sources.iter().flat_map(|source| source.2);
-        let low = all().fold([f64::INFINITY; 2], |low, p| [low[0].min(p[0]), low[1].min(p[1])]);
-        let high = all().fold([f64::NEG_INFINITY; 2], |high, p| [high[0].max(p[0]), high[1].max(p[1])]);
-        let frame = Frame::of(upright(low), upright(high));
-        let numbers: Vec<u32> = (0..sources.len() as u32).collect();
-        let box_of = |corners: &[[f64; 2]; 3]| {
-            let corners = corners.map(upright);
-            frame.triangle(corners.each_ref())
-        };
-        let tree = BoxTree::new(&numbers, |i| box_of(&sources[i as usize].2));
-        // 3. Of the faces that hold a triangle's middle and look its way it comes from the first; a sliver whose middle rounding
-        //    has put outside all of them comes from any that looks its way.
+        let sources = self.of.sources.iter().map(|source| {
+            let corners = source.corners.map(|p| self.project(&p));
+            let is_seen = orient2d(corners[0], corners[1], corners[2]) == Sign::Positive;
+            FlatSource { origin: source.origin, looks_up: is_seen != source.origin.reversed, corners }
+        });
+        let origins = SheetOrigins::new(sources.collect());
+        // 2. That of each triangle.
         let mut new = Vec::new();
         let slivers = found.slivers.iter().map(|&counted| (counted, true));
         for ((triangle, winding), is_flat) in
             found.triangles.iter().map(|&counted| (counted, false)).chain(slivers)
         {
-            let flat = triangle.map(|i| self.flat[i as usize]);
-            let [p, q, r] = flat;
-            let middle = [0, 1].map(|k| p[k] / 3.0 + q[k] / 3.0 + r[k] / 3.0);
             let upward = winding > 0;
-            let mut best = None;
-            tree.meeting(&box_of(&flat), |i| {
-                let source = &sources[i as usize];
-                if source.1 == upward && best.is_none_or(|best| i < best) && contains(&source.2, middle) {
-                    best = Some(i);
-                }
-            });
-            let source = match best {
-                Some(i) => &sources[i as usize],
-                None => sources.iter().find(|source| source.1 == upward)?,
-            };
+            let origin = origins.find(triangle.map(|i| self.flat[i as usize]), upward)?;
             let [a, b, c] = triangle.map(|i| self.points[i as usize]);
             let corners = if upward { [a, b, c] } else { [a, c, b] };
-            let piece = Piece { corners, origin: source.0, flat: is_flat };
+            let piece = Piece { corners, origin, flat: is_flat };
             new.extend(std::iter::repeat_n(piece, winding.unsigned_abs() as usize));
         }
         Some(new)
@@ -281,9 +251,4 @@ impl Sum<'_> {
 
 fn bits(position: &[f64; 3]) -> [u64; 3] {
     position.map(|x| (x + 0.0).to_bits())
-}
-
-fn contains(triangle: &[[f64; 2]; 3], p: [f64; 2]) -> bool {
-    let sides = [0, 1, 2].map(|k| orient2d(triangle[k], triangle[(k + 1) % 3], p));
-    !(sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative))
 }

@@ -151,6 +151,11 @@ impl Crossed {
         self
     }
 
+    /// In how many places two faces cross.
+    pub(crate) fn segment_count(&self) -> usize {
+        self.crossings.segments.len()
+    }
+
     /// The faces that cross others or lie on others, ascending, as triangles of their operands. Not those of fans that touch in one point:
     /// where they bound two hollows they cross there, as the material between them shrinks, and nothing could be mended.
     pub(crate) fn troubled(&self) -> Vec<u32> {

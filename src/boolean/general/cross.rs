@@ -11,6 +11,7 @@ use crate::boolean::complex::ids::{EdgeId, FaceId, VertexId};
 use crate::boolean::complex::meeting::Meeting;
 use crate::boolean::complex::planes;
 use crate::boolean::complex::predicates::{Plane, Predicates};
+use crate::boolean::complex::rounding::Rounding;
 
 /// Where an edge pierces a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -41,11 +42,21 @@ pub(super) struct Search<'a> {
     pub(super) surfaces: &'a Surfaces,
     pub(super) edges: &'a Edges,
     pub(super) predicates: Predicates<'a>,
+    pub(super) rounding: Rounding,
+}
+
+/// Pairs of faces that lie on each other.
+#[derive(Default)]
+pub(super) struct Touching {
+    /// In one plane, and folded back at a common edge.
+    pub(super) exactly: Vec<[FaceId; 2]>,
+    /// In one plane but for rounding.
+    pub(super) nearly: Vec<[FaceId; 2]>,
 }
 
 impl Search<'_> {
     /// Adds the segment of a pair that crosses, and a pair that lies on each other.
-    pub(super) fn decide(&self, pair: [FaceId; 2], found: &mut Vec<Found>, touching: &mut Vec<[FaceId; 2]>) {
+    pub(super) fn decide(&self, pair: [FaceId; 2], found: &mut Vec<Found>, touching: &mut Touching) {
         let [a, b] = pair.map(|face| self.surfaces.corners(face));
         let shared = a.iter().position(|x| b.iter().any(|y| y.id == x.id));
         if let Some(i) = shared
@@ -54,7 +65,7 @@ impl Search<'_> {
             let others = |t: &[Corner; 3], k: usize| [t[(k + 1) % 3].id, t[(k + 2) % 3].id];
             if others(&a, i).iter().any(|v| others(&b, j).contains(v)) {
                 // Folded back at a common edge.
-                touching.push(pair);
+                touching.exactly.push(pair);
                 return;
             }
             found.extend(self.cross_from(pair, [&a, &b], [i, j]));
@@ -63,7 +74,9 @@ impl Search<'_> {
         }
         let [a, b] = pair.map(|face| self.surfaces.positions(face));
         if planes::lie_on_each_other(&a, &b) {
-            touching.push(pair);
+            touching.exactly.push(pair);
+        } else if shared.is_none() && planes::are_nearly_flush(&a, &b, self.rounding) {
+            touching.nearly.push(pair);
         }
     }
 

@@ -1,6 +1,6 @@
 //! All places where edges pierce faces, and the segments between them.
 
-use super::cross::{End, Found, Node, Search};
+use super::cross::{End, Found, Node, Search, Touching};
 use super::edges::Edges;
 use super::surfaces::Surfaces;
 use crate::Error;
@@ -8,6 +8,7 @@ use crate::boolean::arrangement::cut_edges::compare_with_plane;
 use crate::boolean::complex::Corner;
 use crate::boolean::complex::ids::{FaceId, NodeId, PointId, SegmentId, VertexId};
 use crate::boolean::complex::predicates::{Perturbed, Predicates};
+use crate::boolean::complex::rounding::Rounding;
 use crate::exact::{Sign, order};
 use crate::mesh::Buckets;
 use crate::parallel::Runner;
@@ -41,6 +42,8 @@ pub(crate) struct Crossings {
     of_face: Buckets<SegmentId>,
     /// Pairs of faces in one plane that overlap.
     pub(crate) touching: Vec<[FaceId; 2]>,
+    /// Pairs of faces in one plane but for rounding.
+    pub(crate) nearly_flush: Vec<[FaceId; 2]>,
     /// How many decisions plain coordinates left open.
     pub(crate) contacts: u64,
     vertex_count: u32,
@@ -67,22 +70,28 @@ impl Crossings {
         runner: Runner<'_>,
     ) -> Result<Self, Error> {
         let predicates = Predicates::new(surfaces);
-        let search = Search { surfaces, edges, predicates };
+        let rounding = Rounding::up_to(surfaces.largest_coordinate());
+        let search = Search { surfaces, edges, predicates, rounding };
         let pieces = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
-            let (mut found, mut touching) = (Vec::new(), Vec::new());
+            let (mut found, mut touching) = (Vec::new(), Touching::default());
             for &pair in &pairs[range] {
                 search.decide(pair, &mut found, &mut touching);
             }
             (found, touching)
         })?;
-        let (found, touching): (Vec<_>, Vec<_>) = pieces.into_iter().unzip();
-        Self::number(surfaces, &found.concat(), touching.concat(), search.predicates.into_contacts())
+        let (mut found, mut touching) = (Vec::new(), Touching::default());
+        for (mut more, mut other) in pieces {
+            found.append(&mut more);
+            touching.exactly.append(&mut other.exactly);
+            touching.nearly.append(&mut other.nearly);
+        }
+        Self::number(surfaces, &found, touching, search.predicates.into_contacts())
     }
 
     fn number(
         surfaces: &Surfaces,
         found: &[Found],
-        touching: Vec<[FaceId; 2]>,
+        touching: Touching,
         contacts: u64,
     ) -> Result<Self, Error> {
         let ends = found.iter().flat_map(|pair| [pair.tail, pair.head]);
@@ -115,7 +124,8 @@ impl Crossings {
         for (face, list) in surfaces.faces().zip(of_face.each_mut()) {
             list.sort_unstable_by_key(|segment| segments[segment.index()].partner(face));
         }
-        Ok(Self { nodes, segments, of_face, touching, contacts, vertex_count })
+        let Touching { exactly: touching, nearly: nearly_flush } = touching;
+        Ok(Self { nodes, segments, of_face, touching, nearly_flush, contacts, vertex_count })
     }
 
     /// The segments on a face, by partner.

@@ -65,6 +65,11 @@ const GROWTH: usize = 2;
 /// Triangles that there may be in any case.
 const ALWAYS_ALLOWED: usize = 256;
 
+/// Work of all rounds together, in triangles and segments, for each triangle that there was: bounds the time by a multiple of that of one look,
+/// whatever crosses. (Ten rounds of a result where few triangles cross stay below 11; needles that cross in bundles have segments by the
+/// square of their number.)
+const MOST_WORK: usize = 16;
+
 /// A result that is to be freed of crossings: for each triangle where it came from and its group.
 #[derive(Clone, Debug)]
 pub(crate) struct Parts {
@@ -89,6 +94,7 @@ pub(crate) fn embed(
     let mut troubled: Vec<u32> = Vec::new();
     let mut best: Option<(Parts, Embedding)> = None;
     let most_triangles = ALWAYS_ALLOWED.max(GROWTH * parts.triangles.len());
+    let mut work_left = MOST_WORK * most_triangles / GROWTH;
     loop {
         // 1. The grid: a coarser one where it goes on too long.
         report.displacement += round(&mut parts, grid, coarser(report.rounds), &troubled);
@@ -103,8 +109,10 @@ pub(crate) fn embed(
         let crossed = Crossed::new(&[&solid], runner)?;
         troubled = crossed.troubled();
         report.left = troubled.len();
+        let work = solid.mesh().triangles.len() + crossed.segment_count();
         let fewest = best.as_ref().map_or(usize::MAX, |(_, report)| report.left);
         let is_hopeless = report.rounds == MOST_ROUNDS
+            || work > work_left
             || report.left > GROWTH.saturating_mul(fewest)
             || solid.mesh().triangles.len() > most_triangles;
         if report.left < fewest {
@@ -113,10 +121,12 @@ pub(crate) fn embed(
             best = Some((Parts { positions, triangles, origins, groups }, report));
         }
         if report.left == 0 || is_hopeless {
-            return Ok(best.expect("the first round is better than none"));
+            let (parts, report) = best.expect("the first round is better than none");
+            return Ok((separated(parts, grid), report));
         }
         // 3. Its resolution; what is thinner than the next grid is cleaned up.
         report.rounds += 1;
+        work_left -= work;
         let general = General::new(crossed.with_groups(vec![parts.groups.clone()]), true, runner)?;
         let inside: Vec<bool> =
             general.faces.labels.all().iter().map(|label| winding(label, 0) > 0).collect();
@@ -139,6 +149,26 @@ pub(crate) fn embed(
         let sources: Vec<u32> = arrays.origins.iter().map(|origin| origin.triangle).collect();
         troubled = descendants(&troubled, &sources);
         parts = made;
+    }
+}
+
+/// Parts a surface where it touches itself since points have become one; in single precision only where that takes copies of points alone, for a
+/// middle of an edge would be no number of the grid.
+fn separated(parts: Parts, grid: Grid) -> Parts {
+    let on_grid =
+        |mesh: &Mesh| mesh.positions.iter().flatten().all(|&x| grid == Grid::Double || single(x) == x);
+    let whole = Solid::from_closed_unchecked(Mesh::new(parts.positions, parts.triangles));
+    let apart = (!whole.is_manifold()).then(|| whole.separated()).filter(|(solid, _)| on_grid(solid.mesh()));
+    let Some((solid, sources)) = apart else {
+        let Mesh { positions, triangles, .. } = whole.into_mesh();
+        return Parts { positions, triangles, ..parts };
+    };
+    let Mesh { positions, triangles, .. } = solid.into_mesh();
+    Parts {
+        positions,
+        triangles,
+        origins: sources.iter().map(|&source| parts.origins[source as usize]).collect(),
+        groups: sources.iter().filter_map(|&source| parts.groups.get(source as usize).copied()).collect(),
     }
 }
 

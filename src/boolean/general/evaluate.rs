@@ -63,8 +63,12 @@ pub(crate) fn evaluate(
     let cut = cut(&shape, &sums.done, rounding, runner)?;
     sums.pieces.extend(cut.pieces);
     // 3. Tidying.
-    let flatten =
-        finish.flatten && (cut.has_slivers || !sums.done.is_empty() || has_nearly_parallel(general));
+    let nearly_flush: &[_] = if finish.flatten { &general.crossings.nearly_flush } else { &[] };
+    let flatten = finish.flatten
+        && (cut.has_slivers
+            || !sums.done.is_empty()
+            || !nearly_flush.is_empty()
+            || has_nearly_parallel(general));
     let settings = tidy::Settings {
         remove_vertices: finish.remove_vertices,
         rounding,
@@ -72,6 +76,7 @@ pub(crate) fn evaluate(
         // tells which faces bound the same material.
         glue: true,
         contacts: general.contacts,
+        nearly_flush,
         flatten,
         always: cut.has_slivers || flatten || !sums.done.is_empty(),
     };

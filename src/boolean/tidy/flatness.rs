@@ -22,6 +22,11 @@ pub(super) fn has_flat(patch: &Patch<'_>) -> bool {
     patch.face_numbers().any(|face| !patch[face].untouched && is_flat(patch, face))
 }
 
+/// Whether a face is left that the clean-up may change, and whose corners lie on one line as they are.
+pub(super) fn has_exactly_flat(patch: &Patch<'_>) -> bool {
+    patch.face_numbers().any(|face| !patch[face].untouched && is_exactly_flat(patch, face))
+}
+
 /// Whether a face that is not untouched is as low as `is_low` says.
 pub(super) fn is_lower(patch: &Patch<'_>, face: LocalFace, is_low: IsLow) -> bool {
     let Some(face) = Some(&patch[face]).filter(|face| face.alive && !face.untouched) else { return false };

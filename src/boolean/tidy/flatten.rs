@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 
 use super::face::{LocalFace, LocalPoint};
 use super::flatness::is_triangle_low;
-use super::near_planes::{NearPlane, NearPlanes};
+use super::near_planes::{Looking, NearPlane, NearPlanes};
 use super::patch::Patch;
 use super::remove_vertices::{Arc, fill, makes_double_edge};
 use super::{flip, short_edges};
@@ -70,7 +70,7 @@ const MOST_ROUNDS: u32 = 4;
 /// # Errors
 /// Only limits.
 pub(super) fn flatten(patch: &mut Patch<'_>, control: &Control) -> Result<(), Error> {
-    let planes = NearPlanes::of(patch);
+    let planes = NearPlanes::of(patch, Looking::SameWay);
     let mut triangulator = Triangulator::default();
     let mut met = BitSet::new(patch.point_count());
     let representatives = patch.source().representatives();

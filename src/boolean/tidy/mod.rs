@@ -17,6 +17,8 @@ mod flip;
 mod gather;
 mod lines;
 mod near_planes;
+mod near_points;
+mod near_sums;
 mod patch;
 mod point_grid;
 mod remove_vertices;
@@ -28,7 +30,7 @@ mod source;
 mod split_faces;
 mod splits;
 
-use crate::boolean::complex::ids::PointId;
+use crate::boolean::complex::ids::{FaceId, PointId};
 use crate::boolean::complex::rounding::Rounding;
 use crate::boolean::cut::piece::Piece;
 use crate::parallel::Runner;
@@ -46,7 +48,7 @@ const MOST_ROUNDS: usize = 3;
 
 /// Settings of the clean-up.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Settings {
+pub(super) struct Settings<'a> {
     /// Whether needless vertices are removed, and faces of one plane triangulated together.
     pub(super) remove_vertices: bool,
     /// Edges and heights that are not worth a triangle.
@@ -55,6 +57,8 @@ pub(super) struct Settings {
     pub(super) glue: bool,
     /// How many decisions plain coordinates left open: without any, nothing touches.
     pub(super) contacts: u64,
+    /// Pairs of faces in one plane but for rounding, whether they cross or not.
+    pub(super) nearly_flush: &'a [[FaceId; 2]],
     /// Whether what lies in one plane but for rounding becomes one face.
     pub(super) flatten: bool,
     /// Whether to clean up even where the arrangement gives no reason to: cutting left slivers, or faces were added up.
@@ -69,10 +73,15 @@ pub(super) struct Settings {
 pub(crate) fn tidy(
     ground: Ground<'_>,
     pieces: &[Piece],
-    settings: &Settings,
+    settings: &Settings<'_>,
     runner: Runner<'_>,
 ) -> Result<Option<Tidied>, Error> {
-    let source = Source { ground, rounding: settings.rounding, has_contacts: settings.contacts > 0 };
+    let source = Source {
+        ground,
+        rounding: settings.rounding,
+        has_contacts: settings.contacts > 0,
+        nearly_flush: if settings.flatten { settings.nearly_flush } else { &[] },
+    };
     if !settings.always && !source.needs_clean_up() {
         return Ok(None);
     }
@@ -84,6 +93,7 @@ pub(crate) fn tidy(
     // Where an operand touches itself, triangles may come apart at points that are not wholly in the patch. Then all starts
     // again with those; each is taken in but once.
     let mut extra: Vec<PointId> = source.points_on_pinched_edges();
+    extra.extend(source.nearly_flush.iter().flatten().flat_map(|&face| source.points_of_face(face)));
     loop {
         let patch = gather::gather(source, pieces, &extra);
         // Candidates outside the patch have nothing that changed around them.
@@ -106,13 +116,19 @@ enum Attempt {
 fn attempt(
     mut patch: Patch<'_>,
     mut candidates: Vec<LocalPoint>,
-    settings: &Settings,
+    settings: &Settings<'_>,
     control: &Control,
 ) -> Result<Attempt, Error> {
     let has_contacts = patch.source().has_contacts;
     let merge = settings.remove_vertices;
     if has_contacts {
         flatness::mark_flat(&mut patch);
+    }
+    // 0. Points in one place but for rounding become one, and faces in one plane but for rounding are added up.
+    if settings.flatten {
+        let snapped = near_points::snap(&mut patch);
+        patch.note_flattening(snapped);
+        near_sums::add_up(&mut patch, control)?;
     }
     for round in 1.. {
         // 1. Triangles without area: first all those of one line at once, then what is left one by one.
@@ -150,7 +166,9 @@ fn attempt(
             flip::flip_low(&mut patch, Rounding::is_low);
         }
         // 7. Again, if that has left triangles without area.
-        if !flatness::has_flat(&patch) {
+        let has_flat =
+            if settings.flatten { flatness::has_exactly_flat(&patch) } else { flatness::has_flat(&patch) };
+        if !has_flat {
             break;
         }
         if round == MOST_ROUNDS {
@@ -200,6 +218,7 @@ mod tests {
             rounding: Rounding::up_to(6.0),
             glue: false,
             contacts: 0,
+            nearly_flush: &[],
             flatten: false,
             always: true,
         };

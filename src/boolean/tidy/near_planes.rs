@@ -2,8 +2,8 @@
 //!
 //! Faces that were flush before their bodies were turned are off one plane by some units in the last place. Which faces of a
 //! patch are so is told from the triangles they were cut from: those of one *near plane* have all their corners within rounding
-//! of it, look the same way and hang together in the result. So what is in one is so however many faces there are, and a round
-//! surface is not taken for a plane step by step.
+//! of it and hang together in the result; and they look the same way, where that is asked for. So what is in one is so however many
+//! faces there are, and a round surface is not taken for a plane step by step.
 
 use std::collections::VecDeque;
 
@@ -14,6 +14,7 @@ use super::face::LocalPoint;
 use super::flatness::is_triangle_low;
 use super::patch::Patch;
 use super::source::Source;
+use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::planes::unit_normal;
 use crate::boolean::complex::rounding::Rounding;
@@ -62,11 +63,25 @@ impl NearPlane {
         nearer(nearer(a, b), c).dot(self.normal).abs()
     }
 
+    /// How the plane is seen, whichever way it looks.
+    pub(super) fn along_axis(&self) -> Projection {
+        self.projection.along_axis()
+    }
+
     /// Whether three points are in counter-clockwise order, seen from the front.
     pub(super) fn sees(&self, corners: [&[f64; 3]; 3]) -> bool {
         let [a, b, c] = corners.map(|corner| self.projection.project(corner));
         orient2d(a, b, c) == Sign::Positive
     }
+}
+
+/// Which faces of one near plane belong together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Looking {
+    /// Those that look the same way, and may be one face.
+    SameWay,
+    /// All.
+    EitherWay,
 }
 
 /// The near planes of the faces of a patch.
@@ -77,7 +92,7 @@ pub(super) struct NearPlanes {
 
 impl NearPlanes {
     /// Finds them. O(n log n) for n faces, some fifty nanoseconds each.
-    pub(super) fn of(patch: &Patch<'_>) -> Self {
+    pub(super) fn of(patch: &Patch<'_>, looking: Looking) -> Self {
         let sources = Sources::of(patch);
         let rounding = patch.source().rounding;
         let mut found = Self { planes: Vec::new(), of_origin: FxHashMap::default() };
@@ -88,7 +103,8 @@ impl NearPlanes {
                 continue;
             }
             // The largest first: a plane is that of its largest face, and grows from there.
-            let Some(mut growing) = Growing::new(sources.corners[seed as usize], rounding) else { continue };
+            let of_seed = Growing::new(sources.corners[seed as usize], looking, rounding);
+            let Some(mut growing) = of_seed else { continue };
             let number = found.planes.len() as u32;
             let mut queue = VecDeque::from([seed]);
             is_taken[seed as usize] = true;
@@ -99,8 +115,12 @@ impl NearPlanes {
                         continue;
                     }
                     for &next in sources.at_hub.get(hub as usize) {
-                        let may_join = !is_taken[next as usize] && sources.belong_together(seed, next);
-                        if may_join && growing.take(&sources.corners[next as usize]) {
+                        let belong_together =
+                            || looking == Looking::EitherWay || sources.belong_together(seed, next);
+                        if !is_taken[next as usize]
+                            && belong_together()
+                            && growing.take(&sources.corners[next as usize])
+                        {
                             is_taken[next as usize] = true;
                             queue.push_back(next);
                         }
@@ -110,6 +130,16 @@ impl NearPlanes {
             found.planes.push(growing.plane);
         }
         found
+    }
+
+    /// How many there are.
+    pub(super) fn len(&self) -> usize {
+        self.planes.len()
+    }
+
+    /// The one with a number.
+    pub(super) fn get(&self, number: usize) -> &NearPlane {
+        &self.planes[number]
     }
 
     /// The near plane of what was cut from a face; `None` where that face is so thin that it has none.
@@ -125,7 +155,7 @@ struct Sources<'a> {
     origins: Vec<Origin>,
     /// By origin.
     corners: Vec<[[f64; 3]; 3]>,
-    /// The origins at each hub, a place where some meet: a vertex, or a face no higher than rounding with all its vertices.
+    /// The origins at each hub, a place where some meet: a vertex, a face no higher than rounding with all its vertices, or a pair that lie on each other.
     at_hub: Buckets<u32>,
     /// By origin the hubs where it is.
     hubs_of: Buckets<u32>,
@@ -164,6 +194,27 @@ impl<'a> Sources<'a> {
             at.extend(list.into_iter().map(|place| (hubs, place)));
             hubs += 1;
         }
+        // 3. Where faces lie on one another that do not meet. (What was cut from faces of one plane comes from one of them, which stands for
+        //    the others.)
+        let mut stand_ins: FxHashMap<FaceId, Option<u32>> = FxHashMap::default();
+        for pair in source.nearly_flush {
+            for &face in pair {
+                let origin = source.origin(face);
+                let own = [false, true].map(|reversed| places.get(&Origin { reversed, ..origin }).copied());
+                let before = at.len();
+                at.extend(own.into_iter().flatten().map(|place| (hubs, place)));
+                if at.len() == before {
+                    let stand_in = stand_ins.entry(face).or_insert_with(|| {
+                        let corners = source.points_of_face(face).map(|point| patch.find_point(point));
+                        let mut around =
+                            corners.into_iter().flatten().flat_map(|point| at_vertex.get(point.index()));
+                        around.find(|&&place| source.are_coplanar(origin, origins[place as usize])).copied()
+                    });
+                    at.extend(stand_in.map(|place| (hubs, place)));
+                }
+            }
+            hubs += 1;
+        }
         let at_hub = Buckets::new(hubs as usize, at.iter().copied());
         let hubs_of = Buckets::new(origins.len(), at.iter().map(|&(hub, place)| (place, hub)));
         let corners = origins.iter().map(|&origin| source.source_and_projection(origin).0).collect();
@@ -187,43 +238,48 @@ impl<'a> Sources<'a> {
 /// A near plane that takes in faces.
 struct Growing {
     plane: NearPlane,
-    /// The corners of its faces.
-    corners: Vec<[f64; 3]>,
+    /// The corners of its faces, and what rounding can have made of each.
+    corners: Vec<([f64; 3], f64)>,
+    looking: Looking,
     rounding: Rounding,
 }
 
 impl Growing {
     /// The plane of a face, if it has one.
-    fn new(face: [[f64; 3]; 3], rounding: Rounding) -> Option<Self> {
+    fn new(face: [[f64; 3]; 3], looking: Looking, rounding: Rounding) -> Option<Self> {
         if rounding.is_low(face.each_ref()) {
             return None;
         }
-        Some(Self { plane: NearPlane::of(face)?, corners: face.to_vec(), rounding })
+        let own = length_at_face(&face, rounding);
+        let corners = face.map(|corner| (corner, own)).to_vec();
+        Some(Self { plane: NearPlane::of(face)?, corners, looking, rounding })
     }
 
     /// Takes a face in, if its corners are within rounding of the plane, or of another that has all faces so far as well.
     fn take(&mut self, face: &[[f64; 3]; 3]) -> bool {
-        // 1. It must look the same way, if it does any.
+        // 1. It must look the same way, if it does any and that matters.
         let normal = if self.rounding.is_low(face.each_ref()) { None } else { unit_normal(face) };
-        if normal.is_some_and(|normal| normal.dot(self.plane.normal) <= 0.0) {
+        let is_opposite = normal.is_some_and(|normal| normal.dot(self.plane.normal) <= 0.0);
+        if is_opposite && self.looking == Looking::SameWay {
             return false;
         }
         // 2. Whether it is in the plane as it is, or as another that goes further.
-        let is_in = face.iter().all(|corner| self.holds(&self.plane, corner));
+        let own = length_at_face(face, self.rounding);
+        let is_in = face.iter().all(|corner| self.plane.distance(corner) <= own);
         let is_parallel =
             normal.is_some_and(|normal| normal.cross(self.plane.normal).length() <= NEARLY_PARALLEL);
-        let wider = if is_parallel { self.wider(face) } else { None };
+        let wider = if is_parallel { self.wider(face, own) } else { None };
         if let Some(wider) = wider {
             self.plane = wider;
         } else if !is_in {
             return false;
         }
-        self.corners.extend(face);
+        self.corners.extend(face.iter().map(|&corner| (corner, own)));
         true
     }
 
     /// A plane that goes further than this one and holds all of its corners and those of another face.
-    fn wider(&self, face: &[[f64; 3]; 3]) -> Option<NearPlane> {
+    fn wider(&self, face: &[[f64; 3]; 3], own: f64) -> Option<NearPlane> {
         let points = [self.plane.base, *face].concat();
         let triples = (0..6).flat_map(|i| (i + 1..6).flat_map(move |j| (j + 1..6).map(move |k| [i, j, k])));
         let mut best = (LARGER * doubled_area(&self.plane.base), None);
@@ -234,13 +290,17 @@ impl Growing {
             }
         }
         let wider = NearPlane::of(best.1?)?.turned(self.plane.normal);
-        let mut corners = face.iter().chain(&self.corners);
-        corners.all(|corner| self.holds(&wider, corner)).then_some(wider)
+        let holds = |corner: &[f64; 3], most: f64| wider.distance(corner) <= most;
+        let is_wider = face.iter().all(|corner| holds(corner, own))
+            && self.corners.iter().all(|(corner, most)| holds(corner, *most));
+        is_wider.then_some(wider)
     }
+}
 
-    fn holds(&self, plane: &NearPlane, corner: &[f64; 3]) -> bool {
-        plane.distance(corner) <= self.rounding.length_at(corner)
-    }
+/// The length that rounding can give to something at a face: that at the corner where it is largest, as a corner near the origin may have been
+/// computed from others.
+fn length_at_face(face: &[[f64; 3]; 3], rounding: Rounding) -> f64 {
+    face.iter().map(|corner| rounding.length_at(corner)).fold(0.0, f64::max)
 }
 
 /// Twice the area of a triangle; infinite or zero where that is no number.

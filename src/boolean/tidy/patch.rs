@@ -201,6 +201,11 @@ impl<'a> Patch<'a> {
         LocalFace(self.faces.len() as u32 - 1)
     }
 
+    /// Adds a face.
+    pub(super) fn add_face(&mut self, corners: [LocalPoint; 3], origin: Origin, flat: bool) {
+        self.faces.push(Face { corners, origin, untouched: false, flat, alive: true });
+    }
+
     /// Drops a face.
     pub(super) fn drop_face(&mut self, face: LocalFace) {
         self.faces[face.index()].alive = false;
@@ -279,7 +284,12 @@ impl<'a> Patch<'a> {
 
     /// Whether the result has a directed edge, in the patch or outside.
     pub(super) fn has_edge(&self, from: LocalPoint, to: LocalPoint) -> bool {
-        self.left_of(from, to).is_some() || self.outer_edges.contains(&(from, to))
+        self.left_of(from, to).is_some() || self.has_outer_edge(from, to)
+    }
+
+    /// Whether the result has a directed edge outside the patch.
+    pub(super) fn has_outer_edge(&self, from: LocalPoint, to: LocalPoint) -> bool {
+        self.outer_edges.contains(&(from, to))
     }
 
     /// The triangles around a complete point with the corner that follows it in each, counter-clockwise.

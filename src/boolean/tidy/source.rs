@@ -40,6 +40,8 @@ pub(super) struct Source<'a> {
     pub(super) rounding: Rounding,
     /// Whether the operands touch: plain coordinates left some decision open.
     pub(super) has_contacts: bool,
+    /// Pairs of faces in one plane but for rounding, if what is so is to become one face.
+    pub(super) nearly_flush: &'a [[FaceId; 2]],
 }
 
 impl<'a> Source<'a> {
@@ -130,6 +132,29 @@ impl<'a> Source<'a> {
             Ground::Shape(shape) => shape.source(origin),
         };
         (source, Projection::of(&source))
+    }
+
+    /// The points that stand for the vertices of a face.
+    pub(super) fn points_of_face(&self, face: FaceId) -> [PointId; 3] {
+        let points = match self.ground {
+            Ground::Body(body) => {
+                let (operand, triangle) = body.complex().triangle(face);
+                let corners = body.complex().operands[operand].triangles[triangle as usize];
+                corners.map(|v| Points::of_vertex(body.complex().vertex(operand, v)))
+            }
+            Ground::Shape(shape) => {
+                shape.general.surfaces.vertices(face).map(|vertex| PointId::new(vertex.number()))
+            }
+        };
+        points.map(|point| self.identification().representative(point))
+    }
+
+    /// What comes from a face and looks its way.
+    pub(super) fn origin(&self, face: FaceId) -> Origin {
+        match self.ground {
+            Ground::Body(body) => body.complex().origin(face, false),
+            Ground::Shape(shape) => shape.origin(face, false),
+        }
     }
 
     /// The operand that a face comes from, of all there are.
