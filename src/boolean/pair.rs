@@ -3,7 +3,7 @@
 use crate::boolean::arrangement::Arrangement;
 use crate::boolean::arrangement::crossings::Crossings;
 use crate::boolean::arrangement::curve::Curve;
-use crate::boolean::arrangement::nearly_flush::find_nearly_flush;
+use crate::boolean::arrangement::nearly_flush::NearlyFlush;
 use crate::boolean::arrangement::points::AddedPoint;
 use crate::boolean::arrangement::sheets::{self, Rule};
 use crate::boolean::candidates::Candidates;
@@ -136,14 +136,11 @@ fn combine_parts(
         .with_attributes(classes);
     let candidates = Candidates::new(&complex, &overlap, runner)?;
     // 3. Crossings: the intersection curve. Faces that touch and cannot be kept apart form sheets.
-    let crossings = Crossings::find(&complex, &candidates, runner)?;
+    let flush = settings.flatten.then(|| NearlyFlush::new(Rounding::up_to(complex.largest_coordinate())));
+    let crossings = Crossings::find(&complex, &candidates, flush.as_ref(), runner)?;
+    let nearly_flush = flush.map_or_else(Vec::new, NearlyFlush::into_pairs);
     let rule = sheet_rule(parts);
     let sheets = sheets::find_sheets(&complex, &candidates, crossings.contacts, rule, runner)?;
-    let nearly_flush = if settings.flatten {
-        find_nearly_flush(&complex, &candidates, Rounding::up_to(complex.largest_coordinate()), runner)?
-    } else {
-        Vec::new()
-    };
     drop(candidates);
     // 4. Order: the crossings along each edge, and by face.
     let curve = Curve::new(&complex, crossings, &sheets, runner)?;

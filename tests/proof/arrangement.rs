@@ -404,12 +404,52 @@ fn results_on_a_grid_are_free_of_crossings_or_say_how_many_are_left() {
         resolved += u32::from(embedding.rounds > 0 && embedding.left == 0);
         left += u32::from(embedding.left > 0);
         // It encloses what it did, up to what the grid moves.
+        assert!(embedding.displacement <= 1e-3, "seed {seed}: {embedding:?}");
         let exact = BooleanOptions::new().evaluate(&"a + b".parse().unwrap(), [a, b]).unwrap();
         let change = (exact.solid().volume() - again.volume()).abs();
         assert!(change <= 20.0 * (embedding.displacement + 1e-7), "seed {seed}: {change:e} {embedding:?}");
     }
     println!("{tried} results, {resolved} resolved, {left} with crossings left");
     assert!(tried > 30 && left * 20 < tried, "{left} of {tried} with crossings left");
+}
+
+#[test]
+fn folds_that_touch_themselves_in_a_corner_are_no_crossings() {
+    // Corners of a ball moved at random, by as much as its sides are long and less: the surface folds over itself, round corners too, where
+    // what it winds around touches itself in a point.
+    let (mut pinched, mut results) = (0, 0);
+    for seed in 0..rounds(12) {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut mesh = primitives::icosphere(1.0, 2).unwrap();
+        let wild = [0.35, 0.5, 0.7][rng.random_range(0..3)];
+        mesh.positions.iter_mut().flatten().for_each(|x| *x += wild * rng.random_range(-1.0..1.0));
+        let Ok(solid) = Solid::try_from(mesh) else { continue };
+        let exact = BooleanOptions::new().resolve(&solid).unwrap();
+        let places: std::collections::BTreeSet<_> =
+            exact.solid().mesh().positions.iter().map(|position| position.map(f64::to_bits)).collect();
+        pinched += u32::from(places.len() < exact.solid().mesh().positions.len());
+        results += 1;
+        for (embed, rounding) in [
+            (Embed::NearCut, 1e-15),
+            (Embed::OnGrid(Grid::Double), 1e-15),
+            (Embed::OnGrid(Grid::Single), 1e-6),
+        ] {
+            let outcome = BooleanOptions::new().embed(embed).resolve(&solid).unwrap();
+            let certificate = outcome.certificate();
+            let embedding = certificate.embedding.expect("it was asked for");
+            assert_eq!(embedding.left, 0, "seed {seed}, {embed:?}");
+            assert!(embedding.displacement <= rounding, "seed {seed}, {embed:?}: {embedding:?}");
+            assert!(certificate.closed && certificate.manifold, "seed {seed}, {embed:?}");
+            let change = (outcome.solid().volume() - exact.solid().volume()).abs();
+            assert!(change <= 10.0 * rounding, "seed {seed}, {embed:?}: {change:e}");
+            let mesh = outcome.solid().mesh();
+            let again = Solid::try_from(Mesh::new(mesh.positions.clone(), mesh.triangles.clone())).unwrap();
+            let found = again.self_crossings(&Control::new()).unwrap();
+            assert!(found.is_simple() && found.tolerated == 0, "seed {seed}, {embed:?}: {found:?}");
+        }
+    }
+    println!("{results} results, {pinched} that touch themselves");
+    assert!(pinched * 2 > results, "{pinched} of {results} touch themselves");
 }
 
 #[test]

@@ -5,8 +5,8 @@
 
 use smallvec::SmallVec;
 
+use crate::boolean::complex::Corner;
 use crate::boolean::complex::predicates::Predicates;
-use crate::boolean::complex::{Corner, planes};
 use crate::exact::{Projection, Sign, orient2d, orient3d};
 
 /// Whether two triangles plainly have nothing in common but a corner: one lies on one side of the other's plane, or seen along an
@@ -134,38 +134,6 @@ fn meet_in_corner_alone(a: &[Corner; 3], i: usize, b: &[Corner; 3], j: usize) ->
     let turned = |t: &[Corner; 3], k: usize| [0, 1, 2].map(|l| t[(k + l) % 3].position);
     let (of_a, of_b) = (turned(a, i), turned(b, j));
     has_separating_side_at_corner(&of_a, &of_b) || has_separating_side_at_corner(&of_b, &of_a)
-}
-
-/// Whether two triangles certainly meet in corners, or a side, that they have at the same places, and nowhere else: fans that touch have
-/// vertices of their own there. False where they have nothing at one place.
-pub(crate) fn meet_in_common_places_alone(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> bool {
-    let places = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
-    let common: SmallVec<[(usize, usize); 3]> = places.filter(|&(i, j)| a[i] == b[j]).collect();
-    match common.as_slice() {
-        &[(i, j)] => {
-            let turned = |t: &[[f64; 3]; 3], k: usize| [0, 1, 2].map(|l| t[(k + l) % 3]);
-            let (a, b) = (turned(a, i), turned(b, j));
-            are_apart_but_for_first(&a, &b)
-                || has_separating_side_at_corner(&a, &b)
-                || has_separating_side_at_corner(&b, &a)
-        }
-        [_, _] => !planes::lie_on_each_other(a, b),
-        _ => false,
-    }
-}
-
-/// The same for triangles whose first corner is the common one, told by their planes.
-fn are_apart_but_for_first(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> bool {
-    let ([v, p, q], [_, r, s]) = (a, b);
-    let sides =
-        |[u, v, w]: &[[f64; 3]; 3], x: &[f64; 3], y: &[f64; 3]| [orient3d(u, v, w, x), orient3d(u, v, w, y)];
-    let ([of_p, of_q], [of_r, of_s]) = (sides(b, p, q), sides(a, r, s));
-    if [of_p, of_q, of_r, of_s].contains(&Sign::Zero) {
-        return (of_p == of_q && of_p != Sign::Zero) || (of_r == of_s && of_r != Sign::Zero);
-    }
-    // Both planes are passed: each triangle has a piece of their line, from the corner one way or the other. The line through p and q passes the
-    // other triangle's angle at the corner, or the angle opposite.
-    of_p == of_q || of_r == of_s || orient3d(p, q, v, r) == of_p
 }
 
 /// The same for triangles whose first corner is the common one: the others of the one lie beyond a side of the other, one of them

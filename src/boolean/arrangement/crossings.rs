@@ -5,6 +5,7 @@
 
 use std::ops::Index;
 
+use super::nearly_flush::NearlyFlush;
 use crate::Error;
 use crate::boolean::candidates::Candidates;
 use crate::boolean::complex::ids::{FaceId, NodeId, SegmentId, VertexId};
@@ -102,17 +103,18 @@ struct PairCrossing {
 }
 
 impl Crossings {
-    /// Finds the crossings of all candidate pairs.
+    /// Finds the crossings of all candidate pairs, and which are nearly flush where that is asked for.
     ///
     /// # Errors
     /// Limits, and [`Error::TooLarge`] where the points cannot be numbered.
     pub(crate) fn find(
         complex: &Complex<'_>,
         candidates: &Candidates,
+        flush: Option<&NearlyFlush>,
         runner: Runner<'_>,
     ) -> Result<Self, Error> {
         let search =
-            Search { complex, predicates: Predicates::new(complex), known: KnownSides::new(complex) };
+            Search { complex, predicates: Predicates::new(complex), known: KnownSides::new(complex), flush };
         let found = candidates.visit_batches(runner, |pairs, found| search.add_crossings(pairs, found))?;
         let _tables = runner.control.reserve(found.len() as u64 * BYTES_PER_PAIR)?;
         let points = complex.vertex_count() as usize + 2 * found.len();
@@ -151,6 +153,7 @@ struct Search<'a> {
     complex: &'a Complex<'a>,
     predicates: Predicates<'a>,
     known: Option<KnownSides>,
+    flush: Option<&'a NearlyFlush>,
 }
 
 impl Search<'_> {
@@ -167,6 +170,10 @@ impl Search<'_> {
             corners.extend(pairs.iter().map(|&[s, t]| {
                 [self.complex.corners_of_triangle(0, s), self.complex.corners_of_triangle(1, t)]
             }));
+            if let Some(flush) = self.flush {
+                let both = pairs.iter().zip(&corners);
+                both.for_each(|(&pair, corners)| flush.look_at(self.complex, pair, corners));
+            }
             found.extend(
                 pairs.iter().zip(&corners).filter_map(|(&pair, corners)| self.intersect(pair, corners)),
             );

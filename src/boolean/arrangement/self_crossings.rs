@@ -8,7 +8,7 @@
 
 use std::borrow::Cow;
 
-use super::apart::{are_plainly_apart, common_corners, meet_in_common_places_alone};
+use super::apart::{are_plainly_apart, common_corners};
 use super::beside::Look;
 use super::neighbours::Neighbours;
 use super::pairs_of_some::pairs_with;
@@ -22,7 +22,7 @@ use crate::exact::at_hand::{largest_coordinate, size_at_hand};
 use crate::mesh::{Bounds, SelfCrossing, SelfCrossings};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame};
-use crate::{Control, Error, Solid};
+use crate::{Control, Error, Mesh, Solid};
 
 /// Units in the last place of the coordinates at hand that a rounding-level crossing may be deep. Each of two rounded
 /// surfaces is off by less than one in every direction.
@@ -147,9 +147,31 @@ pub(in crate::boolean) fn crosses_at(
     let frame = Frame::of(bounds.low, bounds.high);
     let surface = Surface::new(&complex, BoxTree::empty(), frame, &bounds, f64::EPSILON);
     let found = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
-        pairs[range].iter().any(|&pair| surface.has_crossing(pair))
+        pairs[range].iter().copied().filter(|&pair| surface.has_crossing(pair)).collect::<Vec<_>>()
     })?;
-    Ok(found.contains(&true))
+    Ok(crossing_grown(mesh, &bounds, &found.concat(), runner)?.contains(&true))
+}
+
+/// Whether pairs of triangles that cross as the surface shrinks, or lie on each other, do so as it grows, too. Two hollows that touch cross
+/// as the material between them shrinks; as it grows they come apart.
+fn crossing_grown(
+    mesh: &Mesh,
+    bounds: &Bounds,
+    pairs: &[[u32; 2]],
+    runner: Runner<'_>,
+) -> Result<Vec<bool>, Error> {
+    if pairs.is_empty() {
+        return Ok(Vec::new());
+    }
+    let turned: Vec<[u32; 3]> = mesh.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
+    let operand = Operand { positions: &mesh.positions, triangles: &turned };
+    let complex = Complex::alone(operand, bounds.largest(), pairs);
+    let frame = Frame::of(bounds.low, bounds.high);
+    let surface = Surface::new(&complex, BoxTree::empty(), frame, bounds, f64::EPSILON);
+    let found = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
+        pairs[range].iter().map(|&pair| surface.has_crossing(pair)).collect::<Vec<_>>()
+    })?;
+    Ok(found.concat())
 }
 
 /// Pairs that one thread examines before the limits are checked.
@@ -180,7 +202,8 @@ fn find(
     let complex = Complex::alone(operand, largest, &pairs);
     let tree = tree.unwrap_or_else(|| tree_of(mesh, &frame));
     let surface = Surface::new(&complex, tree, frame, &bounds, part);
-    let (mut rest, mut next, mut doubtful) = (&*pairs, PAIRS_AT_FIRST, Vec::new());
+    let (mut rest, mut next) = (&*pairs, PAIRS_AT_FIRST);
+    let (mut doubtful, mut tolerated) = (Vec::new(), Vec::new());
     while !rest.is_empty() && go_on(&result) {
         let (pairs, after) = rest.split_at(next.min(rest.len()));
         (rest, next) = (after, 4 * next);
@@ -188,16 +211,9 @@ fn find(
             pairs[range].iter().filter_map(|&pair| surface.examine(pair)).collect::<Vec<_>>()
         })?;
         for found in found.into_iter().flatten() {
-            let found = match found {
-                Found::Crossing(found) => found,
-                Found::Touching => {
-                    result.touching += 1;
-                    continue;
-                }
-                Found::AtOnePlace(pair) => {
-                    doubtful.push(pair);
-                    continue;
-                }
+            let Found::Crossing(found) = found else {
+                result.touching += 1;
+                continue;
             };
             if !found.real || found.shallow {
                 doubtful.push(found.crossing.triangles);
@@ -207,7 +223,7 @@ fn find(
                 result.shallow += usize::from(found.shallow);
                 result.places.push(found.crossing);
             } else {
-                result.tolerated += 1;
+                tolerated.push(found.crossing.triangles);
             }
         }
     }
@@ -222,11 +238,13 @@ fn find(
                 result.shallow -= 1;
             } else {
                 result.count += 1;
-                result.tolerated -= usize::from(!surface.touch_at_one_place(found.triangles));
+                tolerated.retain(|&pair| pair != found.triangles);
                 result.places.push(found);
             }
         }
     }
+    result.tolerated =
+        crossing_grown(mesh, &bounds, &tolerated, runner)?.iter().filter(|&&crosses| crosses).count();
     result.places.sort_by(|x, y| y.depth.total_cmp(&x.depth).then(x.triangles.cmp(&y.triangles)));
     // 4. What crosses itself is resolved next, perhaps, and that begins with the same pairs.
     if let Cow::Owned(many) = pairs
@@ -248,8 +266,6 @@ enum Found {
     Crossing(Crossing),
     /// They lie on each other in one plane.
     Touching,
-    /// They have corners at one place, and meet there alone.
-    AtOnePlace([u32; 2]),
 }
 
 struct Crossing {
@@ -294,8 +310,7 @@ impl<'a> Surface<'a> {
             return None;
         }
         if let Some(crossing) = self.examine_closely(pair, &a, &b, Look::Quadrants) {
-            let touches = !crossing.real && self.touch_at_one_place(pair);
-            return Some(if touches { Found::AtOnePlace(pair) } else { Found::Crossing(crossing) });
+            return Some(Found::Crossing(crossing));
         }
         self.lie_on_each_other(pair).then_some(Found::Touching)
     }
@@ -311,14 +326,7 @@ impl<'a> Surface<'a> {
             &[corners] => self.crossing_at_common_corner(&a, &b, corners).is_some(),
             corners => corners.len() > 2,
         };
-        (crosses && !self.touch_at_one_place(pair)) || self.lie_on_each_other(pair)
-    }
-
-    /// Whether triangles have corners, or a side, at one place and nothing else in common. Fans that touch in a point have vertices of
-    /// their own there, in every result; these part as the surface shrinks, and where they bound two hollows they cross then.
-    fn touch_at_one_place(&self, pair: [u32; 2]) -> bool {
-        let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t));
-        meet_in_common_places_alone(&positions(&a), &positions(&b))
+        crosses || self.lie_on_each_other(pair)
     }
 
     /// The crossing of a pair that crosses by no more than some roundings, if the surface overlaps beside it all the same.

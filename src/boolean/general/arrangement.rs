@@ -1,5 +1,7 @@
 //! The general arrangement as one value, built step by step.
 
+use rustc_hash::FxHashSet;
+
 use super::cells::{Beside, CellCount, Cells, Ground};
 use super::crossings::Crossings;
 use super::edges::{Edges, MOST_FACES};
@@ -10,7 +12,6 @@ use super::segment_labels::SegmentLabels;
 use super::surfaces::Surfaces;
 use super::walk::FaceLabels;
 use super::{seeds, sheets, triples};
-use crate::boolean::arrangement::apart::meet_in_common_places_alone;
 use crate::boolean::arrangement::identify::Identification;
 use crate::boolean::arrangement::sheets::Sheet;
 use crate::boolean::complex::ids::{FaceId, VertexId};
@@ -156,17 +157,24 @@ impl Crossed {
         self.crossings.segments.len()
     }
 
-    /// The faces that cross others or lie on others, ascending, as triangles of their operands. Not those of fans that touch in one point:
-    /// where they bound two hollows they cross there, as the material between them shrinks, and nothing could be mended.
+    /// The faces that cross others or lie on others, ascending, as triangles of their operands.
     pub(crate) fn troubled(&self) -> Vec<u32> {
-        let surfaces = &self.ready.surfaces;
+        self.troubled_if(|_| true)
+    }
+
+    /// Those that do so also in another arrangement of the same operands, turned inside out, so that what shrinks here grows there. Hollows that
+    /// touch cross as the material between them shrinks, and bodies that touch as they grow; what crosses in both crosses really.
+    pub(crate) fn troubled_in_both(&self, turned: &Self) -> Vec<u32> {
+        let key = |faces: &[FaceId; 2]| [faces[0].min(faces[1]), faces[0].max(faces[1])];
+        let others: FxHashSet<[FaceId; 2]> =
+            turned.crossings.segments.iter().map(|segment| key(&segment.faces)).collect();
+        self.troubled_if(|faces| others.contains(&key(faces)))
+    }
+
+    fn troubled_if(&self, crosses: impl Fn(&[FaceId; 2]) -> bool) -> Vec<u32> {
         let pairs = self.crossings.segments.iter().map(|segment| &segment.faces);
-        let pairs = pairs.filter(|faces| {
-            let [a, b] = faces.map(|face| surfaces.positions(face));
-            !meet_in_common_places_alone(&a, &b)
-        });
-        let faces = pairs.chain(&self.crossings.touching).flatten();
-        let mut triangles: Vec<u32> = faces.map(|&face| surfaces.triangle(face)).collect();
+        let faces = pairs.filter(|faces| crosses(faces)).chain(&self.crossings.touching).flatten();
+        let mut triangles: Vec<u32> = faces.map(|&face| self.ready.surfaces.triangle(face)).collect();
         triangles.sort_unstable();
         triangles.dedup();
         triangles

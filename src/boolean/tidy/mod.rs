@@ -207,7 +207,7 @@ mod tests {
         let near = std::mem::take(&mut overlap.near);
         let complex = Complex::new(operands, [&[]; 2], Motion::Shrink, 6.0, near);
         let candidates = Candidates::new(&complex, &overlap, runner).unwrap();
-        let crossings = Crossings::find(&complex, &candidates, runner).unwrap();
+        let crossings = Crossings::find(&complex, &candidates, None, runner).unwrap();
         let curve = Curve::new(&complex, crossings, &[], runner).unwrap();
         let windings = Windings::new(&curve, &overlap, &bounds, [true; 2], runner).unwrap();
         let arrangement = Arrangement::new(curve, Vec::new(), true, runner).unwrap();
