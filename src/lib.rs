@@ -47,7 +47,7 @@
 //!
 //! | Feature | Default | Adds | Crates (30 without any) |
 //! |---|---|---|---|
-//! | `cli` | yes | the program; brings `field`, `formats`, `model`, `render`, `serde` | 56 |
+//! | `cli` | yes | the program; brings `field`, `formats`, `model`, `render`, `serde` | 58 |
 //! | `draco` | yes | Draco-compressed glTF in the module `io`; brings `formats` | 17 |
 //! | `field` | yes | the module `field`: signed distances, formulas, R-functions, and their surfaces as meshes | 1 |
 //! | `formats` | yes | the module `io`, `Mesh::load` and `Mesh::save`: OBJ, glTF, STL, PLY, OFF | 16 |
@@ -59,7 +59,7 @@
 //! | `text` | yes | text in TrueType and OpenType fonts as solids, in the module `making` | 1 |
 //! | `subdivision` | yes | the module `subdivision`: subdivision surfaces given by cages, and their booleans as cages | none |
 //! | `threemf` | yes | 3MF files in the module `io`; brings `formats` | 32 |
-//! | `viewer` | yes | results as pages for browsers, of the program; brings `cli` | 53 |
+//! | `viewer` | yes | results as pages for browsers, of the program; brings `cli` | 58 |
 //!
 //! For the engine alone: `default-features = false`, with `parallel` or not.
 //!

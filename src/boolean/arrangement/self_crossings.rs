@@ -8,6 +8,8 @@
 
 use std::borrow::Cow;
 
+use rustc_hash::FxHashSet;
+
 use super::apart::{are_plainly_apart, common_corners};
 use super::beside::Look;
 use super::neighbours::Neighbours;
@@ -203,7 +205,8 @@ fn find(
     let tree = tree.unwrap_or_else(|| tree_of(mesh, &frame));
     let surface = Surface::new(&complex, tree, frame, &bounds, part);
     let (mut rest, mut next) = (&*pairs, PAIRS_AT_FIRST);
-    let (mut doubtful, mut tolerated) = (Vec::new(), Vec::new());
+    let (mut doubtful, mut tolerated, mut overlapping_beside) =
+        (Vec::new(), Vec::new(), FxHashSet::default());
     while !rest.is_empty() && go_on(&result) {
         let (pairs, after) = rest.split_at(next.min(rest.len()));
         (rest, next) = (after, 4 * next);
@@ -238,15 +241,17 @@ fn find(
                 result.shallow -= 1;
             } else {
                 result.count += 1;
-                tolerated.retain(|&pair| pair != found.triangles);
+                overlapping_beside.insert(found.triangles);
                 result.places.push(found);
             }
         }
     }
-    result.tolerated =
-        crossing_grown(mesh, &bounds, &tolerated, runner)?.iter().filter(|&&crosses| crosses).count();
+    // 4. What crosses by rounding alone counts only if it does so as the surface grows, too.
+    tolerated.retain(|pair| !overlapping_beside.contains(pair));
+    let crosses = crossing_grown(mesh, &bounds, &tolerated, runner)?;
+    result.tolerated = crosses.into_iter().filter(|&crosses| crosses).count();
     result.places.sort_by(|x, y| y.depth.total_cmp(&x.depth).then(x.triangles.cmp(&y.triangles)));
-    // 4. What crosses itself is resolved next, perhaps, and that begins with the same pairs.
+    // 5. What crosses itself is resolved next, perhaps, and that begins with the same pairs.
     if let Cow::Owned(many) = pairs
         && !result.is_nearly_simple()
     {

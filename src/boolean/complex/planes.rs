@@ -87,26 +87,24 @@ pub(crate) fn unit_normal([a, b, c]: &[[f64; 3]; 3]) -> Option<DVec3> {
     (u / size).cross(v / size).try_normalize()
 }
 
+/// A normal of a triangle as long as twice its area, as it comes out.
+fn area_normal(triangle: &[[f64; 3]; 3]) -> DVec3 {
+    let [a, b, c] = triangle.map(DVec3::from_array);
+    (b - a).cross(c - a)
+}
+
 /// Whether two triangles have normals that differ, or are opposite, by no more than what rounding turns faces by that were
 /// flush: an angle of a millionth, in radians.
 pub(crate) fn are_nearly_parallel(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
     const ANGLE: f64 = 1e-6;
-    let normal = |t: &[[f64; 3]; 3]| {
-        let [a, b, c] = t.map(DVec3::from_array);
-        (b - a).cross(c - a)
-    };
-    let (n, m) = (normal(x), normal(y));
+    let (n, m) = (area_normal(x), area_normal(y));
     n.cross(m).length_squared() <= ANGLE * ANGLE * n.length_squared() * m.length_squared()
 }
 
 /// Whether the smaller of two triangles has all corners within twice the rounding of the other's plane, but not all of them in it, exactly:
 /// they were flush, perhaps, before their bodies were turned.
 pub(crate) fn are_nearly_flush(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3], rounding: Rounding) -> bool {
-    let normal = |t: &[[f64; 3]; 3]| {
-        let [a, b, c] = t.map(DVec3::from_array);
-        (b - a).cross(c - a)
-    };
-    let (n, m) = (normal(x), normal(y));
+    let (n, m) = (area_normal(x), area_normal(y));
     let is_larger = n.length_squared() >= m.length_squared();
     let (plane, normal, points) = if is_larger { (x, n, y) } else { (y, m, x) };
     let most = 2.0 * points.iter().map(|p| rounding.length_at(p)).fold(0.0, f64::max);
