@@ -294,6 +294,10 @@ def classified(case, peer, differing, ours, theirs):
     if ours["parted"] is None:
         return OURS + "walls without thickness"
     if ours["parted"] != [ours["components"], ours["euler"]]:
+        if ours["mispaired"] == 0 and ours["own"]:
+            return "same solid; an operand touches itself in an edge, and stays connected as it is"
+        if ours["mispaired"] == 0 and ours["pinched"]:
+            return "same solid; an edge touches a face from inside, which one parts and the other does not"
         if ours["mispaired"] == 0:
             # Every edge between faces of a width joins those that bound one wedge of material: what is joined beyond that is joined
             # through faces as thin as rounding, between points that are not exactly one.

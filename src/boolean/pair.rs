@@ -5,14 +5,14 @@ use crate::boolean::arrangement::crossings::Crossings;
 use crate::boolean::arrangement::curve::Curve;
 use crate::boolean::arrangement::nearly_flush::NearlyFlush;
 use crate::boolean::arrangement::points::AddedPoint;
-use crate::boolean::arrangement::sheets::{self, Rule};
+use crate::boolean::arrangement::sheets::{self, Rule, Touching};
 use crate::boolean::candidates::Candidates;
 use crate::boolean::candidates::overlap::{Overlap, Place};
 use crate::boolean::classify::body::Body;
 use crate::boolean::classify::multiplicity::{self, Keep, Part};
 use crate::boolean::classify::winding::Windings;
 use crate::boolean::complex::classes;
-use crate::boolean::complex::ids::FaceId;
+use crate::boolean::complex::ids::{FaceId, VertexId};
 use crate::boolean::complex::operation::Operation;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::planes::are_nearly_parallel;
@@ -140,7 +140,8 @@ fn combine_parts(
     let crossings = Crossings::find(&complex, &candidates, flush.as_ref(), runner)?;
     let nearly_flush = flush.map_or_else(Vec::new, NearlyFlush::into_pairs);
     let rule = sheet_rule(parts);
-    let sheets = sheets::find_sheets(&complex, &candidates, crossings.contacts, rule, runner)?;
+    let Touching { sheets, along_edges } =
+        sheets::find_sheets(&complex, &candidates, crossings.contacts, rule, runner)?;
     drop(candidates);
     // 4. Order: the crossings along each edge, and by face.
     let curve = Curve::new(&complex, crossings, &sheets, runner)?;
@@ -151,7 +152,7 @@ fn combine_parts(
     let contacts = curve.contacts() + windings.contacts;
     let mut arrangement = Arrangement::new(curve, sheets, settings.remove_vertices, runner)?;
 
-    let found = Found { contacts, nearly_flush: &nearly_flush };
+    let found = Found { contacts, nearly_flush: &nearly_flush, along_edges: &along_edges };
     let mut result = Assembled::default();
     for parts in bodies(parts, settings.fuse && !arrangement.sheets.is_empty()) {
         result = result.append(build(&mut arrangement, &windings, parts, &found, settings, runner)?)?;
@@ -165,6 +166,7 @@ struct Found<'a> {
     /// How many decisions plain coordinates left open.
     contacts: u64,
     nearly_flush: &'a [[FaceId; 2]],
+    along_edges: &'a [VertexId],
 }
 
 /// The sum of some parts of the result.
@@ -198,6 +200,7 @@ fn build(
         glue: settings.glue,
         contacts: found.contacts,
         nearly_flush: found.nearly_flush,
+        along_edges: found.along_edges,
         flatten,
         always: cut.has_slivers || flatten || !sums.done.is_empty(),
     };

@@ -404,3 +404,29 @@ fn bodies_of_one_file_that_overlap_behind_contacts_are_resolved() {
         assert!((union - 49.0 - more).abs() < 1e-12, "round {round}, seed {SEED}: {union}");
     }
 }
+
+#[test]
+fn a_body_that_touches_an_edge_from_inside_opens_it() {
+    // A wedge in a box, an edge of it within an edge of the box: nothing crosses. What is left of the box has a cleft there, so that it
+    // is one surface, and both sides of the cleft come apart along the edge.
+    let a = solid(primitives::cuboid([0.0; 3], [4.0; 3]).expect("a box"));
+    let wedge = Mesh::new(
+        vec![[0.0, 0.0, 1.0], [0.0, 0.0, 2.0], [1.0, 2.0, 1.5], [2.0, 1.0, 1.5]],
+        vec![[0, 3, 1], [1, 3, 2], [0, 1, 2], [0, 2, 3]],
+    );
+    let b = solid(wedge);
+    let volume = b.volume();
+    assert!(volume > 0.0);
+    let swapped = |first: bool| if first { [&a, &b] } else { [&b, &a] };
+    for (operation, operands) in [
+        (Operation::SymmetricDifference, swapped(true)),
+        (Operation::SymmetricDifference, swapped(false)),
+        (Difference, swapped(true)),
+    ] {
+        let outcome = BooleanOptions::new().run(operation, operands).expect("no limits");
+        let found = outcome.certificate();
+        assert!(found.closed && found.manifold, "{operation}");
+        assert_eq!((found.components, found.genus), (1, Some(0)), "{operation}");
+        assert!((outcome.solid().volume() - (64.0 - volume)).abs() < 1e-12, "{operation}");
+    }
+}

@@ -7,7 +7,7 @@ use std::io::{self, BufRead, Write};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::judge::cases::{Case, Family, HARD_FROM};
-use crate::judge::contacts::{Parted, Topology};
+use crate::judge::contacts::{Parted, Topology, touches_itself_along};
 use crate::judge::many::{MANY_FROM, Many};
 use crate::judge::oracle;
 use crate::judge::origin;
@@ -33,7 +33,7 @@ pub(crate) fn serve(input: &mut impl BufRead, out: &mut impl Write, models: &[Me
         places.extend(samples::points(&operands, &theirs, points / 2, &mut random));
         let [ours, theirs] = [&ours, &theirs].map(|mesh| {
             let verdict = oracle::judge_by(&expected, &operands, mesh, &places);
-            describe(mesh, run::smallest_part(&operands, mesh), &verdict)
+            describe(mesh, &operands, &verdict)
         });
         writeln!(out, "{{\"ours\":{ours},\"theirs\":{theirs},\"at_origin\":{at_origin}}}")?;
         out.flush()?;
@@ -67,9 +67,9 @@ fn prepare(seed: u64, models: &[Mesh]) -> (Vec<Mesh>, Mesh, Expected) {
     (vec![case.a, case.b], ours, Box::new(move |windings| oracle::expected(operation, windings)))
 }
 
-fn describe(mesh: &Mesh, smallest_part: f64, verdict: &oracle::Verdict) -> String {
+fn describe(mesh: &Mesh, operands: &[&Mesh], verdict: &oracle::Verdict) -> String {
     let found = Properties::of(mesh);
-    let by_reach = run::parted_by_reach(mesh, smallest_part);
+    let by_reach = run::parted_by_reach(mesh, run::smallest_part(operands, mesh));
     let text = |parted: Option<&Parted>| {
         let list = |parted: &Parted| format!("[{},{}]", parted.topology.components, parted.topology.euler);
         parted.map_or("null".to_string(), list)
@@ -80,11 +80,15 @@ fn describe(mesh: &Mesh, smallest_part: f64, verdict: &oracle::Verdict) -> Strin
     let (parted, coarse) = (text(agreeing), text(by_reach.first()));
     let pinched = by_reach.iter().any(|parted| parted.pinched);
     // With the smallest of the distances: what is flat then is as thin as rounding.
-    let mispaired = by_reach.last().map_or(0, |parted| parted.mispaired);
+    let mispaired = by_reach.last().map_or(&[][..], |parted| &parted.mispaired);
+    // Where an operand touches itself, it stays connected as it is.
+    let is_own = |edge: &&_| operands.iter().any(|operand| touches_itself_along(operand, edge));
+    let own = mispaired.iter().filter(is_own).count();
+    let mispaired = mispaired.len() - own;
     let bodies: Vec<String> = bodies(mesh).iter().map(|body| format!("{:e}", volume(body))).collect();
     format!(
         "{{\"judged\":{},\"mistakes\":{},\"farthest\":{:e},\"closed\":{},\"manifold\":{},\"zero_area\":{},\"volume\":{:e},\
-         \"area\":{:e},\"components\":{},\"euler\":{},\"parted\":{parted},\"coarse\":{coarse},\"pinched\":{pinched},\"mispaired\":{mispaired},\"walls\":{},\"bodies\":[{}]}}",
+         \"area\":{:e},\"components\":{},\"euler\":{},\"parted\":{parted},\"coarse\":{coarse},\"pinched\":{pinched},\"mispaired\":{mispaired},\"own\":{own},\"walls\":{},\"bodies\":[{}]}}",
         verdict.judged,
         verdict.mistakes.len(),
         verdict.farthest(),

@@ -16,7 +16,8 @@ use rustc_hash::FxHashSet;
 use crate::Error;
 use crate::boolean::candidates::Candidates;
 use crate::boolean::complex::Complex;
-use crate::boolean::complex::ids::FaceId;
+use crate::boolean::complex::along::sides_along;
+use crate::boolean::complex::ids::{FaceId, VertexId};
 use crate::exact::{Projection, Sign, collinear, orient2d, orient3d};
 use crate::mesh::SparseUnionFind;
 use crate::parallel::Runner;
@@ -34,8 +35,17 @@ pub(crate) enum Rule {
     All,
 }
 
-/// Finds the sheets: sets of faces connected by touching. `contacts` is what the search for crossings met: without any,
-/// nothing touches.
+/// What touches.
+#[derive(Debug, Default)]
+pub(crate) struct Touching {
+    /// Sets of faces connected by touching.
+    pub(crate) sheets: Vec<Sheet>,
+    /// The vertices of edges of both operands that run along one another, ascending: where all faces that touch are added up.
+    pub(crate) along_edges: Vec<VertexId>,
+}
+
+/// Finds the sheets and, where all faces are added up, the edges that run along one another. `contacts` is what the search for
+/// crossings met: without any, nothing touches.
 ///
 /// # Errors
 /// Only limits.
@@ -45,9 +55,9 @@ pub(crate) fn find_sheets(
     contacts: u64,
     rule: Rule,
     runner: Runner<'_>,
-) -> Result<Vec<Sheet>, Error> {
+) -> Result<Touching, Error> {
     if contacts == 0 {
-        return Ok(Vec::new());
+        return Ok(Touching::default());
     }
     // 1. Pairs of faces that touch.
     let touching = match rule {
@@ -59,7 +69,7 @@ pub(crate) fn find_sheets(
         Rule::AtSaddles { opposite } => {
             let at_saddles = faces_at_saddles(complex);
             if at_saddles.is_empty() {
-                return Ok(Vec::new());
+                return Ok(Touching::default());
             }
             candidates.visit(runner, |s, t, found| {
                 if at_saddles.contains(&s) && look_opposite_ways(complex, [s, t]) == Some(opposite) {
@@ -73,7 +83,30 @@ pub(crate) fn find_sheets(
     for [s, t] in touching {
         classes.join(complex.face(0, s), complex.face(1, t));
     }
-    Ok(classes.into_sets())
+    let along_edges = match rule {
+        Rule::All => vertices_along_edges(complex, candidates, runner)?,
+        Rule::AtSaddles { .. } => Vec::new(),
+    };
+    Ok(Touching { sheets: classes.into_sets(), along_edges })
+}
+
+/// The vertices of edges of both operands that run along one another. Where one operand is inside the other there, none of its faces
+/// need cross any, and only the order of all faces round the edge tells which bound the same material.
+fn vertices_along_edges(
+    complex: &Complex<'_>,
+    candidates: &Candidates,
+    runner: Runner<'_>,
+) -> Result<Vec<VertexId>, Error> {
+    let mut vertices = candidates.visit(runner, |s, t, found| {
+        let [a, b] = [complex.corners_of_triangle(0, s), complex.corners_of_triangle(1, t)];
+        let positions = [a, b].map(|corners| corners.map(|corner| corner.position));
+        for [i, j] in sides_along(&positions[0], &positions[1]) {
+            found.extend([a[i].id, a[(i + 1) % 3].id, b[j].id, b[(j + 1) % 3].id]);
+        }
+    })?;
+    vertices.sort_unstable();
+    vertices.dedup();
+    Ok(vertices)
 }
 
 /// The faces of A near B that have a vertex without a direction, as triangles of A.

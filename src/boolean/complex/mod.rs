@@ -13,9 +13,11 @@
 //! - `meeting`: how two triangles meet;
 //! - `rays`: how often a surface winds around a point;
 //! - `planes`: which faces lie in one plane;
+//! - `along`: which edges run along one another;
 //! - `classes`: which of them may be merged, where attributes have to be kept;
 //! - `rounding`: which lengths and heights may be the work of rounding.
 
+pub(super) mod along;
 pub(super) mod classes;
 pub(super) mod directions;
 pub(super) mod ids;

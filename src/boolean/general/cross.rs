@@ -7,6 +7,7 @@
 use super::edges::Edges;
 use super::surfaces::Surfaces;
 use crate::boolean::complex::Corner;
+use crate::boolean::complex::along::sides_along;
 use crate::boolean::complex::ids::{EdgeId, FaceId, VertexId};
 use crate::boolean::complex::meeting::Meeting;
 use crate::boolean::complex::planes;
@@ -45,13 +46,15 @@ pub(super) struct Search<'a> {
     pub(super) rounding: Rounding,
 }
 
-/// Pairs of faces that lie on each other.
+/// Pairs of faces that lie on each other, and edges.
 #[derive(Default)]
 pub(super) struct Touching {
     /// In one plane, and folded back at a common edge.
     pub(super) exactly: Vec<[FaceId; 2]>,
     /// In one plane but for rounding.
     pub(super) nearly: Vec<[FaceId; 2]>,
+    /// The vertices of edges that run along one another.
+    pub(super) along_edges: Vec<VertexId>,
 }
 
 impl Search<'_> {
@@ -72,7 +75,11 @@ impl Search<'_> {
         } else {
             found.extend(self.cross(pair, [&a, &b]));
         }
+        let [vertices, others] = pair.map(|face| self.surfaces.vertices(face));
         let [a, b] = pair.map(|face| self.surfaces.positions(face));
+        for [i, j] in sides_along(&a, &b) {
+            touching.along_edges.extend([vertices[i], vertices[(i + 1) % 3], others[j], others[(j + 1) % 3]]);
+        }
         if planes::lie_on_each_other(&a, &b) {
             touching.exactly.push(pair);
         } else if shared.is_none() && planes::are_nearly_flush(&a, &b, self.rounding) {

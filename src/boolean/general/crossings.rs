@@ -44,6 +44,8 @@ pub(crate) struct Crossings {
     pub(crate) touching: Vec<[FaceId; 2]>,
     /// Pairs of faces in one plane but for rounding.
     pub(crate) nearly_flush: Vec<[FaceId; 2]>,
+    /// The vertices of edges that run along one another, ascending.
+    pub(crate) along_edges: Vec<VertexId>,
     /// How many decisions plain coordinates left open.
     pub(crate) contacts: u64,
     vertex_count: u32,
@@ -84,6 +86,7 @@ impl Crossings {
             found.append(&mut more);
             touching.exactly.append(&mut other.exactly);
             touching.nearly.append(&mut other.nearly);
+            touching.along_edges.append(&mut other.along_edges);
         }
         Self::number(surfaces, &found, touching, search.predicates.into_contacts())
     }
@@ -124,8 +127,10 @@ impl Crossings {
         for (face, list) in surfaces.faces().zip(of_face.each_mut()) {
             list.sort_unstable_by_key(|segment| segments[segment.index()].partner(face));
         }
-        let Touching { exactly: touching, nearly: nearly_flush } = touching;
-        Ok(Self { nodes, segments, of_face, touching, nearly_flush, contacts, vertex_count })
+        let Touching { exactly: touching, nearly: nearly_flush, mut along_edges } = touching;
+        along_edges.sort_unstable();
+        along_edges.dedup();
+        Ok(Self { nodes, segments, of_face, touching, nearly_flush, along_edges, contacts, vertex_count })
     }
 
     /// The segments on a face, by partner.

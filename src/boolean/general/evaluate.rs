@@ -77,6 +77,7 @@ pub(crate) fn evaluate(
         glue: true,
         contacts: general.contacts,
         nearly_flush,
+        along_edges: &general.crossings.along_edges,
         flatten,
         always: cut.has_slivers || flatten || !sums.done.is_empty(),
     };

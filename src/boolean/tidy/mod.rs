@@ -30,7 +30,7 @@ mod source;
 mod split_faces;
 mod splits;
 
-use crate::boolean::complex::ids::{FaceId, PointId};
+use crate::boolean::complex::ids::{FaceId, PointId, VertexId};
 use crate::boolean::complex::rounding::Rounding;
 use crate::boolean::cut::piece::Piece;
 use crate::parallel::Runner;
@@ -59,6 +59,8 @@ pub(super) struct Settings<'a> {
     pub(super) contacts: u64,
     /// Pairs of faces in one plane but for rounding, whether they cross or not.
     pub(super) nearly_flush: &'a [[FaceId; 2]],
+    /// Vertices of edges of several operands that run along one another, whether anything crosses there or not.
+    pub(super) along_edges: &'a [VertexId],
     /// Whether what lies in one plane but for rounding becomes one face.
     pub(super) flatten: bool,
     /// Whether to clean up even where the arrangement gives no reason to: cutting left slivers, or faces were added up.
@@ -82,7 +84,7 @@ pub(crate) fn tidy(
         has_contacts: settings.contacts > 0,
         nearly_flush: if settings.flatten { settings.nearly_flush } else { &[] },
     };
-    if !settings.always && !source.needs_clean_up() {
+    if !settings.always && settings.along_edges.is_empty() && !source.needs_clean_up() {
         return Ok(None);
     }
     runner.control.check()?;
@@ -93,6 +95,7 @@ pub(crate) fn tidy(
     // Where an operand touches itself, triangles may come apart at points that are not wholly in the patch. Then all starts
     // again with those; each is taken in but once.
     let mut extra: Vec<PointId> = source.points_on_pinched_edges();
+    extra.extend(settings.along_edges.iter().map(|&vertex| source.point_of_vertex(vertex)));
     extra.extend(source.nearly_flush.iter().flatten().flat_map(|&face| source.points_of_face(face)));
     loop {
         let patch = gather::gather(source, pieces, &extra);
@@ -219,6 +222,7 @@ mod tests {
             glue: false,
             contacts: 0,
             nearly_flush: &[],
+            along_edges: &[],
             flatten: false,
             always: true,
         };

@@ -6,6 +6,10 @@ use super::face::{LocalFace, LocalPoint};
 use super::patch::Patch;
 use crate::mesh::{HalfEdges, Surface, make_manifold};
 
+/// What lies to the left of a side by less than this share of what lies to the right is the work of rounding, which is 1e-16 of coordinates:
+/// its direction says nothing about the plane.
+const NARROW: f64 = 1e-6;
+
 /// What making the patch a 2-manifold came to.
 pub(super) enum Separation {
     /// It has adjacency now; the points copied, and the copies.
@@ -77,21 +81,28 @@ impl Surface for Patch<'_> {
     }
 
     /// The corner of the face a triangle was cut from that lies furthest to the left: a narrow triangle's own corner would
-    /// tell nothing but how it was rounded.
+    /// tell nothing but how it was rounded. The face may lie to the right: faces of one plane that were triangulated together are all of
+    /// one of them, and rounding turns needles at the rim over. Then it is the triangle's own corner, or a point opposite the face.
     fn left_of_side(&self, triangle: u32, side: usize) -> [f64; 3] {
         let face = &self[LocalFace(triangle)];
-        let corners = [0, 1, 2].map(|k| *self.position(face.corners[(side + k) % 3]));
+        let [p, q, own] = [0, 1, 2].map(|k| *self.position(face.corners[(side + k) % 3]));
         let (source, projection) = self.source().source_and_projection(face.origin);
-        let [p, q] = [corners[0], corners[1]].map(|point| projection.project(&point));
+        let seen = [p, q].map(|point| projection.project(&point));
         let left = |c: &[f64; 3]| {
             let [x, y] = projection.project(c);
-            (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])
+            let ([px, py], [qx, qy]) = (seen[0], seen[1]);
+            (qx - px) * (y - py) - (qy - py) * (x - px)
         };
-        source
-            .into_iter()
-            .max_by(|c, d| left(c).total_cmp(&left(d)))
-            .filter(|corner| left(corner) > 0.0)
-            .unwrap_or(corners[2])
+        let further =
+            |most: [f64; 3], corner: [f64; 3]| if left(&corner) > left(&most) { corner } else { most };
+        let furthest_left = source.into_iter().fold(own, further);
+        let furthest_right =
+            source.into_iter().fold(own, |most, c| if left(&c) < left(&most) { c } else { most });
+        if left(&furthest_left) > NARROW * left(&furthest_right).abs() {
+            furthest_left
+        } else {
+            std::array::from_fn(|k| p[k] + q[k] - furthest_right[k])
+        }
     }
 
     fn point_count(&self) -> usize {

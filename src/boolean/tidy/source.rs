@@ -6,7 +6,7 @@
 use crate::boolean::arrangement::identify::Identification;
 use crate::boolean::arrangement::points::Points;
 use crate::boolean::classify::body::Body;
-use crate::boolean::complex::ids::{FaceId, PointId};
+use crate::boolean::complex::ids::{FaceId, PointId, VertexId};
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::rounding::Rounding;
 use crate::boolean::general::shape::Shape;
@@ -136,17 +136,20 @@ impl<'a> Source<'a> {
 
     /// The points that stand for the vertices of a face.
     pub(super) fn points_of_face(&self, face: FaceId) -> [PointId; 3] {
-        let points = match self.ground {
+        let vertices = match self.ground {
             Ground::Body(body) => {
                 let (operand, triangle) = body.complex().triangle(face);
                 let corners = body.complex().operands[operand].triangles[triangle as usize];
-                corners.map(|v| Points::of_vertex(body.complex().vertex(operand, v)))
+                corners.map(|v| body.complex().vertex(operand, v))
             }
-            Ground::Shape(shape) => {
-                shape.general.surfaces.vertices(face).map(|vertex| PointId::new(vertex.number()))
-            }
+            Ground::Shape(shape) => shape.general.surfaces.vertices(face),
         };
-        points.map(|point| self.identification().representative(point))
+        vertices.map(|vertex| self.point_of_vertex(vertex))
+    }
+
+    /// The point that stands for a vertex.
+    pub(super) fn point_of_vertex(&self, vertex: VertexId) -> PointId {
+        self.identification().representative(Points::of_vertex(vertex))
     }
 
     /// What comes from a face and looks its way.

@@ -17,14 +17,15 @@ pub(crate) struct Topology {
 }
 
 /// What [`parted`] finds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Parted {
     pub(crate) topology: Topology,
     /// Somewhere an edge lies on the inner side of a face: material is pinched there too, and the faces are not parted.
     pub(crate) pinched: bool,
-    /// How many sides of triangles join faces that do not bound one wedge of material there. Neither flat triangles are asked nor sides
-    /// that are one only because vertices were joined: what goes through there is as thin as that.
-    pub(crate) mispaired: usize,
+    /// The edges, once for each wedge of material, at which the mesh joins faces that do not bound that wedge. Neither flat triangles are
+    /// asked nor edges that are one only because vertices were joined: what goes through there is as thin as that. (Nor the two halves of
+    /// a flat face that happens to be cut where an edge lies on its inner side: that is a pinch.)
+    pub(crate) mispaired: Vec<[Point; 2]>,
 }
 
 /// A face after its sides are split at the vertices that lie on them.
@@ -56,6 +57,19 @@ impl Side {
     }
 }
 
+impl Side {
+    /// Whether two faces are halves of a flat one.
+    fn lies_opposite(&self, other: &Self) -> bool {
+        let turn = (self.angle - other.angle).rem_euclid(std::f64::consts::TAU);
+        (turn - std::f64::consts::PI).abs() <= NO_ANGLE
+    }
+}
+
+/// Which of the sides at an edge one is.
+fn place_of(sides: &[Side], side: &Side) -> usize {
+    sides.iter().position(|other| std::ptr::eq(other, side)).expect("it is one of them")
+}
+
 /// Faces at no larger angle, in radians, lie on one another.
 const NO_ANGLE: f64 = 1e-7;
 
@@ -73,7 +87,7 @@ const SIDE_ROUNDINGS: f64 = 4.0;
 /// faces lie on one another.
 pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
     if mesh.triangles.is_empty() {
-        return Some(Parted { topology: Topology::default(), pinched: false, mispaired: 0 });
+        return Some(Parted { topology: Topology::default(), pinched: false, mispaired: Vec::new() });
     }
     // About a vertex where details are smallest: far from it a place on a side is rounded, and would fall on vertices that are beside it.
     let origin = among_details(mesh);
@@ -108,19 +122,36 @@ pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
         }
     }
     let boxes = Boxes::new(faces.iter().map(|face| extent(&face.triangle.map(|v| points[v]))));
-    let pinched = edges.iter().any(|(edge, sides)| is_pinched(*edge, sides, &faces, &boxes, &points, near));
+    let is_pinched = |edge, sides: &[Side]| is_pinched(edge, sides, &faces, &boxes, &points, near);
+    let mut pinched = edges.iter().any(|(edge, sides)| is_pinched(*edge, sides));
     let (mut fans, mut bodies) = (Sets::new(corners), Sets::new(faces.len()));
-    let (mut pairs, mut mispaired) = (0, 0);
-    for sides in edges.values_mut() {
+    let (mut pairs, mut mispaired) = (0, Vec::new());
+    for (&edge, sides) in &edges {
         let is_one_edge = joined.are_at_one_place(&faces, sides);
-        for (a, b) in wedges(sides)? {
+        let wedges = match wedges(sides) {
+            Some(wedges) => {
+                wedges.into_iter().map(|(a, b)| [a, b].map(|side| place_of(sides, side))).collect()
+            }
+            // The face that the edge touches from inside goes on through it, and has no sides there.
+            None if is_pinched(edge, sides) => joined.pairs(&faces, sides),
+            None => return None,
+        };
+        for [a, b] in wedges.into_iter().map(|pair: [usize; 2]| pair.map(|at| &sides[at])) {
             pairs += 1;
-            mispaired += usize::from(is_one_edge && joined.otherwise(&faces, a, b));
             bodies.join(a.face, b.face);
             let corner =
                 |of: &Side, next: usize| first[of.face] + (of.side + next) % faces[of.face].corners.len();
             fans.join(corner(a, 0), corner(b, 1));
             fans.join(corner(a, 1), corner(b, 0));
+            let across = [a, b].map(|side| Some((side, joined.across(&faces, side, sides)?)));
+            if !is_one_edge || across[0].is_none_or(|(_, across)| across.face == b.face) {
+                continue;
+            }
+            if across.into_iter().flatten().any(|(side, across)| across.lies_opposite(side)) {
+                pinched = true;
+            } else {
+                mispaired.push([edge.0, edge.1].map(|v| plus(points[v], origin, 1.0)));
+            }
         }
     }
     let euler = fans.count() as i64 - pairs + faces.len() as i64;
@@ -166,13 +197,38 @@ impl<'m> Joined<'m> {
         })
     }
 
-    /// Whether the mesh joins the face of `a` across that side to another one than that of `b`, and not to a flat one.
-    fn otherwise(&self, faces: &[Face], a: &Side, b: &Side) -> bool {
+    /// Of the sides at an edge, the one that the mesh joins the face of `a` to there; `None` where that is a flat one.
+    fn across<'s>(&self, faces: &[Face], a: &Side, sides: &'s [Side]) -> Option<&'s Side> {
         let (face, corners) = (&faces[a.face], self.mesh.triangles[faces[a.face].number]);
         let side = face.sides[a.side];
-        let across = self.passed.get(&(corners[(side + 1) % 3], corners[side]));
-        across.is_some_and(|&across| !self.is_flat[across] && across != faces[b.face].number)
+        let across = *self.passed.get(&(corners[(side + 1) % 3], corners[side]))?;
+        let is_across = |other: &&Side| faces[other.face].number == across && other.forward != a.forward;
+        sides.iter().find(is_across).filter(|_| !self.is_flat[across])
     }
+
+    /// The sides at an edge by twos, as the mesh joins them.
+    fn pairs(&self, faces: &[Face], sides: &[Side]) -> Vec<[usize; 2]> {
+        let forward = sides.iter().filter(|side| side.forward);
+        let pairs = forward.filter_map(|a| Some([a, self.across(faces, a, sides)?]));
+        pairs.map(|pair| pair.map(|side| place_of(sides, side))).collect()
+    }
+}
+
+/// Whether a mesh touches itself along a segment: sides of four triangles and more run along it.
+pub(crate) fn touches_itself_along(mesh: &Mesh, segment: &[Point; 2]) -> bool {
+    let runs_along = |[from, to]: [Point; 2]| {
+        let along = minus(to, from);
+        let reach = SIDE_ROUNDINGS
+            * f64::EPSILON
+            * length(along).max(segment.iter().map(|p| length(*p)).fold(0.0, f64::max));
+        segment.iter().all(|p| {
+            let share = dot(minus(*p, from), along) / dot(along, along);
+            length(minus(*p, plus(from, along, share.clamp(0.0, 1.0)))) <= reach
+        })
+    };
+    let corners = mesh.triangles.iter().map(|corners| corners.map(|v| mesh.positions[v as usize]));
+    let sides = corners.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+    sides.filter(|side| runs_along(*side)).count() >= 4
 }
 
 /// An end of the shortest side.
@@ -320,12 +376,13 @@ fn is_pinched(
 }
 
 /// The pairs of faces that bound one wedge of material; `None` if they do not alternate, wherever needles are put.
-fn wedges(sides: &mut [Side]) -> Option<Vec<(&Side, &Side)>> {
+fn wedges(sides: &[Side]) -> Option<Vec<(&Side, &Side)>> {
     if sides.len() == 2 {
         return (sides[0].forward != sides[1].forward).then(|| vec![(&sides[0], &sides[1])]);
     }
-    sides.sort_by(|a, b| a.angle.total_cmp(&b.angle));
-    let (needles, mut round): (Vec<&Side>, Vec<&Side>) = sides.iter().partition(|side| side.is_needle());
+    let mut given: Vec<&Side> = sides.iter().collect();
+    given.sort_by(|a, b| a.angle.total_cmp(&b.angle));
+    let (needles, mut round): (Vec<&Side>, Vec<&Side>) = given.iter().partition(|side| side.is_needle());
     if sides.len() % 2 == 1 {
         return None;
     }
@@ -347,7 +404,6 @@ fn wedges(sides: &mut [Side]) -> Option<Vec<(&Side, &Side)>> {
     if needles.len() > 4 {
         return None;
     }
-    let given: Vec<&Side> = sides.iter().collect();
     let order = if !needles.is_empty() && alternate(&given) { given } else { with_needles(round, &needles)? };
     // A face that runs with the edge has its material behind it, in the sense of growing angles before it.
     let (count, start) = (order.len(), usize::from(order[0].forward));
@@ -385,7 +441,7 @@ mod tests {
             let topology = Topology { components: surface.components, euler: surface.euler };
             assert_eq!(
                 parted(&surface.mesh, 1e-9),
-                Some(Parted { topology, pinched: false, mispaired: 0 }),
+                Some(Parted { topology, pinched: false, mispaired: Vec::new() }),
                 "{bits}"
             );
         }
@@ -398,7 +454,7 @@ mod tests {
         let mut mesh = boxed([0.0; 3], [1.0, 1.0, 3.0]);
         mesh.append(&boxed([1.0, 1.0, 1.0], [2.0, 2.0, 5.0])).expect("small");
         let topology = Topology { components: 2, euler: 4 };
-        assert_eq!(parted(&mesh, 1e-9), Some(Parted { topology, pinched: false, mispaired: 0 }));
+        assert_eq!(parted(&mesh, 1e-9), Some(Parted { topology, pinched: false, mispaired: Vec::new() }));
     }
 
     #[test]
@@ -420,18 +476,18 @@ mod tests {
         };
         // As found at coordinates of 1e12 (seed 4294968311): the first is 0.0004 high, of four units.
         for (needle, found) in [(true, true), (false, false)] {
-            let mut sides = [
+            let sides = [
                 side(-2.8, false, needle),
                 side(-1.7, false, false),
                 side(0.0, true, false),
                 side(3.1, true, false),
             ];
-            assert_eq!(wedges(&mut sides).is_some(), found);
+            assert_eq!(wedges(&sides).is_some(), found);
         }
         // What does not alternate without needles is not made to.
-        let mut sides =
+        let sides =
             [side(0.0, true, false), side(0.0, false, false), side(1.0, true, true), side(2.0, false, true)];
-        assert!(wedges(&mut sides).is_none());
+        assert!(wedges(&sides).is_none());
     }
 
     #[test]
