@@ -130,19 +130,20 @@ pub(in crate::boolean) fn is_nearly_simple(solid: &Solid, control: &Control) -> 
     Ok(is_simple)
 }
 
-/// Whether triangles of a solid cross or lie on each other, of which one is among `some`.
+/// Where triangles of a solid cross or lie on each other, of which one is among `some`: all pairs with one of these that may; `None` where
+/// none does.
 ///
 /// # Errors
 /// Only limits.
-pub(in crate::boolean) fn crosses_at(
+pub(in crate::boolean) fn pairs_if_crossing_at(
     solid: &Solid,
     some: &[bool],
     runner: Runner<'_>,
-) -> Result<bool, Error> {
-    let (mesh, Some(bounds)) = (solid.mesh(), solid.bounds()) else { return Ok(false) };
+) -> Result<Option<Vec<[u32; 2]>>, Error> {
+    let (mesh, Some(bounds)) = (solid.mesh(), solid.bounds()) else { return Ok(None) };
     let pairs = pairs_with(mesh, &bounds, some, runner)?;
     if pairs.is_empty() {
-        return Ok(false);
+        return Ok(None);
     }
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };
     let complex = Complex::alone(operand, bounds.largest(), &pairs);
@@ -151,7 +152,20 @@ pub(in crate::boolean) fn crosses_at(
     let found = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
         pairs[range].iter().copied().filter(|&pair| surface.has_crossing(pair)).collect::<Vec<_>>()
     })?;
-    Ok(crossing_grown(mesh, &bounds, &found.concat(), runner)?.contains(&true))
+    let crosses = crossing_grown(mesh, &bounds, &found.concat(), runner)?.contains(&true);
+    Ok(crosses.then_some(pairs))
+}
+
+/// The pairs of triangles of a solid that may cross or lie on each other, of which one is among `some`.
+///
+/// # Errors
+/// Only limits.
+pub(in crate::boolean) fn near_pairs_with(
+    solid: &Solid,
+    some: &[bool],
+    runner: Runner<'_>,
+) -> Result<Vec<[u32; 2]>, Error> {
+    solid.bounds().map_or(Ok(Vec::new()), |bounds| pairs_with(solid.mesh(), &bounds, some, runner))
 }
 
 /// Whether pairs of triangles that cross as the surface shrinks, or lie on each other, do so as it grows, too. Two hollows that touch cross

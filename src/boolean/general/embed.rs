@@ -12,6 +12,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::arrangement::{Crossed, General};
 use super::evaluate::{Finish, evaluate};
 use super::labels::winding;
+use crate::boolean::arrangement::self_crossings::near_pairs_with;
 use crate::boolean::complex::origin::Origin;
 use crate::mesh::compact;
 use crate::parallel::Runner;
@@ -89,13 +90,15 @@ pub(crate) struct Parts {
     pub(crate) groups: Vec<u32>,
 }
 
-/// Rounds a result to a grid and resolves what crosses, until nothing does.
+/// Rounds a result to a grid and resolves what crosses, until nothing does. Where it is known that no more than some pairs of triangles may
+/// cross, these are `near`, and of what comes of them only what has changed is looked at.
 ///
 /// # Errors
 /// Only limits.
 pub(crate) fn embed(
     mut parts: Parts,
     grid: Grid,
+    near: Option<Vec<[u32; 2]>>,
     remove_vertices: bool,
     runner: Runner<'_>,
 ) -> Result<(Parts, Embedding), Error> {
@@ -103,18 +106,29 @@ pub(crate) fn embed(
     let mut troubled: Vec<u32> = Vec::new();
     let mut best: Option<(Parts, Embedding)> = None;
     let most_triangles = ALWAYS_ALLOWED.max(GROWTH * parts.triangles.len());
+    let mut look = near.map_or(Look::Everywhere, Look::AtPairs);
     let mut work_left = MOST_WORK * most_triangles / GROWTH;
     loop {
         // 1. The grid: a coarser one where it goes on too long.
         report.displacement += round(&mut parts, grid, coarser(report.rounds), &troubled);
         if grid == Grid::Single || coarser(report.rounds) > 0 {
             merge(&mut parts);
+            look = Look::Everywhere;
         }
         // 2. What crosses.
         let positions = std::mem::take(&mut parts.positions);
         let mut triangles = std::mem::take(&mut parts.triangles);
         let positions = compact(&positions, &mut triangles);
         let solid = Solid::from_closed_unchecked(Mesh::new(positions, triangles));
+        match &mut look {
+            Look::Everywhere => {}
+            Look::AtPairs(pairs) => {
+                solid.remember_near_pairs(std::mem::take(pairs));
+            }
+            Look::AtSome(changed) => {
+                solid.remember_near_pairs(near_pairs_with(&solid, changed, runner)?);
+            }
+        }
         let crossed = Crossed::new(&[&solid], runner)?;
         troubled = find_troubled(&solid, &crossed, runner)?;
         report.left = troubled.len();
@@ -158,8 +172,33 @@ pub(crate) fn embed(
         };
         let sources: Vec<u32> = arrays.origins.iter().map(|origin| origin.triangle).collect();
         troubled = descendants(&troubled, &sources);
+        if !matches!(look, Look::Everywhere) {
+            let mut changed = changed(&made, &sources, solid.mesh());
+            troubled.iter().for_each(|&t| changed[t as usize] = true);
+            look = Look::AtSome(changed);
+        }
         parts = made;
     }
+}
+
+/// Which pairs of triangles are looked at.
+enum Look {
+    Everywhere,
+    /// Only these may cross.
+    AtPairs(Vec<[u32; 2]>),
+    /// Those with one that is marked.
+    AtSome(Vec<bool>),
+}
+
+/// For each triangle whether it has other corners than the one that it comes from.
+fn changed(parts: &Parts, sources: &[u32], before: &Mesh) -> Vec<bool> {
+    let place = |positions: &[[f64; 3]], corners: [u32; 3]| corners.map(|v| positions[v as usize]);
+    let differs = |(corners, &source): (&[u32; 3], &u32)| {
+        let own = place(&parts.positions, *corners);
+        let given = place(&before.positions, before.triangles[source as usize]);
+        !(0..3).any(|turn| (0..3).all(|k| own[k] == given[(turn + k) % 3]))
+    };
+    parts.triangles.iter().zip(sources).map(differs).collect()
 }
 
 /// The triangles that cross others or lie on them, as the surface shrinks and as it grows.
@@ -169,6 +208,9 @@ fn find_troubled(solid: &Solid, crossed: &Crossed, runner: Runner<'_>) -> Result
         return Ok(troubled);
     }
     let turned = Solid::from_closed_unchecked(solid.mesh().clone().reversed());
+    if let Some(near) = solid.known_near_pairs() {
+        turned.remember_near_pairs(near.to_vec());
+    }
     Ok(crossed.troubled_in_both(&Crossed::new(&[&turned], runner)?))
 }
 

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::policy::{Embed, Policy};
-use crate::boolean::arrangement::self_crossings::crosses_at;
+use crate::boolean::arrangement::self_crossings::pairs_if_crossing_at;
 use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::embed::{Embedding, Grid, Parts, embed};
 use crate::boolean::result::attributes::carried;
@@ -37,17 +37,19 @@ impl Made {
         let has_attributes = operands.iter().any(|solid| !solid.mesh().attributes.is_empty());
         match policy.embed {
             Embed::WhereNeeded if self.may_cross && self.is_clean => {
-                self.embed(Grid::Double, policy, has_attributes, runner)?;
+                self.embed(Grid::Double, None, policy, has_attributes, runner)?;
             }
             // (What is not known to be clean could be resolved by this where it is not asked for.)
             Embed::NearCut if self.is_clean => {
                 let changed = changed(&self.origins, self.solid.mesh(), operands);
                 self.notes.embedding = Some(Embedding::default());
-                if crosses_at(&self.solid, &changed, runner)? {
-                    self.embed(Grid::Double, policy, has_attributes, runner)?;
+                if let Some(near) = pairs_if_crossing_at(&self.solid, &changed, runner)? {
+                    // (Elsewhere operands that cross themselves by a rounding do so here, too.)
+                    let near = operands.iter().all(|solid| crosses_nowhere(solid)).then_some(near);
+                    self.embed(Grid::Double, near, policy, has_attributes, runner)?;
                 }
             }
-            Embed::OnGrid(grid) => self.embed(grid, policy, has_attributes, runner)?,
+            Embed::OnGrid(grid) => self.embed(grid, None, policy, has_attributes, runner)?,
             Embed::Never | Embed::WhereNeeded | Embed::NearCut => {}
         }
         if self.is_clean {
@@ -67,6 +69,7 @@ impl Made {
     fn embed(
         &mut self,
         grid: Grid,
+        near: Option<Vec<[u32; 2]>>,
         policy: Policy,
         has_attributes: bool,
         runner: Runner<'_>,
@@ -82,7 +85,7 @@ impl Made {
             (groups, None)
         };
         let parts = Parts { positions: mesh.positions, triangles: mesh.triangles, groups: classes, origins };
-        let (parts, report) = embed(parts, grid, policy.remove_vertices, runner)?;
+        let (parts, report) = embed(parts, grid, near, policy.remove_vertices, runner)?;
         self.groups.of_triangle = match group_of_class {
             Some(groups) if groups.is_empty() => Vec::new(),
             Some(groups) => parts.groups.iter().map(|&class| groups[class as usize]).collect(),
@@ -93,6 +96,11 @@ impl Made {
         self.notes.embedding = Some(report);
         Ok(())
     }
+}
+
+/// Whether it is known of a solid that it crosses itself nowhere, not even by a rounding.
+fn crosses_nowhere(solid: &Solid) -> bool {
+    solid.known_self_crossings().is_some_and(|known| known.is_simple() && known.tolerated == 0)
 }
 
 /// For each triangle of a result whether it is no triangle of an operand as it was.

@@ -232,7 +232,7 @@ impl Work<'_> {
             Embed::Never | Embed::WhereNeeded if arrays.may_cross => Grid::Double,
             Embed::Never | Embed::WhereNeeded => return Ok((parts, 0)),
         };
-        let (parts, report) = embed(parts, grid, self.policy.remove_vertices, self.runner)?;
+        let (parts, report) = embed(parts, grid, None, self.policy.remove_vertices, self.runner)?;
         Ok((parts, report.left))
     }
 
