@@ -26,8 +26,9 @@ impl NearlyFlush {
     /// Looks at a candidate: a triangle of A and one of B. Some ten nanoseconds.
     #[inline]
     pub(super) fn look_at(&self, complex: &Complex<'_>, pair: [u32; 2], corners: &[[Corner; 3]; 2]) {
-        let [a, b] = corners.each_ref().map(|corners| corners.map(|corner| corner.position));
-        if are_nearly_flush(&a, &b, self.rounding) {
+        let [a, b] = corners;
+        let [a, b] = [a, b].map(|corners| corners.each_ref().map(|corner| &corner.position));
+        if are_nearly_flush(a, b, self.rounding) {
             let faces = [0, 1].map(|operand| complex.face(operand, pair[operand]));
             self.found.lock().unwrap_or_else(PoisonError::into_inner).push(faces);
         }

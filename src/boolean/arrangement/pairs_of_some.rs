@@ -3,11 +3,15 @@
 use obvhs::aabb::Aabb;
 
 use super::neighbours::Neighbours;
+use super::self_pairs::self_pairs;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame};
 use crate::{Error, Mesh};
 
+/// Where at least this part of the triangles is asked for, the pairs of all are found faster than those of each: a walk over all of two
+/// bumpy balls takes 0.2 us a triangle, one from the root for each of the half that was cut 2 us.
+const MANY: usize = 8;
 /// Triangles that one thread compares with boxes before the limits are checked.
 const TRIANGLES_AT_ONCE: usize = 1 << 14;
 
@@ -27,6 +31,14 @@ pub(super) fn pairs_with(
     if chosen.is_empty() {
         return Ok(Vec::new());
     }
+    let frame = Frame::of(bounds.low, bounds.high);
+    if chosen.len() >= mesh.triangles.len() / MANY {
+        let is_asked_for = |pair: [u32; 2]| pair.iter().any(|&t| some[t as usize]);
+        let wanted = |neighbours: &Neighbours<'_>, pair| is_asked_for(pair) && neighbours.may_meet(pair);
+        let (mut pairs, _) = self_pairs(mesh, &frame, bounds.largest(), runner, wanted)?;
+        runner.sort(&mut pairs);
+        return Ok(pairs);
+    }
     // 1. What is known of neighbours: nothing of the vertices of those triangles, and of others it is not asked.
     let mut is_other = vec![true; mesh.positions.len()];
     for &t in &chosen {
@@ -37,7 +49,6 @@ pub(super) fn pairs_with(
     let beside: Vec<u32> = beside.collect();
     let neighbours = Neighbours::new(mesh, bounds.largest(), is_other, &beside);
     // 2. Whose boxes meet theirs.
-    let frame = Frame::of(bounds.low, bounds.high);
     let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
     let tree = BoxTree::new(&chosen, box_of);
     let all = chosen.iter().map(|&t| box_of(t)).reduce(|a, b| a.union(&b)).unwrap_or(Aabb::INVALID);
@@ -62,7 +73,6 @@ pub(super) fn pairs_with(
 
 #[cfg(test)]
 mod tests {
-    use super::super::self_pairs::self_pairs;
     use super::*;
     use crate::control::Control;
     use crate::primitives;
@@ -80,7 +90,7 @@ mod tests {
         let (mut all, _) = self_pairs(&mesh, &frame, bounds.largest(), runner, may_meet).expect("pairs");
         all.sort_unstable();
         assert!(all.len() > 100);
-        for step in [1, 2, 7] {
+        for step in [1, 2, 7, 40] {
             let some: Vec<bool> = (0..mesh.triangles.len()).map(|t| t % step == 0).collect();
             let wanted = all.iter().copied().filter(|pair| pair.iter().any(|&t| some[t as usize]));
             assert_eq!(pairs_with(&mesh, &bounds, &some, runner).expect("pairs"), wanted.collect::<Vec<_>>());

@@ -60,12 +60,16 @@ pub(crate) fn find_sheets(
         return Ok(Touching::default());
     }
     // 1. Pairs of faces that touch.
+    let mut along_edges = Vec::new();
     let touching = match rule {
-        Rule::All => candidates.visit(runner, |s, t, found| {
-            if look_opposite_ways(complex, [s, t]).is_some() {
-                found.push([s, t]);
-            }
-        })?,
+        Rule::All => {
+            let met = candidates.visit(runner, |s, t, found| {
+                let face = look_opposite_ways(complex, [s, t]).map(|_| Met::Faces([s, t]));
+                found.extend(face);
+                found.extend(vertices_along_edges(complex, [s, t]).map(Met::Edges));
+            })?;
+            met.into_iter().filter_map(|met| met.sorted_into(&mut along_edges)).collect()
+        }
         Rule::AtSaddles { opposite } => {
             let at_saddles = faces_at_saddles(complex);
             if at_saddles.is_empty() {
@@ -83,30 +87,38 @@ pub(crate) fn find_sheets(
     for [s, t] in touching {
         classes.join(complex.face(0, s), complex.face(1, t));
     }
-    let along_edges = match rule {
-        Rule::All => vertices_along_edges(complex, candidates, runner)?,
-        Rule::AtSaddles { .. } => Vec::new(),
-    };
+    along_edges.sort_unstable();
+    along_edges.dedup();
     Ok(Touching { sheets: classes.into_sets(), along_edges })
 }
 
-/// The vertices of edges of both operands that run along one another. Where one operand is inside the other there, none of its faces
-/// need cross any, and only the order of all faces round the edge tells which bound the same material.
-fn vertices_along_edges(
-    complex: &Complex<'_>,
-    candidates: &Candidates,
-    runner: Runner<'_>,
-) -> Result<Vec<VertexId>, Error> {
-    let mut vertices = candidates.visit(runner, |s, t, found| {
-        let [a, b] = [complex.corners_of_triangle(0, s), complex.corners_of_triangle(1, t)];
-        let positions = [a, b].map(|corners| corners.map(|corner| corner.position));
-        for [i, j] in sides_along(&positions[0], &positions[1]) {
-            found.extend([a[i].id, a[(i + 1) % 3].id, b[j].id, b[(j + 1) % 3].id]);
+/// What of two triangles touches.
+enum Met {
+    Faces([u32; 2]),
+    /// The vertices of two edges that run along one another.
+    Edges([VertexId; 4]),
+}
+
+impl Met {
+    /// Faces as they are; vertices are added to a list.
+    fn sorted_into(self, vertices: &mut Vec<VertexId>) -> Option<[u32; 2]> {
+        match self {
+            Self::Faces(faces) => Some(faces),
+            Self::Edges(ends) => {
+                vertices.extend(ends);
+                None
+            }
         }
-    })?;
-    vertices.sort_unstable();
-    vertices.dedup();
-    Ok(vertices)
+    }
+}
+
+/// The vertices of edges of a triangle of A and one of B that run along one another. Where one operand is inside the other there, none of
+/// its faces need cross any, and only the order of all faces round the edge tells which bound the same material.
+fn vertices_along_edges(complex: &Complex<'_>, triangles: [u32; 2]) -> impl Iterator<Item = [VertexId; 4]> {
+    let [a, b] = [0, 1].map(|operand| complex.corners_of_triangle(operand, triangles[operand]));
+    let positions = [a, b].map(|corners| corners.map(|corner| corner.position));
+    let ends = move |[i, j]: [usize; 2]| [a[i].id, a[(i + 1) % 3].id, b[j].id, b[(j + 1) % 3].id];
+    sides_along(&positions[0], &positions[1]).map(ends)
 }
 
 /// The faces of A near B that have a vertex without a direction, as triangles of A.

@@ -4,7 +4,7 @@ use crate::exact::{Sign, collinear, orient3d, orient3d_filter};
 
 /// The sides of two triangles that lie on one line, exactly, and have a length in common there; side k runs from corner k to the
 /// next. Nearly always two corners of the second are plainly off the plane of the first, and nothing else is asked.
-pub(crate) fn sides_along(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> impl Iterator<Item = [usize; 2]> {
+pub(crate) fn sides_along(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> impl Iterator<Item = [usize; 2]> + use<> {
     let is_plainly_off = |p: &[f64; 3]| {
         let (determinant, bound) = orient3d_filter(&a[0], &a[1], &a[2], p);
         determinant.abs() > bound

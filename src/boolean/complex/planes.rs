@@ -88,8 +88,9 @@ pub(crate) fn unit_normal([a, b, c]: &[[f64; 3]; 3]) -> Option<DVec3> {
 }
 
 /// A normal of a triangle as long as twice its area, as it comes out.
-fn area_normal(triangle: &[[f64; 3]; 3]) -> DVec3 {
-    let [a, b, c] = triangle.map(DVec3::from_array);
+#[inline]
+fn area_normal(triangle: [&[f64; 3]; 3]) -> DVec3 {
+    let [a, b, c] = triangle.map(|corner| DVec3::from_array(*corner));
     (b - a).cross(c - a)
 }
 
@@ -97,26 +98,42 @@ fn area_normal(triangle: &[[f64; 3]; 3]) -> DVec3 {
 /// flush: an angle of a millionth, in radians.
 pub(crate) fn are_nearly_parallel(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3]) -> bool {
     const ANGLE: f64 = 1e-6;
-    let (n, m) = (area_normal(x), area_normal(y));
+    let (n, m) = (area_normal(x.each_ref()), area_normal(y.each_ref()));
     n.cross(m).length_squared() <= ANGLE * ANGLE * n.length_squared() * m.length_squared()
 }
 
 /// Whether the smaller of two triangles has all corners within twice the rounding of the other's plane, but not all of them in it, exactly:
 /// they were flush, perhaps, before their bodies were turned.
-pub(crate) fn are_nearly_flush(x: &[[f64; 3]; 3], y: &[[f64; 3]; 3], rounding: Rounding) -> bool {
+#[inline]
+pub(crate) fn are_nearly_flush(x: [&[f64; 3]; 3], y: [&[f64; 3]; 3], rounding: Rounding) -> bool {
     let (n, m) = (area_normal(x), area_normal(y));
-    let is_larger = n.length_squared() >= m.length_squared();
-    let (plane, normal, points) = if is_larger { (x, n, y) } else { (y, m, x) };
+    let (of_x, of_y) = (n.length_squared(), m.length_squared());
+    let (plane, normal, squared, points) = if of_x >= of_y { (x, n, of_x, y) } else { (y, m, of_y, x) };
+    // Nearly always the first point says no, however large the coordinates at hand.
+    let height_of = |p: &[f64; 3]| normal.dot(DVec3::from_array(*p) - DVec3::from_array(*plane[0]));
+    let (height, most) = (height_of(points[0]), 2.0 * rounding.longest());
+    height * height <= most * most * squared
+        && are_flush_at_hand([x, y], points, height_of, squared, rounding)
+}
+
+/// The same by the coordinates at hand, given the heights of points over the larger one's plane, times its normal's length.
+#[cold]
+fn are_flush_at_hand(
+    both: [[&[f64; 3]; 3]; 2],
+    points: [&[f64; 3]; 3],
+    height_of: impl Fn(&[f64; 3]) -> f64,
+    squared: f64,
+    rounding: Rounding,
+) -> bool {
     let most = 2.0 * points.iter().map(|p| rounding.length_at(p)).fold(0.0, f64::max);
-    let is_near = |p: &[f64; 3]| {
-        let height = normal.dot(DVec3::from_array(*p) - DVec3::from_array(plane[0]));
-        height * height <= most * most * normal.length_squared()
-    };
-    // (Nearly always the first point says no.)
-    points.iter().all(is_near) && are_nearly_parallel(x, y) && {
-        let has_area = |[a, b, c]: &[[f64; 3]; 3]| !collinear(a, b, c);
-        has_area(x) && has_area(y) && !lie_in_one_plane(x, y)
-    }
+    let is_near = |p: &[f64; 3]| height_of(p).powi(2) <= most * most * squared;
+    let [x, y] = both.map(|corners| corners.map(|corner| *corner));
+    let has_area = |[a, b, c]: &[[f64; 3]; 3]| !collinear(a, b, c);
+    points.into_iter().all(is_near)
+        && are_nearly_parallel(&x, &y)
+        && has_area(&x)
+        && has_area(&y)
+        && !lie_in_one_plane(&x, &y)
 }
 
 /// Whether two triangles that lie in one plane, exactly, have area in common.

@@ -41,6 +41,12 @@ impl Rounding {
         longest <= length(self.largest) && longest <= length(size_at_hand(self.largest, own()))
     }
 
+    /// The length that rounding can give to anything.
+    #[inline]
+    pub(crate) fn longest(&self) -> f64 {
+        ROUNDING_ULPS * self.unit * self.largest
+    }
+
     /// The length that rounding can give to something at a point.
     #[inline]
     pub(crate) fn length_at(&self, point: &[f64; 3]) -> f64 {

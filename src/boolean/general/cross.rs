@@ -82,7 +82,7 @@ impl Search<'_> {
         }
         if planes::lie_on_each_other(&a, &b) {
             touching.exactly.push(pair);
-        } else if shared.is_none() && planes::are_nearly_flush(&a, &b, self.rounding) {
+        } else if shared.is_none() && planes::are_nearly_flush(a.each_ref(), b.each_ref(), self.rounding) {
             touching.nearly.push(pair);
         }
     }
