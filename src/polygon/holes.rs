@@ -19,6 +19,11 @@ impl Polygon {
     pub(super) fn len(&self) -> usize {
         self.outer.len() + self.holes.iter().map(Vec::len).sum::<usize>()
     }
+
+    /// One without holes.
+    pub(super) fn simple(outer: Vec<u32>) -> Self {
+        Self { outer, holes: Vec::new() }
+    }
 }
 
 /// Groups loops into polygons: counter-clockwise loops are outlines, each clockwise one goes to the smallest outline around
