@@ -37,7 +37,7 @@ pub(crate) fn ring_area(ring: &[[f64; 2]]) -> f64 {
 /// star polygons it takes twice as long at 60 vertices and as long at 120; it bounds what a face with many holes can cost.
 const DELAUNAY_FROM: usize = 40;
 /// From this many vertices ears, which take the square of their number and more, come last: where constraints cross, as beside needles, triangles
-/// by winding number are made first. (A turned plate less 100 flush cylinders, faces of 3,200 corners: 0.43 s with ears first, 0.23 s.)
+/// by winding number are made first. (A turned plate less 100 flush cylinders, faces of 3,200 corners: 0.41 s with ears first, 0.19 s.)
 const EARS_LAST_FROM: usize = 256;
 
 /// How sound a triangulation is: what its worst triangle is.

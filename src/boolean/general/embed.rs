@@ -14,6 +14,7 @@ use super::evaluate::{Finish, evaluate};
 use super::labels::winding;
 use crate::boolean::arrangement::self_crossings::near_pairs_with;
 use crate::boolean::complex::origin::Origin;
+use crate::boolean::result::origins::is_as_given;
 use crate::mesh::compact;
 use crate::parallel::Runner;
 use crate::{Error, Mesh, Solid};
@@ -195,8 +196,7 @@ fn changed(parts: &Parts, sources: &[u32], before: &Mesh) -> Vec<bool> {
     let place = |positions: &[[f64; 3]], corners: [u32; 3]| corners.map(|v| positions[v as usize]);
     let differs = |(corners, &source): (&[u32; 3], &u32)| {
         let own = place(&parts.positions, *corners);
-        let given = place(&before.positions, before.triangles[source as usize]);
-        !(0..3).any(|turn| (0..3).all(|k| own[k] == given[(turn + k) % 3]))
+        !is_as_given(own, place(&before.positions, before.triangles[source as usize]), false)
     };
     parts.triangles.iter().zip(sources).map(differs).collect()
 }
@@ -230,8 +230,8 @@ fn separated(
         let Mesh { positions, triangles, .. } = whole.into_mesh();
         return Ok((Parts { positions, triangles, ..parts }, report));
     };
-    if solid.mesh().triangles.len() > whole.mesh().triangles.len() {
-        // A middle is rounded, so that the other triangles at its edge may cross those at it: it goes a little into the material.
+    if grid == Grid::Double && solid.mesh().triangles.len() > whole.mesh().triangles.len() {
+        // (In single precision a middle is a number of the grid, and exact.) Else it is rounded, so that the other triangles at its edge may cross those at it: it goes a little into the material.
         let mut mesh = solid.into_mesh();
         report.displacement += sink_middles(&mut mesh, whole.mesh());
         solid = Solid::from_closed_unchecked(mesh);

@@ -8,7 +8,7 @@ use crate::boolean::complex::origin::Origin;
 use crate::boolean::general::embed::{Embedding, Grid, Parts, embed};
 use crate::boolean::result::attributes::carried;
 use crate::boolean::result::certificate::Notes;
-use crate::boolean::result::origins::Origins;
+use crate::boolean::result::origins::{Origins, is_as_given};
 use crate::boolean::result::outcome::Outcome;
 use crate::mesh::{FaceGroups, Mesh, Polygons};
 use crate::parallel::Runner;
@@ -151,12 +151,6 @@ pub(in crate::boolean) fn whole_polygons(origins: &Origins, mesh: &Mesh, operand
         }
     }
     all
-}
-
-/// Whether a triangle has the corners of another in their order, or in the other one if it is turned round.
-fn is_as_given(own: [[f64; 3]; 3], [a, b, c]: [[f64; 3]; 3], reversed: bool) -> bool {
-    let given = if reversed { [a, c, b] } else { [a, b, c] };
-    (0..3).any(|turn| (0..3).all(|k| own[k] == given[(turn + k) % 3]))
 }
 
 /// A number for each triangle, equal for those that come from one face, and by number the group of that face (nothing if there

@@ -214,6 +214,12 @@ impl FromIterator<Origin> for Origins {
     }
 }
 
+/// Whether a triangle has the corners of another in their order, or in the other one if it is turned round.
+pub(in crate::boolean) fn is_as_given(own: [[f64; 3]; 3], [a, b, c]: [[f64; 3]; 3], reversed: bool) -> bool {
+    let given = if reversed { [a, c, b] } else { [a, b, c] };
+    (0..3).any(|turn| (0..3).all(|k| own[k] == given[(turn + k) % 3]))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

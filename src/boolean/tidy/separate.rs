@@ -98,11 +98,14 @@ impl Surface for Patch<'_> {
         let furthest_left = source.into_iter().fold(own, further);
         let furthest_right =
             source.into_iter().fold(own, |most, c| if left(&c) < left(&most) { c } else { most });
-        if left(&furthest_left) > NARROW * left(&furthest_right).abs() {
-            furthest_left
-        } else {
-            std::array::from_fn(|k| p[k] + q[k] - furthest_right[k])
+        let (of_left, of_right) = (left(&furthest_left), left(&furthest_right));
+        if of_left > NARROW * of_right.abs() {
+            return furthest_left;
         }
+        // (Where products or sums overflow nothing better is known than the triangle itself.)
+        let opposite: [f64; 3] = std::array::from_fn(|k| p[k] + (q[k] - furthest_right[k]));
+        let is_known = of_right < 0.0 && of_right.is_finite() && opposite.iter().all(|x| x.is_finite());
+        if is_known { opposite } else { own }
     }
 
     fn point_count(&self) -> usize {

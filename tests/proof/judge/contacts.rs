@@ -55,13 +55,17 @@ impl Side {
     fn is_needle(&self) -> bool {
         self.uncertainty >= 1.0
     }
-}
 
-impl Side {
-    /// Whether two faces are halves of a flat one.
-    fn lies_opposite(&self, other: &Self) -> bool {
-        let turn = (self.angle - other.angle).rem_euclid(std::f64::consts::TAU);
-        (turn - std::f64::consts::PI).abs() <= NO_ANGLE
+    /// Whether two faces are halves of a flat one, and all others at the edge lie on its inner side: they touch it from inside.
+    fn is_touched_with(&self, other: &Self, sides: &[Side]) -> bool {
+        use std::f64::consts::{PI, TAU};
+        let (forward, back) = if self.forward { (self, other) } else { (other, self) };
+        // Material is behind a face that runs with the edge.
+        let behind = |side: &Side| (forward.angle - side.angle).rem_euclid(TAU);
+        let is_inside = |side: &&Side| (NO_ANGLE..PI - NO_ANGLE).contains(&behind(side));
+        forward.forward != back.forward
+            && (behind(back) - PI).abs() <= NO_ANGLE
+            && sides.iter().filter(is_inside).count() + 2 == sides.len()
     }
 }
 
@@ -133,7 +137,7 @@ pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
                 wedges.into_iter().map(|(a, b)| [a, b].map(|side| place_of(sides, side))).collect()
             }
             // The face that the edge touches from inside goes on through it, and has no sides there.
-            None if is_pinched(edge, sides) => joined.pairs(&faces, sides),
+            None if are_all_apart(sides) && is_pinched(edge, sides) => joined.pairs(&faces, sides),
             None => return None,
         };
         for [a, b] in wedges.into_iter().map(|pair: [usize; 2]| pair.map(|at| &sides[at])) {
@@ -143,11 +147,13 @@ pub(crate) fn parted(mesh: &Mesh, reach: f64) -> Option<Parted> {
                 |of: &Side, next: usize| first[of.face] + (of.side + next) % faces[of.face].corners.len();
             fans.join(corner(a, 0), corner(b, 1));
             fans.join(corner(a, 1), corner(b, 0));
-            let across = [a, b].map(|side| Some((side, joined.across(&faces, side, sides)?)));
-            if !is_one_edge || across[0].is_none_or(|(_, across)| across.face == b.face) {
+            if !is_one_edge || !joined.otherwise(&faces, a, b) {
                 continue;
             }
-            if across.into_iter().flatten().any(|(side, across)| across.lies_opposite(side)) {
+            let is_pinch = |side: &Side| {
+                joined.across(&faces, side, sides).is_some_and(|across| side.is_touched_with(across, sides))
+            };
+            if is_pinch(a) || is_pinch(b) {
                 pinched = true;
             } else {
                 mispaired.push([edge.0, edge.1].map(|v| plus(points[v], origin, 1.0)));
@@ -197,13 +203,23 @@ impl<'m> Joined<'m> {
         })
     }
 
-    /// Of the sides at an edge, the one that the mesh joins the face of `a` to there; `None` where that is a flat one.
-    fn across<'s>(&self, faces: &[Face], a: &Side, sides: &'s [Side]) -> Option<&'s Side> {
+    /// The triangle that the mesh joins the face of `a` to across that side; `None` where that is a flat one.
+    fn triangle_across(&self, faces: &[Face], a: &Side) -> Option<usize> {
         let (face, corners) = (&faces[a.face], self.mesh.triangles[faces[a.face].number]);
         let side = face.sides[a.side];
-        let across = *self.passed.get(&(corners[(side + 1) % 3], corners[side]))?;
-        let is_across = |other: &&Side| faces[other.face].number == across && other.forward != a.forward;
-        sides.iter().find(is_across).filter(|_| !self.is_flat[across])
+        let across = self.passed.get(&(corners[(side + 1) % 3], corners[side]));
+        across.copied().filter(|&across| !self.is_flat[across])
+    }
+
+    /// Whether the mesh joins the face of `a` across that side to another one than that of `b`, and not to a flat one.
+    fn otherwise(&self, faces: &[Face], a: &Side, b: &Side) -> bool {
+        self.triangle_across(faces, a).is_some_and(|across| across != faces[b.face].number)
+    }
+
+    /// Of the sides at an edge, the one that the mesh joins the face of `a` to there.
+    fn across<'s>(&self, faces: &[Face], a: &Side, sides: &'s [Side]) -> Option<&'s Side> {
+        let across = self.triangle_across(faces, a)?;
+        sides.iter().find(|other| faces[other.face].number == across && other.forward != a.forward)
     }
 
     /// The sides at an edge by twos, as the mesh joins them.
@@ -412,6 +428,16 @@ fn wedges(sides: &[Side]) -> Option<Vec<(&Side, &Side)>> {
             .map(|k| (order[(start + 2 * k) % count], order[(start + 2 * k + 1) % count]))
             .collect(),
     )
+}
+
+/// Whether no two faces at an edge lie on one another, and none is so thin that it may.
+fn are_all_apart(sides: &[Side]) -> bool {
+    let is_apart = |x: &Side, y: &Side| {
+        let turn = (x.angle - y.angle).rem_euclid(std::f64::consts::TAU);
+        (NO_ANGLE..std::f64::consts::TAU - NO_ANGLE).contains(&turn)
+    };
+    let pairs = sides.iter().enumerate().flat_map(|(i, x)| sides[..i].iter().map(move |y| (x, y)));
+    !sides.iter().any(Side::is_needle) && pairs.into_iter().all(|(x, y)| is_apart(x, y))
 }
 
 fn alternate(order: &[&Side]) -> bool {
