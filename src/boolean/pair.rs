@@ -153,8 +153,9 @@ fn combine_parts(
     let mut arrangement = Arrangement::new(curve, sheets, settings.remove_vertices, runner)?;
 
     let found = Found { contacts, nearly_flush: &nearly_flush, along_edges: &along_edges };
+    let has_flush = !(arrangement.sheets.is_empty() && nearly_flush.is_empty());
     let mut result = Assembled::default();
-    for parts in bodies(parts, settings.fuse && !arrangement.sheets.is_empty()) {
+    for parts in bodies(parts, settings.fuse && has_flush) {
         result = result.append(build(&mut arrangement, &windings, parts, &found, settings, runner)?)?;
     }
     Ok(Combined { arrays: result, contacts })

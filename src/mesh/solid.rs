@@ -69,6 +69,8 @@ pub struct Solid {
     pub(super) many_near_pairs: Handover<Vec<[u32; 2]>>,
     /// Whether an operation made it so that it crosses itself no deeper than rounding.
     pub(super) made_clean: bool,
+    /// Whether faces of it lie on each other but for rounding, and are meant to touch.
+    pub(super) lies_on_itself: bool,
     /// Shells that face the wrong way.
     pub(super) inside_out: OnceLock<Fault>,
 }
@@ -220,6 +222,15 @@ impl Solid {
     /// Notes that an operation made this so that it crosses itself no deeper than rounding.
     pub(crate) fn set_made_clean(&mut self) {
         self.made_clean = true;
+    }
+
+    /// Whether faces of it lie on each other but for rounding, and are meant to touch.
+    pub(crate) fn lies_on_itself(&self) -> bool {
+        self.lies_on_itself
+    }
+
+    pub(crate) fn set_lies_on_itself(&mut self) {
+        self.lies_on_itself = true;
     }
 
     pub(crate) fn set_polygons(&mut self, polygons: Polygons) {

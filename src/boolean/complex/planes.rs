@@ -116,6 +116,16 @@ pub(crate) fn are_nearly_flush(x: [&[f64; 3]; 3], y: [&[f64; 3]; 3], rounding: R
         && are_flush_at_hand([x, y], points, height_of, squared, rounding)
 }
 
+/// The same of triangles that may have corners in common: those lie in one plane everywhere, and must have area in common.
+pub(crate) fn are_nearly_flush_contact(
+    x: &[[f64; 3]; 3],
+    y: &[[f64; 3]; 3],
+    are_joined: bool,
+    rounding: Rounding,
+) -> bool {
+    are_nearly_flush(x.each_ref(), y.each_ref(), rounding) && (!are_joined || overlap(x, y))
+}
+
 /// The same by the coordinates at hand, given the heights of points over the larger one's plane, times its normal's length.
 #[cold]
 fn are_flush_at_hand(

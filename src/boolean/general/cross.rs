@@ -68,7 +68,7 @@ impl Search<'_> {
             let others = |t: &[Corner; 3], k: usize| [t[(k + 1) % 3].id, t[(k + 2) % 3].id];
             if others(&a, i).iter().any(|v| others(&b, j).contains(v)) {
                 // Folded back at a common edge.
-                touching.exactly.push(pair);
+                self.touch(pair, true, touching);
                 return;
             }
             found.extend(self.cross_from(pair, [&a, &b], [i, j]));
@@ -80,9 +80,15 @@ impl Search<'_> {
         for [i, j] in sides_along(&a, &b) {
             touching.along_edges.extend([vertices[i], vertices[(i + 1) % 3], others[j], others[(j + 1) % 3]]);
         }
+        self.touch(pair, shared.is_some(), touching);
+    }
+
+    /// Adds a pair that lies on each other, exactly or but for rounding.
+    fn touch(&self, pair: [FaceId; 2], are_joined: bool, touching: &mut Touching) {
+        let [a, b] = pair.map(|face| self.surfaces.positions(face));
         if planes::lie_on_each_other(&a, &b) {
             touching.exactly.push(pair);
-        } else if shared.is_none() && planes::are_nearly_flush(a.each_ref(), b.each_ref(), self.rounding) {
+        } else if planes::are_nearly_flush_contact(&a, &b, are_joined, self.rounding) {
             touching.nearly.push(pair);
         }
     }

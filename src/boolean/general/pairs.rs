@@ -5,7 +5,8 @@ use crate::boolean::arrangement::apart::are_plainly_apart;
 use crate::boolean::arrangement::self_crossings::near_pairs;
 use crate::boolean::complex::ids::FaceId;
 use crate::boolean::complex::planes;
-use crate::boolean::complex::predicates::Predicates;
+use crate::boolean::complex::predicates::{Perturbed, Predicates};
+use crate::boolean::complex::rounding::Rounding;
 use crate::mesh::Bounds;
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame, self_overlapping_pairs};
@@ -63,14 +64,18 @@ impl FaceBoxes {
     }
 }
 
-/// Whether plain arithmetic cannot tell two faces apart.
+/// Whether plain arithmetic cannot tell two faces apart, or they are apart by no more than rounding all over.
 fn may_meet(surfaces: &Surfaces, predicates: &Predicates<'_>, [f, g]: [FaceId; 2]) -> bool {
     let (a, b) = (surfaces.vertices(f), surfaces.vertices(g));
-    match a.iter().filter(|v| b.contains(v)).count() {
+    let (p, q) = (surfaces.positions(f), surfaces.positions(g));
+    let shared = a.iter().filter(|v| b.contains(v)).count();
+    let rounding = Rounding::up_to(surfaces.largest_coordinate());
+    let meets = match shared {
         // With a common edge they do not cross, but may be folded back on each other.
-        2 => planes::lie_on_each_other(&surfaces.positions(f), &surfaces.positions(g)),
+        2 => planes::lie_on_each_other(&p, &q),
         _ => !are_plainly_apart(predicates, &surfaces.corners(f), &surfaces.corners(g)),
-    }
+    };
+    meets || planes::are_nearly_flush_contact(&p, &q, shared > 0, rounding)
 }
 
 /// The same pairs for few operands that are 2-manifolds: those within each operand as they are known of it, and those between
@@ -89,10 +94,20 @@ pub(crate) fn of_manifolds(
     let mut first = 0;
     for solid in operands {
         let face = |triangle: u32| FaceId::new(first + triangle);
-        let near = near_pairs(solid, runner)?;
-        let near = near.iter().map(|pair| pair.map(face));
-        pairs.extend(near.filter(|&pair| may_meet(surfaces, &predicates, pair)));
-        first += solid.mesh().triangles.len() as u32;
+        let count = solid.mesh().triangles.len() as u32;
+        match solid.bounds().filter(|_| solid.lies_on_itself()) {
+            // Where a hair's breadth is a contact, what is known to be apart by that matters, too.
+            Some(bounds) => {
+                let own: Vec<u32> = (first..first + count).collect();
+                pairs.extend(FaceBoxes::of_faces(surfaces, &bounds, &own).pairs(surfaces, runner, |_| true)?);
+            }
+            None => {
+                let near = near_pairs(solid, runner)?;
+                let near = near.iter().map(|pair| pair.map(face));
+                pairs.extend(near.filter(|&pair| may_meet(surfaces, &predicates, pair)));
+            }
+        }
+        first += count;
     }
     // 2. Between them.
     let shared = |of: usize| -> Vec<Bounds> {

@@ -37,6 +37,9 @@ pub(in crate::boolean) fn is_simple(policy: Policy, solid: &Solid, control: &Con
     if policy.assume_clean && solid.known_self_crossings().is_none() {
         return Ok(true);
     }
+    if solid.lies_on_itself() {
+        return Ok(false);
+    }
     let is_clean = solid.is_known_clean() || is_nearly_simple(solid, control)?;
     Ok(is_clean && solid.is_well_nested())
 }

@@ -145,7 +145,7 @@ fn manifold_partials<'a>(operands: &[&'a Solid], groups: &MergedGroups) -> Vec<P
         .iter()
         .enumerate()
         .map(|(i, solid)| {
-            if solid.is_edge_manifold() {
+            if solid.is_manifold() {
                 let groups = groups.of_operand(i, solid);
                 let origins = Origins::of_operand(i as u32, solid.mesh().triangles.len());
                 return Partial::new(Cow::Borrowed(*solid), origins, groups);

@@ -45,7 +45,7 @@ pub(crate) struct Policy {
 impl Policy {
     /// Whether what lies in one plane but for rounding becomes one face: not where every point is to stay as it was rounded.
     pub(crate) fn flattens(&self) -> bool {
-        self.remove_vertices && self.embed != Embed::Never
+        self.remove_vertices && (self.embed != Embed::Never || self.snap.is_some())
     }
 }
 

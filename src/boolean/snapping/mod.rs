@@ -4,14 +4,17 @@
 //! are apart, or overlap, by rounding: the exact result has films and gaps of that thickness. Where a user says how near is the
 //! same, all operands are welded to each other in rounds, until nothing is left that is near and apart:
 //!
+//! 0. `level`, once: faces of different parts that lie in one plane, but for the distance, are moved into one;
 //! 1. `weld`: vertices within the distance of an earlier one take its place;
 //! 2. `near`: vertices near the inside of an edge or of a face, and edges that pass near each other;
 //! 3. `split`: edges and faces get these points as vertices, and where faces lie on each other, the same triangles.
 //!
-//! So what was nearly flush is exactly flush, triangle by triangle, and the operation resolves it as contact. Closed surfaces stay
-//! closed, since an edge is split alike in all its triangles and a face is filled up to its boundary. Nothing is ever snapped
-//! unasked, and what was moved is told ([`Snapping`]).
+//! What is as near as rounding lets it be is left to the operation, which takes planes that differ by rounding for one (`tidy`): most of what
+//! lies in a common plane needs no points of its own. What was nearly flush else is exactly flush, triangle by triangle, and
+//! the operation resolves it as contact. Closed surfaces stay closed, since an edge is split alike in all its triangles
+//! and a face is filled up to its boundary. Nothing is ever snapped unasked, and what was moved is told ([`Snapping`]).
 
+mod level;
 mod near;
 mod planes;
 pub(crate) mod report;
@@ -65,6 +68,7 @@ pub(super) fn snap(operands: &[&Solid], distance: f64, runner: Runner<'_>) -> Re
     let given = surfaces.positions.clone();
     let _copies = runner.control.reserve(surfaces.bytes())?;
     let mut report = Snapping { distance, ..Snapping::default() };
+    let on_themselves = level::level(&mut surfaces, distance, runner)?;
     let mut first = 0;
     loop {
         runner.control.report("snapping", f64::from(report.rounds) / f64::from(MOST_ROUNDS))?;
@@ -96,7 +100,11 @@ pub(super) fn snap(operands: &[&Solid], distance: f64, runner: Runner<'_>) -> Re
         report.farthest = report.farthest.max(moved);
     }
     let all = surfaces.triangles.len();
-    let (solids, sources): (Vec<Solid>, Vec<Vec<u32>>) = surfaces.into_solids(operands).into_iter().unzip();
+    let (mut solids, sources): (Vec<Solid>, Vec<Vec<u32>>) =
+        surfaces.into_solids(operands).into_iter().unzip();
+    for operand in on_themselves {
+        solids[operand as usize].set_lies_on_itself();
+    }
     report.walls = (all - sources.iter().map(Vec::len).sum::<usize>()) as u64;
     let vanished = |(given, left): &(&&Solid, &Solid)| left.is_empty() && !given.is_empty();
     report.vanished = operands.iter().zip(&solids).filter(vanished).count() as u64;

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 use obvhs::aabb::Aabb;
+use rustc_hash::FxHashSet;
+use smallvec::SmallVec;
 
 use super::surfaces::Surfaces;
 use super::weld::apart;
@@ -79,22 +81,11 @@ const PAIRS_AT_ONCE: usize = 4_096;
 /// # Errors
 /// Only limits.
 pub(super) fn find(surfaces: &Surfaces, distance: f64, runner: Runner<'_>) -> Result<Found, Error> {
-    let Some(bounds) = Bounds::of(&surfaces.positions) else { return Ok(Found::default()) };
-    // 1. Pairs of triangles whose boxes, grown by the distance, meet.
-    let frame = Frame::of(bounds.low, bounds.high);
-    let bytes_per_triangle = size_of::<Aabb>() + size_of::<Prism>() + BoxTree::BYTES_PER_ITEM;
-    let _tables = runner.control.reserve((surfaces.triangles.len() * bytes_per_triangle) as u64)?;
-    let boxes: Vec<Aabb> = (0..surfaces.triangles.len())
-        .map(|t| {
-            let around = Bounds::of(&surfaces.corners(t)).map_or([[0.0; 3]; 2], |b| [b.low, b.high]);
-            let [low, high] = [around[0].map(|x| x - distance), around[1].map(|x| x + distance)];
-            Aabb { min: frame.point(&low), max: frame.point(&high) }
-        })
-        .collect();
-    let prisms = (0..surfaces.triangles.len()).map(|t| Prism::around(&surfaces.corners(t))).collect();
-    let look = Look { surfaces, distance, prisms };
-    let pairs =
-        self_overlapping_pairs(&BoxTree::of_boxes(&boxes), runner, |pair| !look.are_plainly_apart(pair))?;
+    let _tables = runner.control.reserve(bytes_of_tables(surfaces))?;
+    let mut look = Look::new(surfaces, distance);
+    // 1. Pairs of triangles that are near each other, and edges that are none of the shape.
+    let pairs = look.near_pairs(runner)?;
+    look.flat = look.flat_edges(&pairs);
     // 2. What is near in each.
     let parts = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
         let mut found = Found::default();
@@ -104,6 +95,25 @@ pub(super) fn find(surfaces: &Surfaces, distance: f64, runner: Runner<'_>) -> Re
     let mut all = Found { pairs, ..Found::default() };
     parts.into_iter().for_each(|part| all.append(part));
     Ok(all)
+}
+
+/// Pairs of triangles that are near each other, or nearly so, each once.
+///
+/// # Errors
+/// Only limits.
+pub(super) fn near_pairs(
+    surfaces: &Surfaces,
+    distance: f64,
+    runner: Runner<'_>,
+) -> Result<Vec<[u32; 2]>, Error> {
+    let _tables = runner.control.reserve(bytes_of_tables(surfaces))?;
+    Look::new(surfaces, distance).near_pairs(runner)
+}
+
+/// How much memory it takes to look for pairs.
+fn bytes_of_tables(surfaces: &Surfaces) -> u64 {
+    let per_triangle = size_of::<Aabb>() + size_of::<Prism>() + BoxTree::BYTES_PER_ITEM;
+    (surfaces.triangles.len() * per_triangle) as u64
 }
 
 /// The planes that bound the prism over a triangle: its own, seen from both sides, and those through its sides. What is beyond one
@@ -137,11 +147,69 @@ impl Prism {
 struct Look<'a> {
     surfaces: &'a Surfaces,
     distance: f64,
+    /// What is no further apart than this is left to the operation: it is as near as rounding lets it be.
+    rounding: f64,
     /// By triangle.
     prisms: Vec<Prism>,
+    /// Edges whose faces all lie in one plane, but for the distance.
+    flat: FxHashSet<Edge>,
 }
 
-impl Look<'_> {
+impl<'a> Look<'a> {
+    fn new(surfaces: &'a Surfaces, distance: f64) -> Self {
+        let prisms = (0..surfaces.triangles.len()).map(|t| Prism::around(&surfaces.corners(t))).collect();
+        Self {
+            surfaces,
+            distance,
+            rounding: surfaces.rounding().min(distance),
+            prisms,
+            flat: FxHashSet::default(),
+        }
+    }
+
+    /// Pairs of triangles whose boxes, grown by the distance, meet, and that are not plainly apart.
+    fn near_pairs(&self, runner: Runner<'_>) -> Result<Vec<[u32; 2]>, Error> {
+        let Self { surfaces, distance, .. } = *self;
+        let Some(bounds) = Bounds::of(&surfaces.positions) else { return Ok(Vec::new()) };
+        let frame = Frame::of(bounds.low, bounds.high);
+        let boxes: Vec<Aabb> = (0..surfaces.triangles.len())
+            .map(|t| {
+                let around = Bounds::of(&surfaces.corners(t)).map_or([[0.0; 3]; 2], |b| [b.low, b.high]);
+                let [low, high] = [around[0].map(|x| x - distance), around[1].map(|x| x + distance)];
+                Aabb { min: frame.point(&low), max: frame.point(&high) }
+            })
+            .collect();
+        Ok(self_overlapping_pairs(&BoxTree::of_boxes(&boxes), runner, |pair| !self.are_plainly_apart(pair))?)
+    }
+
+    /// Edges whose faces all lie in one plane, but for the distance: they are there since faces are made of triangles.
+    fn flat_edges(&self, pairs: &[[u32; 2]]) -> FxHashSet<Edge> {
+        let mut flat = FxHashSet::default();
+        let mut creases = FxHashSet::default();
+        for &[s, t] in pairs {
+            let [of_s, of_t] = [s, t].map(|t| self.surfaces.triangles[t as usize]);
+            let shared: SmallVec<[u32; 3]> =
+                of_s.corners.into_iter().filter(|v| of_t.corners.contains(v)).collect();
+            let &[u, v] = shared.as_slice() else { continue };
+            let lies_in =
+                |corners: [u32; 3], t: u32| corners.iter().all(|&v| self.height(v, t).abs() <= self.distance);
+            let edge = sorted([u, v]);
+            if lies_in(of_s.corners, t) && lies_in(of_t.corners, s) {
+                flat.insert(edge);
+            } else {
+                creases.insert(edge);
+            }
+        }
+        flat.retain(|edge| !creases.contains(edge));
+        flat
+    }
+
+    /// How far a vertex is in front of the plane of a triangle.
+    fn height(&self, v: u32, triangle: u32) -> f64 {
+        let (normal, at) = self.prisms[triangle as usize].planes[0];
+        normal.dot(DVec3::from_array(self.position(v))) - at
+    }
+
     fn position(&self, v: u32) -> [f64; 3] {
         self.surfaces.positions[v as usize]
     }
@@ -170,11 +238,22 @@ impl Look<'_> {
         for e in sides[0] {
             for f in sides[1] {
                 let share = e.iter().any(|v| f.contains(v));
-                if !share && !is_on(e, f) && !is_on(f, e) {
+                if !share
+                    && !is_on(e, f)
+                    && !is_on(f, e)
+                    && !self.passes_inside(e, s, f)
+                    && !self.passes_inside(f, t, e)
+                {
                     found.passing.extend(self.passing(e, f));
                 }
             }
         }
+    }
+
+    /// Whether an edge of a triangle is none of the shape, and another edge lies in the plane there or passes through it.
+    fn passes_inside(&self, edge: Edge, triangle: u32, other: Edge) -> bool {
+        let is_along = |room: f64| other.iter().all(|&v| self.height(v, triangle).abs() <= room);
+        self.flat.contains(&edge) && (is_along(self.rounding) || !is_along(self.distance))
     }
 
     /// Corners of one triangle near the other one.
@@ -192,13 +271,18 @@ impl Look<'_> {
                 Some((OnEdge { edge, vertex, place }, apart))
             };
             let on = other.sides().into_iter().filter_map(near).min_by(|x, y| x.1.total_cmp(&y.1));
-            if let Some((on, _)) = on {
-                found.on_edges.push(on);
+            if let Some((on, apart)) = on {
+                let is_in_face =
+                    || self.flat.contains(&on.edge) && self.height(vertex, to).abs() <= self.rounding;
+                if apart > self.rounding && !is_in_face() {
+                    found.on_edges.push(on);
+                }
                 continue;
             }
             // 2. The inside.
             let (place, feature) = closest_on_triangle(query, self.surfaces.corners(to as usize));
-            if feature == Feature::Face && apart(&query, &place) <= self.distance {
+            let apart = apart(&query, &place);
+            if feature == Feature::Face && apart > self.rounding && apart <= self.distance {
                 found.in_faces.push(InFace { triangle: to, vertex, place });
             }
         }
@@ -233,7 +317,8 @@ impl Look<'_> {
         let on_f = c + v * at_f;
         // 2. Near, and with room to all ends.
         let place = on_e.to_array();
-        let is_near = apart(&place, &on_f.to_array()) <= self.distance;
+        let apart_here = apart(&place, &on_f.to_array());
+        let is_near = apart_here > self.rounding && apart_here <= self.distance;
         let has_room = [a, b, c, d].iter().all(|end| apart(&place, &end.to_array()) > self.distance);
         (is_near && has_room).then_some(Passing { edges: [e, f], place })
     }
