@@ -300,6 +300,7 @@ fn closed_by_indices(mesh: Mesh) -> Result<Solid, Box<(Mesh, Option<MeshError>)>
             Err(Box::new((mesh, Some(MeshError::InsideOut { volume: volume.value }))))
         }
         volume => {
+            let seen_from = volume.and_then(|volume| volume.seen_from);
             let volume = volume.map_or_else(OnceLock::new, |volume| OnceLock::from(volume.value));
             Ok(Solid {
                 mesh,
@@ -307,6 +308,7 @@ fn closed_by_indices(mesh: Mesh) -> Result<Solid, Box<(Mesh, Option<MeshError>)>
                 edge_manifold: OnceLock::from(true),
                 links: OnceLock::from(links),
                 volume,
+                seen_from,
                 ..Solid::default()
             })
         }

@@ -18,6 +18,8 @@ use crate::parallel::map_chunks;
 pub(super) struct SignedVolume {
     pub(super) value: f64,
     pub(super) sign: Ordering,
+    /// [`Bounds::beside_center`], if every triangle certainly faces outward as seen from there.
+    pub(super) seen_from: Option<[f64; 3]>,
 }
 
 impl Mesh {
@@ -100,27 +102,37 @@ impl<'a> Framed<'a> {
         })
     }
 
-    /// Six times the volume, and a bound on its rounding error.
-    fn determinant_sum(&self) -> (Sum, f64) {
+    /// Six times the volume, a bound on its rounding error, and whether every triangle certainly faces outward as seen from a place that
+    /// is off the origin by so much.
+    fn determinant_sum(&self, off: [f64; 3]) -> (Sum, f64, bool) {
+        /// More than the eight roundings in a determinant and the four in what the place is off, which is a hundredth of the size.
+        const ROUNDINGS: f64 = 16.0;
+        /// More than products that underflow are off.
+        const UNDERFLOW: f64 = 1e-290;
+        let doubt = ROUNDINGS * f64::EPSILON * self.reach;
         let chunks = map_chunks(self.triangles, CHUNK, |chunk| {
-            let (mut sum, mut products) = (Sum::default(), 0.0);
+            let (mut sum, mut products, mut faces_outward) = (Sum::default(), 0.0, true);
             for run in chunk.chunks(RUN) {
                 let mut part = 0.0;
                 for triangle in self.spanned(run) {
-                    part += triangle.determinant();
-                    products += triangle.edge_product();
+                    let (normal, product) = (triangle.normal(), triangle.edge_product());
+                    let determinant = dot(triangle.corner, normal);
+                    part += determinant;
+                    products += product;
+                    faces_outward &= determinant - dot(off, normal) > doubt * product + UNDERFLOW;
                 }
                 sum.add(part);
             }
-            (sum, products)
+            (sum, products, faces_outward)
         });
-        let (mut sum, mut products) = (Sum::default(), 0.0);
-        for (part, part_products) in chunks {
+        let (mut sum, mut products, mut faces_outward) = (Sum::default(), 0.0, true);
+        for (part, part_products, part_faces_outward) in chunks {
             sum.merge(part);
             products += part_products;
+            faces_outward &= part_faces_outward;
         }
         // Eight roundings in a determinant (the differences, which enter three times, included), RUN in a plain sum.
-        (sum, (10 + RUN) as f64 * f64::EPSILON * self.reach * products)
+        (sum, (10 + RUN) as f64 * f64::EPSILON * self.reach * products, faces_outward)
     }
 
     /// Six times the volume without any rounding, relative to the coordinates' own origin.
@@ -146,6 +158,11 @@ const CHUNK: usize = 1 << 13;
 /// Triangles summed plainly before the sum is compensated.
 const RUN: usize = 16;
 
+#[inline]
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
 fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
@@ -167,8 +184,7 @@ impl Spanned {
     /// Six times the volume of the tetrahedron with the origin.
     #[inline]
     fn determinant(&self) -> f64 {
-        let (a, n) = (self.corner, self.normal());
-        a[0] * n[0] + a[1] * n[1] + a[2] * n[2]
+        dot(self.corner, self.normal())
     }
 
     /// Times the reach of the frame this is more than the determinant with all its terms positive; the rounding
@@ -183,12 +199,14 @@ impl Spanned {
 /// The volume of `triangles`, which lie in `bounds`.
 pub(super) fn signed_volume(positions: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Bounds) -> SignedVolume {
     let framed = Framed::new(positions, triangles, bounds);
-    let (mut sum, bound) = framed.determinant_sum();
+    let place = bounds.beside_center();
+    let (mut sum, bound, faces_outward) = framed.determinant_sum(difference(place, framed.origin));
     if bound > 1e-9 * sum.value().abs() {
         sum = framed.exact_determinant_sum();
     }
     let sign = sum.value().partial_cmp(&0.0).unwrap_or(Ordering::Equal);
-    SignedVolume { value: framed.unscaled(sum.divided_by(6.0), 3), sign }
+    let seen_from = (faces_outward && framed.scale == 1.0).then_some(place);
+    SignedVolume { value: framed.unscaled(sum.divided_by(6.0), 3), sign, seen_from }
 }
 
 /// The area of `triangles`, which lie in `bounds`.
@@ -217,7 +235,7 @@ fn centroid(positions: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Bounds) -> 
             moments[axis].add(determinant * (3.0 * corner[axis] + u[axis] + v[axis]));
         }
     }
-    let (sum, bound) = framed.determinant_sum();
+    let (sum, bound, _) = framed.determinant_sum([0.0; 3]);
     if sum.value().abs() <= bound {
         return None;
     }

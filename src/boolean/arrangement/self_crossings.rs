@@ -101,8 +101,8 @@ fn known_or_found<'a>(
         return Ok((Cow::Owned(many), None));
     }
     let (mesh, largest) = (solid.mesh(), bounds.largest());
-    if is_star_shaped(mesh, bounds, runner)? {
-        return Ok((Cow::Borrowed(solid.remember_near_pairs(Vec::new())), None));
+    if is_star_shaped(mesh, bounds, solid.seen_from(), runner)? {
+        return Ok((Cow::Borrowed(solid.set_star_shaped()), None));
     }
     // (Of neighbours of any lifetime, which the method itself is not.)
     #[allow(clippy::redundant_closure_for_method_calls, reason = "lifetimes")]

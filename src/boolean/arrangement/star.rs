@@ -19,26 +19,37 @@ use crate::parallel::Runner;
 const SAMPLE: usize = 64;
 /// Vertices whose mean is tried as the point. That of any vertices of a convex body is inside it, unless all of them lie in one face.
 const VERTICES: usize = 256;
-/// How far the point is off, as parts of the size along each axis: the middle of a body is seen along edges and corners of many, and a ray
-/// through one tells nothing.
-const OFF: [f64; 3] = [0.0037, 0.0061, -0.0023];
 /// Triangles that one thread looks at before the limits are checked.
 const AT_ONCE: usize = 1 << 14;
 
-/// Whether a closed surface is certainly star-shaped: as seen from the mean of some vertices, or from the middle of its bounds. O(n).
+/// Whether a closed surface is certainly star-shaped: as seen from `seen_from`, where it is known that every triangle faces outward from there, from the
+/// mean of some vertices, or from the middle of its bounds. O(n).
 ///
 /// # Errors
 /// Only limits.
-pub(super) fn is_star_shaped(mesh: &Mesh, bounds: &Bounds, runner: Runner<'_>) -> Result<bool, Limit> {
+pub(super) fn is_star_shaped(
+    mesh: &Mesh,
+    bounds: &Bounds,
+    seen_from: Option<[f64; 3]>,
+    runner: Runner<'_>,
+) -> Result<bool, Limit> {
     if bounds.largest() > FILTER_RANGE {
         return Ok(false);
     }
-    let off: [f64; 3] = std::array::from_fn(|k| OFF[k] * (bounds.high[k] - bounds.low[k]));
-    for middle in [mean(mesh), bounds.center()] {
-        let point = std::array::from_fn(|k| middle[k] + off[k]);
+    // (A ray through a corner or an edge tells nothing.)
+    if let Some(point) = seen_from
+        && is_met_once(mesh, &point, |_| true, runner)?
+    {
+        return Ok(true);
+    }
+    let faces_outward = |triangle: &[u32; 3], point: &[f64; 3]| faces_outward(mesh, triangle, point);
+    let (middle, beside) = (bounds.center(), bounds.beside_center());
+    let mean = mean(mesh);
+    for point in [std::array::from_fn(|k| mean[k] + (beside[k] - middle[k])), beside] {
         let step = mesh.triangles.len().div_ceil(SAMPLE).max(1);
         let mut sample = mesh.triangles.iter().step_by(step);
-        if sample.all(|triangle| faces_outward(mesh, triangle, &point)) && is_seen_once(mesh, &point, runner)?
+        if sample.all(|triangle| faces_outward(triangle, &point))
+            && is_met_once(mesh, &point, |triangle| faces_outward(triangle, &point), runner)?
         {
             return Ok(true);
         }
@@ -54,7 +65,12 @@ fn mean(mesh: &Mesh) -> [f64; 3] {
 }
 
 /// Whether every triangle faces outward from a point, and one ray from there meets one of them.
-fn is_seen_once(mesh: &Mesh, point: &[f64; 3], runner: Runner<'_>) -> Result<bool, Limit> {
+fn is_met_once(
+    mesh: &Mesh,
+    point: &[f64; 3],
+    faces_outward: impl Fn(&[u32; 3]) -> bool + Sync,
+    runner: Runner<'_>,
+) -> Result<bool, Limit> {
     let has_failed = AtomicBool::new(false);
     let met = runner.pieces(mesh.triangles.len(), AT_ONCE, |range| {
         if has_failed.load(Ordering::Relaxed) {
@@ -62,8 +78,7 @@ fn is_seen_once(mesh: &Mesh, point: &[f64; 3], runner: Runner<'_>) -> Result<boo
         }
         let mut met = 0;
         for triangle in &mesh.triangles[range] {
-            let hit =
-                if faces_outward(mesh, triangle, point) { meets_ray(mesh, triangle, point) } else { None };
+            let hit = if faces_outward(triangle) { meets_ray(mesh, triangle, point) } else { None };
             let Some(hit) = hit else {
                 has_failed.store(true, Ordering::Relaxed);
                 return None;
@@ -121,8 +136,14 @@ mod tests {
         let control = Control::new();
         let bounds = Bounds::of(&mesh.positions).unwrap();
         let [serial, parallel] = [false, true]
-            .map(|parallel| is_star_shaped(mesh, &bounds, Runner::new(&control, parallel)).unwrap());
+            .map(|parallel| is_star_shaped(mesh, &bounds, None, Runner::new(&control, parallel)).unwrap());
         assert_eq!(serial, parallel);
+        // What the gate has found on its way says the same.
+        if let Ok(solid) = Solid::try_from(mesh.clone()) {
+            let by_gate =
+                is_star_shaped(mesh, &bounds, solid.seen_from(), Runner::new(&control, false)).unwrap();
+            assert_eq!(by_gate, serial);
+        }
         serial
     }
 
