@@ -228,11 +228,14 @@ pub(crate) fn snapping(snapping: &Snapping) -> String {
     }
 }
 
-/// The power of ten that is well above some distances, and above what rounding does to coordinates there.
+/// The power of ten that is well above some distances, and above what rounding does to coordinates there. Where only the nearest of them are
+/// known it is above what single precision rounds, as they all are.
 fn distance_to_snap(near: &NearContacts) -> f64 {
     let farthest = near.places.iter().map(|found| found.distance).fold(0.0, f64::max);
     let largest = near.places.iter().flat_map(|found| found.place).fold(0.0f64, |most, x| most.max(x.abs()));
-    let least = (10.0 * farthest).max(64.0 * f64::EPSILON * largest);
+    let knows_all = near.count <= near.places.len();
+    let rounding = if knows_all { 64.0 * f64::EPSILON } else { 2.0 * f64::from(f32::EPSILON) };
+    let least = (10.0 * farthest).max(rounding * largest);
     10f64.powi(least.log10().ceil() as i32)
 }
 

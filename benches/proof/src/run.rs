@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::judge::cases::{Case, Family};
-use crate::judge::contacts::{self, Parted, Topology};
+use crate::judge::contacts::{self, Parted, Topology, touches_itself_along};
 use crate::judge::oracle;
 use crate::judge::surface::Properties;
 use crate::judge::vector::extent;
@@ -146,10 +146,14 @@ fn crosses_itself(solid: &Solid) -> bool {
     solid.self_crossings(&Control::new()).map_or(true, |found| !found.is_clean())
 }
 
-/// Whether touching material is apart all over a surface.
-fn is_parted(mesh: &Mesh, properties: &Properties) -> bool {
+/// Whether touching material is apart all over a result, but where it is stated that it stays joined: in an edge in which an operand touches itself,
+/// and where an edge touches a face from inside.
+fn is_parted(mesh: &Mesh, properties: &Properties, operands: &[&Mesh]) -> bool {
     let actual = Topology { components: properties.components, euler: properties.euler };
-    parted(mesh, 1.0).is_some_and(|parted| parted.topology == actual)
+    parted(mesh, 1.0).is_some_and(|Parted { topology, pinched, mispaired }| {
+        let is_own = |edge: &_| operands.iter().any(|operand| touches_itself_along(operand, edge));
+        topology == actual || ((pinched || !mispaired.is_empty()) && mispaired.iter().all(is_own))
+    })
 }
 
 /// The volume of the result of another operation on the same operands; not a number after a panic.
@@ -194,7 +198,7 @@ pub(crate) fn examine(seed: u64, case: &Case, points: usize) -> Found {
     found.faults |= faults_of_result(seed, &made, solids, given_zero_area);
     for (fault, is_so) in [
         (OPERAND, solids.iter().any(crosses_itself)),
-        (CONTACT, case.family == Family::Grid && !is_parted(mesh, properties)),
+        (CONTACT, case.family == Family::Grid && !is_parted(mesh, properties, &[&case.a, &case.b])),
     ] {
         if is_so {
             found.faults |= fault;

@@ -59,6 +59,22 @@ impl<'a> Partial<'a> {
         }
     }
 
+    /// The same as a 2-manifold.
+    fn parted(self) -> Self {
+        if self.solid.is_manifold() {
+            return self;
+        }
+        let (solid, source) = self.solid.separated();
+        let origins: Vec<Origin> = self.origins.iter().collect();
+        let group = |&triangle: &u32| self.groups.get(triangle as usize).copied();
+        Self {
+            solid: Cow::Owned(solid),
+            origins: source.iter().map(|&triangle| origins[triangle as usize]).collect(),
+            groups: source.iter().filter_map(group).collect(),
+            ..self
+        }
+    }
+
     /// The middle of its box.
     fn centre(&self) -> [f64; 3] {
         self.solid.bounds().map_or([0.0; 3], |b| std::array::from_fn(|k| 0.5 * b.low[k] + 0.5 * b.high[k]))
@@ -99,7 +115,10 @@ pub(super) fn run(
         }
         Operation::SymmetricDifference => engine.fold(operation, partials)?,
     };
-    // 3. What is known of the result.
+    // 3. Where bodies of one operand touch in a vertex, each gets its own: not before, since as one vertex they move as one, and do not
+    //    cross each other.
+    let result = if operands.iter().all(|solid| solid.is_manifold()) { result } else { result.parted() };
+    // 4. What is known of the result.
     let notes = Notes {
         contacts: result.contacts,
         inverted: if result.may_be_inverted {
@@ -145,7 +164,7 @@ fn manifold_partials<'a>(operands: &[&'a Solid], groups: &MergedGroups) -> Vec<P
         .iter()
         .enumerate()
         .map(|(i, solid)| {
-            if solid.is_manifold() {
+            if solid.is_edge_manifold() {
                 let groups = groups.of_operand(i, solid);
                 let origins = Origins::of_operand(i as u32, solid.mesh().triangles.len());
                 return Partial::new(Cow::Borrowed(*solid), origins, groups);
@@ -241,5 +260,37 @@ impl Engine<'_> {
             clean_up_stopped: a.clean_up_stopped + b.clean_up_stopped + made.clean_up_stopped,
             flattening: a.flattening.beside(b.flattening).and(made.flattening),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{BooleanOptions, FaceGroup, primitives};
+
+    #[test]
+    fn bodies_that_touch_in_a_vertex_have_one_each_in_the_result() {
+        // Two boxes in one mesh that share a corner.
+        let mut both = primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
+        let first = both.positions.iter().position(|&p| p == [1.0; 3]).unwrap() as u32;
+        let other = primitives::cuboid([1.0; 3], [2.0; 3]).unwrap();
+        let count = both.positions.len() as u32;
+        let vertex = |v: u32| if other.positions[v as usize] == [1.0; 3] { first } else { count + v };
+        both.triangles.extend(other.triangles.iter().map(|corners| corners.map(vertex)));
+        both.positions.extend(&other.positions);
+        let named = |name: &str| FaceGroup { name: name.into(), material: None };
+        let both = Solid::try_from(both).unwrap().in_group(named("both"));
+        assert!(both.is_edge_manifold() && !both.is_manifold());
+        for (low, vertices) in [(5.0, 24), (1.5, 28)] {
+            let cube = primitives::cuboid([low; 3], [low + 2.0; 3]).unwrap();
+            let cube = Solid::try_from(cube).unwrap().in_group(named("cube"));
+            let outcome = BooleanOptions::new().run(Operation::Union, [&both, &cube]).unwrap();
+            let solid = outcome.solid();
+            assert!(outcome.certificate().manifold && solid.mesh().positions.len() == vertices, "{low}");
+            // Origins and groups stay with their triangles.
+            for (triangle, origin) in outcome.origins().iter().enumerate() {
+                assert_eq!(solid.mesh().groups.of_triangle[triangle], origin.operand);
+            }
+        }
     }
 }

@@ -53,7 +53,7 @@ impl BooleanOptions {
             let resolved =
                 if is_simple(policy, by, runner.control)? { None } else { Some(self.resolve(by)?) };
             let by = resolved.as_ref().map_or(by, |outcome| outcome.solid());
-            let separated = (!by.is_manifold()).then(|| by.separated().0);
+            let separated = (!by.is_edge_manifold()).then(|| by.separated().0);
             let by = separated.as_ref().unwrap_or(by);
             // Triangles without three corners are nothing, and so are vertices of nothing.
             let kept: Vec<u32> = (0u32..)
