@@ -137,8 +137,8 @@ impl Prism {
         Self { planes: [(normal, high), (-normal, -low), side(a, b), side(b, c), side(c, a)] }
     }
 
-    /// Whether all of a triangle is beyond one of the planes.
-    fn is_beyond(&self, corners: &[DVec3; 3], distance: f64) -> bool {
+    /// Whether some points, such as the corners of a triangle, are all beyond one of the planes.
+    fn is_beyond(&self, corners: &[DVec3], distance: f64) -> bool {
         self.planes.iter().any(|(out, at)| corners.iter().all(|corner| out.dot(*corner) - at > distance))
     }
 }
@@ -149,6 +149,8 @@ struct Look<'a> {
     distance: f64,
     /// What is no further apart than this is left to the operation: it is as near as rounding lets it be.
     rounding: f64,
+    /// What is beyond a plane by more is not near: rounding of products of coordinates must not take away what is.
+    room: f64,
     /// By triangle.
     prisms: Vec<Prism>,
     /// Edges whose faces all lie in one plane, but for the distance.
@@ -162,6 +164,7 @@ impl<'a> Look<'a> {
             surfaces,
             distance,
             rounding: surfaces.rounding().min(distance),
+            room: 2.0 * distance + surfaces.rounding(),
             prisms,
             flat: FxHashSet::default(),
         }
@@ -216,11 +219,9 @@ impl<'a> Look<'a> {
 
     /// Whether nothing of two triangles is near: the one is on one side of the other, or beside it.
     fn are_plainly_apart(&self, [s, t]: [u32; 2]) -> bool {
-        // Rounding of products of coordinates must not take away what is near.
-        let room = 2.0 * self.distance + self.surfaces.rounding();
         let corners = |t: u32| self.surfaces.corners(t as usize).map(DVec3::from_array);
-        self.prisms[s as usize].is_beyond(&corners(t), room)
-            || self.prisms[t as usize].is_beyond(&corners(s), room)
+        self.prisms[s as usize].is_beyond(&corners(t), self.room)
+            || self.prisms[t as usize].is_beyond(&corners(s), self.room)
     }
 
     /// What is near between two triangles.
@@ -264,6 +265,10 @@ impl<'a> Look<'a> {
                 continue;
             }
             let query = self.position(vertex);
+            // (Nearly always of a neighbour.)
+            if self.prisms[to as usize].is_beyond(&[DVec3::from_array(query)], self.room) {
+                continue;
+            }
             // 1. The nearest side, if it is near.
             let near = |side: [u32; 2]| {
                 let edge = sorted(side);
