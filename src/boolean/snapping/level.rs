@@ -12,6 +12,7 @@ use super::near;
 use super::surfaces::Surfaces;
 use super::weld::apart;
 use crate::Error;
+use crate::mesh::Buckets;
 use crate::parallel::Runner;
 
 /// Sine of the least angle between a plane and those before it whose meeting is a corner: at smaller ones what the distance allows moves the
@@ -57,7 +58,7 @@ pub(super) fn level(
     distance: f64,
     runner: Runner<'_>,
 ) -> Result<FxHashSet<u32>, Error> {
-    // 1. Faces near each other, each in the plane of the other.
+    // 1. Faces near each other that look the same way, or opposite ways.
     let pairs = near::near_pairs(surfaces, distance, runner)?;
     let _pairs = runner.control.reserve((3 * pairs.len() * size_of::<[u32; 2]>()) as u64)?;
     let mut flush: Vec<[u32; 2]> = Vec::new();
@@ -67,8 +68,9 @@ pub(super) fn level(
         }
     }
     flush.sort_unstable();
+    let flush_with = Buckets::new(surfaces.triangles.len(), flush.iter().map(|&[s, t]| (s, t)));
     // 2. Sets of faces in one plane.
-    let (mut planes, plane_of) = sets(surfaces, &flush, distance, runner)?;
+    let (mut planes, plane_of) = sets(surfaces, &flush_with, distance, runner)?;
     // 3. Those that several parts have in common, and operands that lie on themselves.
     let mut on_themselves = FxHashSet::default();
     for &[s, t] in &flush {
@@ -137,14 +139,14 @@ fn plane_of([a, b, c]: [DVec3; 3], distance: f64) -> Option<Plane> {
     is_wide.then(|| Plane { at: a, normal: cross / size, size, doubt, is_shared: false })
 }
 
-/// Sets of faces that are connected by `flush` pairs and lie in one plane, that of the largest of them at first: the planes, and that of each
+/// Sets of faces that are flush, one with the next, and lie in one plane, that of the largest of them at first: the planes, and that of each
 /// face.
 ///
 /// # Errors
 /// Only limits.
 fn sets(
     surfaces: &Surfaces,
-    flush: &[[u32; 2]],
+    flush_with: &Buckets<u32>,
     distance: f64,
     runner: Runner<'_>,
 ) -> Result<(Vec<Plane>, Vec<u32>), Error> {
@@ -154,7 +156,8 @@ fn sets(
         .collect();
     seeds.sort_by(|(s, p), (t, q)| q.size.total_cmp(&p.size).then(s.cmp(t)));
     let mut planes = Vec::new();
-    let mut growing = Growing { surfaces, flush, distance, plane_of: vec![NONE; surfaces.triangles.len()] };
+    let mut growing =
+        Growing { surfaces, flush_with, distance, plane_of: vec![NONE; surfaces.triangles.len()] };
     for (place, (seed, plane)) in seeds.into_iter().enumerate() {
         if place % 1024 == 0 {
             runner.control.check()?;
@@ -169,7 +172,8 @@ fn sets(
 /// Sets of faces that grow, one after the other.
 struct Growing<'a> {
     surfaces: &'a Surfaces,
-    flush: &'a [[u32; 2]],
+    /// By face those that are flush with it.
+    flush_with: &'a Buckets<u32>,
     distance: f64,
     /// The number of the plane of each face.
     plane_of: Vec<u32>,
@@ -217,8 +221,7 @@ impl Growing<'_> {
         let mut next = 0;
         while let Some(&face) = members.get(next) {
             next += 1;
-            let first = self.flush.partition_point(|pair| pair[0] < face);
-            for &[_, other] in self.flush[first..].iter().take_while(|pair| pair[0] == face) {
+            for &other in self.flush_with.get(face as usize) {
                 let is_accepted = || self.corners(other).iter().all(|&corner| accepted(corner));
                 if self.plane_of[other as usize] == NONE && is_accepted() {
                     self.plane_of[other as usize] = number;

@@ -83,13 +83,22 @@ const PAIRS_AT_ONCE: usize = 4_096;
 pub(super) fn find(surfaces: &Surfaces, distance: f64, runner: Runner<'_>) -> Result<Found, Error> {
     let _tables = runner.control.reserve(bytes_of_tables(surfaces))?;
     let mut look = Look::new(surfaces, distance);
-    // 1. Pairs of triangles that are near each other, and edges that are none of the shape.
+    // 1. Pairs of triangles that are near each other, and those in which something is near.
     let pairs = look.near_pairs(runner)?;
-    look.flat = look.flat_edges(&pairs);
-    // 2. What is near in each.
-    let parts = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
+    let has_any = |pair: [u32; 2]| {
         let mut found = Found::default();
-        pairs[range].iter().for_each(|&pair| look.at_pair(pair, &mut found));
+        look.at_pair(pair, &mut found);
+        !found.is_empty()
+    };
+    let some = runner.pieces(pairs.len(), PAIRS_AT_ONCE, |range| {
+        pairs[range].iter().copied().filter(|&pair| has_any(pair)).collect::<Vec<_>>()
+    })?;
+    let some = some.concat();
+    // 2. What is near in each of these, apart from edges that are none of the shape.
+    look.flat = look.flat_edges(&pairs, &some);
+    let parts = runner.pieces(some.len(), PAIRS_AT_ONCE, |range| {
+        let mut found = Found::default();
+        some[range].iter().for_each(|&pair| look.at_pair(pair, &mut found));
         found
     })?;
     let mut all = Found { pairs, ..Found::default() };
@@ -153,7 +162,7 @@ struct Look<'a> {
     room: f64,
     /// By triangle.
     prisms: Vec<Prism>,
-    /// Edges whose faces all lie in one plane, but for the distance.
+    /// Edges whose faces all lie in one plane, but for the distance, once they are known.
     flat: FxHashSet<Edge>,
 }
 
@@ -185,18 +194,26 @@ impl<'a> Look<'a> {
         Ok(self_overlapping_pairs(&BoxTree::of_boxes(&boxes), runner, |pair| !self.are_plainly_apart(pair))?)
     }
 
-    /// Edges whose faces all lie in one plane, but for the distance: they are there since faces are made of triangles.
-    fn flat_edges(&self, pairs: &[[u32; 2]]) -> FxHashSet<Edge> {
+    /// Sides of triangles of `some` pairs whose faces all lie in one plane, but for the distance: they are there since faces are made of triangles.
+    fn flat_edges(&self, pairs: &[[u32; 2]], some: &[[u32; 2]]) -> FxHashSet<Edge> {
+        let sides = some.iter().flatten().flat_map(|&t| self.surfaces.triangles[t as usize].sides());
+        let asked: FxHashSet<Edge> = sides.map(sorted).collect();
         let mut flat = FxHashSet::default();
         let mut creases = FxHashSet::default();
+        if asked.is_empty() {
+            return flat;
+        }
         for &[s, t] in pairs {
             let [of_s, of_t] = [s, t].map(|t| self.surfaces.triangles[t as usize]);
             let shared: SmallVec<[u32; 3]> =
                 of_s.corners.into_iter().filter(|v| of_t.corners.contains(v)).collect();
             let &[u, v] = shared.as_slice() else { continue };
+            let edge = sorted([u, v]);
+            if !asked.contains(&edge) {
+                continue;
+            }
             let lies_in =
                 |corners: [u32; 3], t: u32| corners.iter().all(|&v| self.height(v, t).abs() <= self.distance);
-            let edge = sorted([u, v]);
             if lies_in(of_s.corners, t) && lies_in(of_t.corners, s) {
                 flat.insert(edge);
             } else {
