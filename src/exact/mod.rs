@@ -27,6 +27,7 @@ mod plane;
 pub(crate) mod planes;
 pub(crate) mod position;
 mod projection;
+mod residue;
 mod seen;
 pub(crate) mod unrounded;
 

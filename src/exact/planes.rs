@@ -20,6 +20,7 @@ use super::integer::Integer;
 use super::lattice::Lattice;
 use super::near::{Near, round};
 use super::perturbed::{POWERS, PerturbedPoint};
+use super::residue::{self, Residue, difference};
 
 /// The corners of a triangle.
 type Triangle<'a> = [&'a PerturbedPoint; 3];
@@ -115,6 +116,25 @@ pub(super) fn homogeneous(faces: [Triangle<'_>; 3], lattice: Lattice) -> ([Integ
         return (numerators, denominator.clone());
     }
     unreachable!("perturbed planes of three faces that cross pairwise meet in a point")
+}
+
+/// The same modulo a prime, where that tells that the planes meet in a point as they are.
+pub(super) fn residues(faces: [Triangle<'_>; 3]) -> Option<([Residue; 3], Residue)> {
+    let faces = faces.map(|face| face.map(|corner| corner.position.map(Residue::of)));
+    let reference = faces[0][0];
+    let normals = faces.map(|[a, b, c]| residue::cross(&difference(&b, &a), &difference(&c, &a)));
+    let [f, g, h] = &normals;
+    let around = [residue::cross(g, h), residue::cross(h, f), residue::cross(f, g)];
+    let denominator = residue::dot(f, &around[0]);
+    if denominator.is_zero() {
+        return None;
+    }
+    let offset = |i: usize| residue::dot(&normals[i], &difference(&faces[i][0], &reference));
+    let offsets = [offset(0), offset(1), offset(2)];
+    let numerators = std::array::from_fn(|k| {
+        residue::dot(&offsets, &around.map(|way| way[k])).plus(reference[k].times(denominator))
+    });
+    Some((numerators, denominator))
 }
 
 /// The sign of `D4` of four triangles' planes, perturbed; zero only if it vanishes identically.

@@ -13,6 +13,7 @@ use super::lattice::Lattice;
 use super::near::{Near, round};
 use super::orient::determinant;
 use super::perturbed::{COEFFICIENTS, PerturbedPoint, Polynomial};
+use super::residue::{Residue, cross, difference, dot};
 
 /// The crossing point of edge `(p, q)` with the plane of the triangle, if double-double arithmetic can round it with
 /// certainty; the fast path of [`crossing`].
@@ -126,6 +127,23 @@ pub(super) fn homogeneous(
             .minus(&height_q.times(&lattice.integer(p.position[k])))
     });
     (numerators, height_p.minus(&height_q))
+}
+
+/// The same modulo a prime, where that tells that an end of the edge is off the plane.
+pub(super) fn residues(
+    p: &PerturbedPoint,
+    q: &PerturbedPoint,
+    triangle: [&PerturbedPoint; 3],
+) -> Option<([Residue; 3], Residue)> {
+    let of = |point: &PerturbedPoint| point.position.map(Residue::of);
+    let ([a, b, c], [p, q]) = (triangle.map(of), [p, q].map(of));
+    let normal = cross(&difference(&b, &a), &difference(&c, &a));
+    let [height_p, height_q] = [p, q].map(|end| dot(&normal, &difference(&end, &a)));
+    if height_p.is_zero() && height_q.is_zero() {
+        return None;
+    }
+    let numerators = std::array::from_fn(|k| height_p.times(q[k]).minus(height_q.times(p[k])));
+    Some((numerators, height_p.minus(height_q)))
 }
 
 #[cfg(test)]

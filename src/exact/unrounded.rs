@@ -2,8 +2,8 @@
 
 use super::integer::Integer;
 use super::lattice::Lattice;
-use super::near::Near;
 use super::perturbed::PerturbedPoint;
+use super::residue::{Residue, cross};
 use super::{planes, position};
 
 /// A point as it was before it was rounded.
@@ -18,20 +18,12 @@ pub(crate) enum Unrounded {
 }
 
 impl Unrounded {
-    fn near(&self) -> Option<[Near; 3]> {
+    /// Three numerators and their denominator modulo a prime, if that can tell which they are.
+    fn residues(&self) -> Option<([Residue; 3], Residue)> {
         match self {
-            Self::Given(point) => Some(point.map(Near::exactly)),
-            Self::Crossing(of) => {
-                let ([p, q], triangle) = &**of;
-                position::near_crossing(
-                    &p.position,
-                    &q.position,
-                    triangle.each_ref().map(|corner| &corner.position),
-                )
-            }
-            Self::Planes(of) => {
-                planes::near_meeting(of.each_ref().map(|face| face.each_ref().map(|corner| &corner.position)))
-            }
+            Self::Given(point) => Some((point.map(Residue::of), Residue::ONE)),
+            Self::Crossing(of) => position::residues(&of.0[0], &of.0[1], of.1.each_ref()),
+            Self::Planes(of) => planes::residues(of.each_ref().map(<[_; 3]>::each_ref)),
         }
     }
 
@@ -54,29 +46,15 @@ impl Unrounded {
     }
 }
 
-/// Whether double-double arithmetic is certain that three points do not lie on one line.
+/// Whether three points do not lie on one line for certain: the cross product of two differences is not zero modulo a prime.
 fn surely_off_line(points: &[Unrounded; 3]) -> bool {
-    /// A sum of two products of differences is a few times 2^-104 of its terms off: this is generous.
-    const ROUNDING: f64 = f64::from_bits((1023 - 97) << 52);
-    const FLOOR: f64 = f64::from_bits((1023 - 900) << 52);
-    let [x, y, z] = points.each_ref().map(Unrounded::near);
-    let (Some(x), Some(y), Some(z)) = (x, y, z) else { return false };
-    let difference = |from: &[Near; 3], to: &[Near; 3]| -> [Near; 3] {
-        std::array::from_fn(|k| {
-            let value = to[k].value - from[k].value;
-            let size = to[k].value.high.abs() + from[k].value.high.abs();
-            Near { value, error: to[k].error + from[k].error + ROUNDING * size }
-        })
+    let [Some((x, w)), Some((y, v)), Some((z, u))] = points.each_ref().map(Unrounded::residues) else {
+        return false;
     };
-    let (u, v) = (difference(&x, &y), difference(&x, &z));
-    let size = |near: Near| near.value.high.abs() + near.error;
-    (0..3).any(|k| {
-        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-        let cross = u[l].value * v[m].value - u[m].value * v[l].value;
-        let error = |a: Near, b: Near| size(a) * b.error + size(b) * a.error + ROUNDING * size(a) * size(b);
-        // (Not a number where something overflowed.)
-        cross.high.abs() > 2.0 * (error(u[l], v[m]) + error(u[m], v[l])) + FLOOR
-    })
+    let along = |y: &[Residue; 3], v: Residue| -> [Residue; 3] {
+        std::array::from_fn(|k| y[k].times(w).minus(x[k].times(v)))
+    };
+    cross(&along(&y, v), &along(&z, u)).iter().any(|part| !part.is_zero())
 }
 
 /// Whether three points lie on one line, exactly.
@@ -157,5 +135,38 @@ mod tests {
             }
         }
         assert!(seen_rounded_off && seen_beside && seen_by_filter);
+    }
+
+    #[test]
+    fn residues_are_those_of_the_point() {
+        let mut rng = ChaCha8Rng::seed_from_u64(11);
+        let mut tried = [0; 2];
+        for _ in 0..500 {
+            let mut random =
+                || -> [f64; 3] { std::array::from_fn(|_| f64::from(rng.random_range(-50i32..51))) };
+            let at = random();
+            let moved = |by: &[[f64; 3]], times: &[f64]| {
+                unperturbed(std::array::from_fn(|k| {
+                    at[k] + by.iter().zip(times).map(|(d, t)| d[k] * t).sum::<f64>()
+                }))
+            };
+            let mut plane = || {
+                let ways = [random(), random()];
+                [[1.0, 0.0], [0.5, -2.0], [-1.0, 3.0]].map(|times| moved(&ways, &times))
+            };
+            let faces = [plane(), plane(), plane()];
+            let way = random();
+            let edge = [moved(&[way], &[1.0]), moved(&[way], &[-2.5])];
+            let points =
+                [Unrounded::Crossing(Box::new((edge, faces[0]))), Unrounded::Planes(Box::new(faces))];
+            for (i, point) in points.iter().enumerate() {
+                let Some((numerators, denominator)) = point.residues() else { continue };
+                tried[i] += 1;
+                for k in 0..3 {
+                    assert_eq!(numerators[k], Residue::of(at[k]).times(denominator), "{point:?}");
+                }
+            }
+        }
+        assert!(tried.iter().all(|&count| count > 400), "{tried:?}");
     }
 }

@@ -39,7 +39,8 @@ impl SheetOrigins {
         let [p, q, r] = triangle;
         let middle = [0, 1].map(|k| p[k] / 3.0 + q[k] / 3.0 + r[k] / 3.0);
         let mut best = None;
-        self.tree.meeting(&self.frame.triangle(triangle.map(upright).each_ref()), |i| {
+        // (The frame keeps the order of coordinates, so that the boxes of all that hold the middle hold it there too.)
+        self.tree.meeting(&self.frame.triangle([&upright(middle); 3]), |i| {
             let source = &self.sources[i as usize];
             let is_earlier = source.looks_up == upward && best.is_none_or(|best| i < best);
             if is_earlier && contains(&source.corners, middle) {

@@ -13,7 +13,7 @@ use super::snap::complete_points;
 use super::splits::Splits;
 use crate::boolean::complex::rounding::distance_order;
 use crate::exact::collinear;
-use crate::mesh::{Buckets, HalfEdges};
+use crate::mesh::{BitSet, Buckets, HalfEdges};
 use crate::spatial::{BoxTree, Frame};
 use crate::{Control, Error};
 
@@ -32,10 +32,28 @@ fn edges_with_faces(
         .map(|(u, v, triangles)| ((LocalPoint(u), LocalPoint(v)), triangles.map(LocalFace)))
 }
 
+/// Which edges are asked about.
+#[derive(Clone, Copy)]
+pub(super) enum Around<'a> {
+    All,
+    /// Those whose faces, or the edges at whose ends, may have changed: of changed faces these are the corners.
+    Points(&'a BitSet),
+}
+
+impl Around<'_> {
+    fn includes(self, point: LocalPoint) -> bool {
+        match self {
+            Self::All => true,
+            Self::Points(points) => points.contains(point.0),
+        }
+    }
+}
+
 /// All edges on which there are vertices, with these from the lower end to the higher one. (Not those inside one face.)
 pub(super) fn points_on_edges(
     patch: &Patch<'_>,
     half_edges: &HalfEdges,
+    around: Around<'_>,
     control: &Control,
 ) -> Result<Splits, Error> {
     // 1. The points that edges may be split at, in a grid, which finds those near short edges faster than a tree does; that
@@ -54,6 +72,9 @@ pub(super) fn points_on_edges(
             control.check()?;
         }
         // 2. Edges all of whose faces are known, unless they are inside one face.
+        if !around.includes(u) || !around.includes(v) {
+            continue;
+        }
         if !patch.is_complete(u) && !patch.is_complete(v) {
             continue;
         }
@@ -128,6 +149,7 @@ fn bit(owner: u32) -> Operands {
 pub(super) fn points_along_edges(
     patch: &Patch<'_>,
     half_edges: &HalfEdges,
+    around: Around<'_>,
     control: &Control,
 ) -> Result<Splits, Error> {
     // 1. All edges, with a bit for each operand whose faces are there.
@@ -146,7 +168,8 @@ pub(super) fn points_along_edges(
         if i % EDGES_BETWEEN_CHECKS == 0 {
             control.check()?;
         }
-        if !patch.is_complete(edge.0) || !patch.is_complete(edge.1) {
+        // (The walk begins with the edges at the lower end.)
+        if !around.includes(edge.0) || !patch.is_complete(edge.0) || !patch.is_complete(edge.1) {
             continue;
         }
         let mut on = walk_along(patch, &from_points, edge, of);
