@@ -24,6 +24,15 @@ fn decompose(value: f64) -> (i64, i32) {
     (if value.is_sign_negative() { -odd } else { odd }, exponent + zeros as i32)
 }
 
+/// Whether the lattice of some coordinates is not [small](Lattice::is_small) because one of them has too many bits by itself, as nearly all
+/// have that were computed: cheaper than the lattice.
+pub(super) fn has_many_bits<'a>(coordinates: impl IntoIterator<Item = &'a f64>) -> bool {
+    /// The last digit that a coordinate with so many bits may have, counted from the end of all 53.
+    const LAST: u32 = f64::MANTISSA_DIGITS - SMALL_BITS as u32;
+    // (Zero has no digit; the exponents of subnormal numbers are taken for digits that are not there.)
+    coordinates.into_iter().any(|x| x.is_normal() && x.to_bits().trailing_zeros() < LAST)
+}
+
 /// The common lattice of some finite coordinates: its spacing is `2^exponent`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Lattice {
@@ -83,6 +92,15 @@ mod tests {
         for value in [1.0, -0.1, 3.5e-310, f64::from_bits(1), f64::MAX, -1e300, 0.0, -0.0, 1024.0] {
             let (mantissa, exponent) = decompose(value);
             assert_eq!(Integer::from(mantissa).quotient(&Integer::from(1), i64::from(exponent)), value);
+        }
+    }
+
+    #[test]
+    fn what_has_many_bits_is_on_no_small_lattice() {
+        for bits in 1..=53 {
+            let x = 2f64.powi(-bits) + 0.5;
+            let (of_x, is_small) = (Lattice::of(&[x]), bits <= SMALL_BITS);
+            assert_eq!((of_x.is_small(), has_many_bits(&[0.0, x])), (is_small, !is_small), "{bits}");
         }
     }
 

@@ -3,7 +3,7 @@
 use super::double_double::DoubleDouble;
 use super::filter::{FILTER_RANGE, orient2d_filter, orient3d_filter};
 use super::integer::Integer;
-use super::lattice::Lattice;
+use super::lattice::{Lattice, has_many_bits};
 
 /// The sign of an exact value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -75,8 +75,10 @@ pub(super) fn orient3d_exact(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64;
     if a == d || b == d || c == d || a == b || b == c || c == a {
         return Sign::Zero;
     }
-    let lattice = Lattice::of([a, b, c, d].into_iter().flatten());
-    if lattice.is_small() {
+    let points = [a, b, c, d];
+    let lattice = || Lattice::of(points.into_iter().flatten());
+    let has_small = !points.iter().any(|point| has_many_bits(*point));
+    if let Some(lattice) = has_small.then(lattice).filter(|lattice| lattice.is_small()) {
         let row = |p: &[f64; 3]| -> [i128; 3] {
             std::array::from_fn(|k| i128::from(lattice.small(p[k]) - lattice.small(d[k])))
         };
@@ -87,15 +89,14 @@ pub(super) fn orient3d_exact(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64;
         return Sign::of_i32(determinant.signum() as i32);
     }
     // Expansions are faster than integers of any size; they are exact while no product can leave the range.
-    let magnitudes = [a, b, c, d].into_iter().flatten().map(|x| x.abs()).filter(|&x| x != 0.0);
-    let (low, high) = magnitudes.fold((f64::INFINITY, 0.0f64), |(low, high), x| (low.min(x), high.max(x)));
-    if low > EXPANSION_LOW && high < EXPANSION_HIGH {
+    if are_in_range(&points) {
         if let Some(sign) = orient3d_in_double_double(a, b, c, d) {
             return sign;
         }
         let coordinate = |p: &[f64; 3]| robust::Coord3D { x: p[0], y: p[1], z: p[2] };
         return Sign::of_f64(robust::orient3d(coordinate(a), coordinate(b), coordinate(c), coordinate(d)));
     }
+    let lattice = lattice();
     let row = |p: &[f64; 3]| -> [Integer; 3] {
         std::array::from_fn(|k| lattice.integer(p[k]).minus(&lattice.integer(d[k])))
     };
@@ -129,17 +130,21 @@ pub(super) fn near_heights(
     ends: [&[f64; 3]; 2],
     triangle: [&[f64; 3]; 3],
 ) -> Option<[(DoubleDouble, f64); 2]> {
-    let [a, b, c] = triangle;
-    let magnitudes = ends.into_iter().chain(triangle).flatten().map(|x| x.abs()).filter(|&x| x != 0.0);
-    let (low, high) = magnitudes.fold((f64::INFINITY, 0.0f64), |(low, high), x| (low.min(x), high.max(x)));
-    let is_in_range = low > EXPANSION_LOW && high < EXPANSION_HIGH;
-    is_in_range.then(|| ends.map(|end| near_orient3d(a, b, c, end)))
+    let ([a, b, c], [p, q]) = (triangle, ends);
+    are_in_range(&[a, b, c, p, q]).then(|| ends.map(|end| near_orient3d(a, b, c, end)))
 }
 
 /// Within these magnitudes (2^-240 and 2^240) every product of three coordinate differences and its last bit stay far
 /// inside the range of `f64`, which is what expansion arithmetic needs.
 const EXPANSION_LOW: f64 = f64::from_bits((1023 - 240) << 52);
 const EXPANSION_HIGH: f64 = f64::from_bits((1023 + 240) << 52);
+
+/// Whether all coordinates of some points that are not zero have such magnitudes.
+#[inline]
+fn are_in_range(points: &[&[f64; 3]]) -> bool {
+    let is_in_range = |x: f64| x == 0.0 || (EXPANSION_LOW < x && x < EXPANSION_HIGH);
+    points.iter().all(|point| point.iter().all(|x| is_in_range(x.abs())))
+}
 
 /// The determinant of three rows.
 pub(super) fn determinant(u: &[Integer; 3], v: &[Integer; 3], w: &[Integer; 3]) -> Integer {

@@ -25,7 +25,9 @@ pub struct SelfCrossing {
 pub struct SelfCrossings {
     /// Pairs of triangles that cross each other really: the surface encloses something twice, or inside out.
     pub count: usize,
-    /// Pairs that cross no deeper than rounding; every computed mesh may have some. They are tolerated.
+    /// Pairs that cross no deeper than rounding; every computed mesh may have some. They are tolerated. (One that all the same leaves
+    /// something beside it that is enclosed twice, or inside out, counts as crossing really. That is asked of surfaces alone that
+    /// cross themselves nowhere deeper.)
     pub tolerated: usize,
     /// Those of the `count` pairs that are no deeper than 64 times what is tolerated, and not flat: what a chain of operations
     /// may leave. The multiplicities of the boolean of two operands carry them.

@@ -107,8 +107,17 @@ impl<'a> View<'a> {
     /// a floor does, whose corner is no corner of the floor's triangle.
     fn has_plane_that_keeps_off(&self, other: &[[f64; 3]; 3]) -> bool {
         let ([a, b, c], t) = (self.corners, &self.t);
-        let sides = other.map(|x| orient3d(a, b, c, &x));
-        if (sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative)) || !self.is_front {
+        if !self.is_front {
+            return false;
+        }
+        let [x, y, z] = other;
+        let (of_x, of_y) = (orient3d(a, b, c, x), orient3d(a, b, c, y));
+        let are_opposite = |u: Sign, v: Sign| u != v && u != Sign::Zero && v != Sign::Zero;
+        if are_opposite(of_x, of_y) {
+            return false;
+        }
+        let sides = [of_x, of_y, orient3d(a, b, c, z)];
+        if are_opposite(of_x, sides[2]) || are_opposite(of_y, sides[2]) {
             return false;
         }
         let in_plane = other.iter().zip(sides).filter(|(_, side)| *side == Sign::Zero);

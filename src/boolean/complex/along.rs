@@ -1,6 +1,6 @@
 //! Which edges of two triangles run along one another.
 
-use crate::exact::{Sign, collinear, orient3d, orient3d_filter};
+use crate::exact::{collinear, orient3d_filter};
 
 /// The sides of two triangles that lie on one line, exactly, and have a length in common there; side k runs from corner k to the
 /// next. Nearly always two corners of the second are plainly off the plane of the first, and nothing else is asked.
@@ -16,14 +16,10 @@ pub(crate) fn sides_along(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> impl Iterator
 
 #[cold]
 fn pairs_along(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> Vec<[usize; 2]> {
-    let is_in_plane = b.map(|p| orient3d(&a[0], &a[1], &a[2], &p) == Sign::Zero);
-    let mut found = Vec::new();
-    for j in (0..3).filter(|&j| is_in_plane[j] && is_in_plane[(j + 1) % 3]) {
-        let with = [b[j], b[(j + 1) % 3]];
-        let sides = (0..3).filter(|&i| run_along([a[i], a[(i + 1) % 3]], with));
-        found.extend(sides.map(|i| [i, j]));
-    }
-    found
+    // (Seen along an axis nearly all sides are plainly askew, where their planes are one but for rounding, too.)
+    let side = |of: &[[f64; 3]; 3], k: usize| [of[k], of[(k + 1) % 3]];
+    let pairs = (0..3).flat_map(|j| (0..3).map(move |i| [i, j]));
+    pairs.filter(|&[i, j]| run_along(side(a, i), side(b, j))).collect()
 }
 
 /// Whether two segments lie on one line and have a length in common.

@@ -10,6 +10,7 @@
 //! - `ids`: the numbers of things;
 //! - `directions`: where each vertex of A moves;
 //! - `predicates`: the one question every decision asks;
+//! - `decided`: answers to it that cost much, remembered for a while;
 //! - `meeting`: how two triangles meet;
 //! - `rays`: how often a surface winds around a point;
 //! - `planes`: which faces lie in one plane;
@@ -19,6 +20,7 @@
 
 pub(super) mod along;
 pub(super) mod classes;
+mod decided;
 pub(super) mod directions;
 pub(super) mod ids;
 pub(super) mod meeting;
@@ -254,5 +256,9 @@ impl Perturbed for Complex<'_> {
 
     fn largest_coordinate(&self) -> f64 {
         self.largest
+    }
+
+    fn count(&self) -> u32 {
+        self.vertex_count()
     }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 
+use super::decided::{Answer, Asker, remembered};
 use super::ids::VertexId;
 use super::{Complex, Corner};
 use crate::exact::perturbed::{self, PerturbedPoint, jitter};
@@ -29,6 +30,9 @@ pub(crate) trait Perturbed: Sync + std::fmt::Debug {
     /// The largest coordinate.
     fn largest_coordinate(&self) -> f64;
 
+    /// How many there are: numbers from here on are free, and stand now for this point and now for that.
+    fn count(&self) -> u32;
+
     /// A corner with the directions it is perturbed along.
     fn perturbed(&self, corner: &Corner) -> PerturbedPoint {
         PerturbedPoint {
@@ -46,12 +50,15 @@ pub(crate) struct Predicates<'a> {
     /// Added to every filter's error bound: 0, or infinity where coordinates are so large that filters are unsound.
     filter_floor: f64,
     ties: AtomicU64,
+    asker: Asker,
+    first_free: u32,
 }
 
 impl<'a> Predicates<'a> {
     pub(crate) fn new(complex: &'a dyn Perturbed) -> Self {
         let filter_floor = if complex.largest_coordinate() <= FILTER_RANGE { 0.0 } else { f64::INFINITY };
-        Self { complex, filter_floor, ties: AtomicU64::new(0) }
+        let (asker, first_free) = (Asker::new(), complex.count());
+        Self { complex, filter_floor, ties: AtomicU64::new(0), asker, first_free }
     }
 
     /// How many answers plain coordinates left open.
@@ -111,6 +118,15 @@ impl<'a> Predicates<'a> {
     #[inline(never)]
     fn decide(&self, a: &Corner, b: &Corner, c: &Corner, d: &Corner) -> Answer {
         let corners = [a, b, c, d];
+        let vertices = corners.map(|corner| corner.id);
+        if vertices.iter().any(|vertex| vertex.number() >= self.first_free) {
+            return self.decide_anew(corners);
+        }
+        remembered(self.asker, vertices, || self.decide_anew(corners))
+    }
+
+    fn decide_anew(&self, corners: [&Corner; 4]) -> Answer {
+        let [a, b, c, d] = corners;
         let sign = crate::exact::orient3d(&a.position, &b.position, &c.position, &d.position);
         if sign != Sign::Zero {
             return Answer { is_positive: sign == Sign::Positive, is_tie: false };
@@ -126,13 +142,6 @@ impl<'a> Predicates<'a> {
         });
         Answer { is_positive: sign == Sign::Positive, is_tie: true }
     }
-}
-
-/// On which side a point lies, and whether the perturbation decided it.
-#[derive(Clone, Copy, Debug)]
-struct Answer {
-    is_positive: bool,
-    is_tie: bool,
 }
 
 /// For small operands: for each triangle on which side of it the other operand's vertices lie, once known. Small meshes ask

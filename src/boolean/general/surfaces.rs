@@ -318,6 +318,10 @@ impl Perturbed for Surfaces {
     fn largest_coordinate(&self) -> f64 {
         self.largest
     }
+
+    fn count(&self) -> u32 {
+        self.vertex_count()
+    }
 }
 
 /// How surfaces that are not closed move.
