@@ -288,6 +288,31 @@ fn split_points(surface: &mut impl Surface, twins: &[HalfEdge]) -> Vec<(u32, u32
     copies
 }
 
+/// A place for a vertex on the edge of two triangles: its middle, or where the middle is rounded into the line of another side of one of
+/// them, as beside a needle, another place; of an edge so short that there is no number inside it, one beside it, a few roundings towards
+/// the triangles. (Else a triangle without area would be left.)
+fn place_between(surface: &impl Surface, half_edges: [HalfEdge; 2]) -> [f64; 3] {
+    const PARTS: [f64; 7] = [0.5, 0.25, 0.75, 0.375, 0.625, 0.125, 0.875];
+    /// Ways towards the triangles' other corners, in units in the last place of the largest coordinate.
+    const ASIDE: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
+    let (u, v) = ends(surface, half_edges[0]);
+    let (p, q) = (surface.position(u), surface.position(v));
+    let at = |part: f64| -> [f64; 3] { std::array::from_fn(|k| (1.0 - part) * p[k] + part * q[k]) };
+    let apexes = half_edges.map(|half_edge| {
+        let (triangle, k) = (half_edge / 3, half_edge as usize % 3);
+        surface.corners(triangle).map_or(p, |corners| surface.position(corners[(k + 2) % 3]))
+    });
+    let leaves_area =
+        |x: &[f64; 3]| apexes.iter().all(|apex| !collinear(&p, x, apex) && !collinear(x, &q, apex));
+    let largest = |x: &[f64; 3]| x.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+    let (middle, [a, b]) = (at(PARTS[0]), &apexes);
+    let way: [f64; 3] = std::array::from_fn(|k| 0.5 * a[k] + 0.5 * b[k] - middle[k]);
+    let (unit, length) = (f64::EPSILON * largest(&p).max(largest(&q)), largest(&way).max(f64::MIN_POSITIVE));
+    let aside = |by: f64| -> [f64; 3] { std::array::from_fn(|k| middle[k] + by * unit * (way[k] / length)) };
+    let all = PARTS.into_iter().map(at).chain(ASIDE.into_iter().map(aside));
+    all.into_iter().find(leaves_area).unwrap_or(middle)
+}
+
 /// Where two pairs of triangles still share both ends of an edge, one of the pairs gets a vertex in its middle. That can only
 /// be where there were several pairs.
 fn separate_parallel_edges(surface: &mut impl Surface, twins: &[HalfEdge], crowded: &[HalfEdge]) {
@@ -307,9 +332,7 @@ fn separate_parallel_edges(surface: &mut impl Surface, twins: &[HalfEdge], crowd
     // 2. A vertex in the middle of each.
     let mut middle_of: FxHashMap<HalfEdge, u32> = FxHashMap::default();
     for (x, y) in splits {
-        let (u, v) = ends(surface, x);
-        let (p, q) = (surface.position(u), surface.position(v));
-        let middle = surface.add_point(std::array::from_fn(|k| 0.5 * p[k] + 0.5 * q[k]));
+        let middle = surface.add_point(place_between(surface, [x, y]));
         middle_of.insert(x, middle);
         middle_of.insert(y, middle);
     }
@@ -331,5 +354,75 @@ fn separate_parallel_edges(surface: &mut impl Surface, twins: &[HalfEdge], crowd
         for i in 2..outline.len() - 1 {
             surface.add_part(index, [outline[0], outline[i], outline[i + 1]]);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two triangles at an edge from vertex 0 to vertex 1.
+    struct Pair([[f64; 3]; 4]);
+
+    const TRIANGLES: [[u32; 3]; 2] = [[0, 1, 2], [1, 0, 3]];
+
+    impl Surface for Pair {
+        fn len(&self) -> usize {
+            TRIANGLES.len()
+        }
+
+        fn corners(&self, triangle: u32) -> Option<[u32; 3]> {
+            Some(TRIANGLES[triangle as usize])
+        }
+
+        fn set_corners(&mut self, _: u32, _: [u32; 3]) {}
+
+        fn add_part(&mut self, _: u32, _: [u32; 3]) {}
+
+        fn position(&self, point: u32) -> [f64; 3] {
+            self.0[point as usize]
+        }
+
+        fn point_count(&self) -> usize {
+            self.0.len()
+        }
+
+        fn add_point(&mut self, _: [f64; 3]) -> u32 {
+            0
+        }
+
+        fn is_complete(&self, _: u32) -> bool {
+            true
+        }
+    }
+
+    /// The place on their edge, which leaves four triangles with area.
+    fn place(corners: [[f64; 3]; 4]) -> [f64; 3] {
+        let place = place_between(&Pair(corners), [0, 3]);
+        let [p, q, a, b] = corners;
+        for apex in [a, b] {
+            assert!(!collinear(&p, &place, &apex) && !collinear(&place, &q, &apex), "{corners:?}: {place:?}");
+        }
+        place
+    }
+
+    #[test]
+    fn an_edge_is_parted_in_its_middle_unless_that_leaves_a_triangle_without_area() {
+        let (p, q, above) = ([0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [2.0, 3.0, 0.0]);
+        assert_eq!(place([p, q, above, [2.0, -1.0, 0.0]]), [2.0, 0.0, 0.0]);
+        // The other corner of a needle is where the middle is rounded to.
+        let (p, q) = ([0.1, 0.7, 0.2], [0.3, 0.1, 1.1]);
+        let middle: [f64; 3] = std::array::from_fn(|k| 0.5 * p[k] + 0.5 * q[k]);
+        assert_ne!(place([p, q, above, middle]), middle);
+        // There is no number between the ends.
+        for size in [1.0f64, 1e-200, 1e200] {
+            let p: [f64; 3] = [0.3 * size, 0.7 * size, size];
+            let q: [f64; 3] = [p[0], p[1].next_up(), p[2]];
+            let at = place([p, q, [0.0, 0.1 * size, size], [0.5 * size, 0.6 * size, 0.9 * size]]);
+            assert!((0..3).all(|k| (at[k] - p[k]).abs() <= 10.0 * f64::EPSILON * size), "{at:?}");
+        }
+        // Nothing helps a triangle without area.
+        let flat = Pair([[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        assert_eq!(place_between(&flat, [0, 3]), [0.5, 0.0, 0.0]);
     }
 }
