@@ -302,8 +302,10 @@ fn place_between(surface: &impl Surface, half_edges: [HalfEdge; 2]) -> [f64; 3] 
         let (triangle, k) = (half_edge / 3, half_edge as usize % 3);
         surface.corners(triangle).map_or(p, |corners| surface.position(corners[(k + 2) % 3]))
     });
+    // (Nothing is asked of a triangle that has no area as it is.)
+    let with_area = || apexes.iter().filter(|apex| !collinear(&p, &q, apex));
     let leaves_area =
-        |x: &[f64; 3]| apexes.iter().all(|apex| !collinear(&p, x, apex) && !collinear(x, &q, apex));
+        |x: &[f64; 3]| with_area().all(|apex| !collinear(&p, x, apex) && !collinear(x, &q, apex));
     let largest = |x: &[f64; 3]| x.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
     let (middle, [a, b]) = (at(PARTS[0]), &apexes);
     let way: [f64; 3] = std::array::from_fn(|k| 0.5 * a[k] + 0.5 * b[k] - middle[k]);
