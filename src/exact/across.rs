@@ -1,6 +1,7 @@
 //! The direction across two sides, also of needles.
 
-use super::double_double::{DoubleDouble, cross, power_of_two, scaled_difference};
+use super::double_double::{DoubleDouble, power_of_two, scaled_difference};
+use super::vector::cross;
 
 /// The unit vector across two sides, each from its first point to its second, that they turn round counter-clockwise; right to a
 /// few roundings. None if they are parallel, but for the last bits of twice the precision.

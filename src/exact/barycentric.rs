@@ -4,7 +4,10 @@
 //! high as it is long still gets its weights to some ten digits. What is found depends on the triangle and the point
 //! alone, and on an edge on nothing but the edge and the point, so that the triangles on both sides of it agree to the bit.
 
-use super::double_double::{DoubleDouble, Number, cross, dot, power_of_two, scaled_difference};
+use std::ops::Div;
+
+use super::double_double::{DoubleDouble, power_of_two, scaled_difference};
+use super::vector::{Number, cross, dot};
 
 /// The nearest point of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,7 +136,13 @@ fn weights_in_plane(corners: &[[f64; 3]; 3], p: &[f64; 3]) -> Option<([f64; 3], 
 }
 
 /// The weights of the ends of `u` and `v`, at `d` from where both begin.
-fn two_weights<T: Number>(u: &[T; 3], v: &[T; 3], d: &[T; 3], normal: &[T; 3], squared: T) -> [T; 2] {
+fn two_weights<T: Number + Div<Output = T>>(
+    u: &[T; 3],
+    v: &[T; 3],
+    d: &[T; 3],
+    normal: &[T; 3],
+    squared: T,
+) -> [T; 2] {
     [dot(&cross(d, v), normal) / squared, dot(&cross(u, d), normal) / squared]
 }
 

@@ -102,28 +102,6 @@ impl Div for DoubleDouble {
     }
 }
 
-/// What vectors are made of: `f64`, or twice its precision.
-pub(super) trait Number:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
-{
-}
-
-impl Number for f64 {}
-impl Number for DoubleDouble {}
-
-#[inline]
-pub(super) fn dot<T: Number>(x: &[T; 3], y: &[T; 3]) -> T {
-    x[0] * y[0] + x[1] * y[1] + x[2] * y[2]
-}
-
-#[inline]
-pub(super) fn cross<T: Number>(x: &[T; 3], y: &[T; 3]) -> [T; 3] {
-    std::array::from_fn(|k| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        x[i] * y[j] - x[j] * y[i]
-    })
-}
-
 /// A power of two near `x`, which is positive, or 1.
 pub(super) fn power_of_two(x: f64) -> f64 {
     let power = f64::from_bits(x.to_bits() & (0x7ff << 52));

@@ -9,18 +9,23 @@ const SMALL_BITS: i32 = 40;
 /// determinant of three rows of them or of first directions.
 const TINY_BITS: i32 = 17;
 
-/// `value = mantissa * 2^exponent` with an odd mantissa; `(0, 0)` for zero.
-fn decompose(value: f64) -> (i64, i32) {
+/// `|value| = mantissa * 2^exponent`, with the digits as they are stored.
+#[inline]
+pub(super) fn mantissa_and_exponent(value: f64) -> (u64, i32) {
     let bits = value.to_bits();
     let field = (bits >> 52 & 0x7ff) as i32;
-    let fraction = (bits & 0x000f_ffff_ffff_ffff) as i64;
-    let (mantissa, exponent) =
-        if field == 0 { (fraction, -1074) } else { (fraction | 1 << 52, field - 1075) };
+    let fraction = bits & 0x000f_ffff_ffff_ffff;
+    if field == 0 { (fraction, -1074) } else { (fraction | 1 << 52, field - 1075) }
+}
+
+/// `value = mantissa * 2^exponent` with an odd mantissa; `(0, 0)` for zero.
+fn decompose(value: f64) -> (i64, i32) {
+    let (mantissa, exponent) = mantissa_and_exponent(value);
     if mantissa == 0 {
         return (0, 0);
     }
     let zeros = mantissa.trailing_zeros();
-    let odd = mantissa >> zeros;
+    let odd = (mantissa >> zeros) as i64;
     (if value.is_sign_negative() { -odd } else { odd }, exponent + zeros as i32)
 }
 
@@ -29,7 +34,7 @@ fn decompose(value: f64) -> (i64, i32) {
 pub(super) fn has_many_bits<'a>(coordinates: impl IntoIterator<Item = &'a f64>) -> bool {
     /// The last digit that a coordinate with so many bits may have, counted from the end of all 53.
     const LAST: u32 = f64::MANTISSA_DIGITS - SMALL_BITS as u32;
-    // (Zero has no digit; the exponents of subnormal numbers are taken for digits that are not there.)
+    // (Zero has no digit, and subnormal numbers have fewer: these are left to the lattice.)
     coordinates.into_iter().any(|x| x.is_normal() && x.to_bits().trailing_zeros() < LAST)
 }
 

@@ -30,6 +30,7 @@ mod projection;
 mod residue;
 mod seen;
 pub(crate) mod unrounded;
+mod vector;
 
 pub(crate) use across::unit_across;
 pub(crate) use facing::facing;

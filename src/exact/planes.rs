@@ -15,12 +15,13 @@
 //! lies: `n_k.X - d_k = -D4(f, g, h, k) / det(n_f, n_g, n_h)`.
 
 use super::Sign;
-use super::double_double::{DoubleDouble, cross, dot};
+use super::double_double::DoubleDouble;
 use super::integer::Integer;
 use super::lattice::Lattice;
 use super::near::{Near, round};
 use super::perturbed::{POWERS, PerturbedPoint};
-use super::residue::{self, Residue, difference};
+use super::residue::Residue;
+use super::vector::{cross, difference, dot};
 
 /// The corners of a triangle.
 type Triangle<'a> = [&'a PerturbedPoint; 3];
@@ -122,18 +123,17 @@ pub(super) fn homogeneous(faces: [Triangle<'_>; 3], lattice: Lattice) -> ([Integ
 pub(super) fn residues(faces: [Triangle<'_>; 3]) -> Option<([Residue; 3], Residue)> {
     let faces = faces.map(|face| face.map(|corner| corner.position.map(Residue::of)));
     let reference = faces[0][0];
-    let normals = faces.map(|[a, b, c]| residue::cross(&difference(&b, &a), &difference(&c, &a)));
+    let normals = faces.map(|[a, b, c]| cross(&difference(&b, &a), &difference(&c, &a)));
     let [f, g, h] = &normals;
-    let around = [residue::cross(g, h), residue::cross(h, f), residue::cross(f, g)];
-    let denominator = residue::dot(f, &around[0]);
+    let around = [cross(g, h), cross(h, f), cross(f, g)];
+    let denominator = dot(f, &around[0]);
     if denominator.is_zero() {
         return None;
     }
-    let offset = |i: usize| residue::dot(&normals[i], &difference(&faces[i][0], &reference));
+    let offset = |i: usize| dot(&normals[i], &difference(&faces[i][0], &reference));
     let offsets = [offset(0), offset(1), offset(2)];
-    let numerators = std::array::from_fn(|k| {
-        residue::dot(&offsets, &around.map(|way| way[k])).plus(reference[k].times(denominator))
-    });
+    let numerators =
+        std::array::from_fn(|k| dot(&offsets, &around.map(|way| way[k])) + reference[k] * denominator);
     Some((numerators, denominator))
 }
 

@@ -13,7 +13,8 @@ use super::lattice::Lattice;
 use super::near::{Near, round};
 use super::orient::determinant;
 use super::perturbed::{COEFFICIENTS, PerturbedPoint, Polynomial};
-use super::residue::{Residue, cross, difference, dot};
+use super::residue::Residue;
+use super::vector::{cross, difference, dot};
 
 /// The crossing point of edge `(p, q)` with the plane of the triangle, if double-double arithmetic can round it with
 /// certainty; the fast path of [`crossing`].
@@ -142,8 +143,8 @@ pub(super) fn residues(
     if height_p.is_zero() && height_q.is_zero() {
         return None;
     }
-    let numerators = std::array::from_fn(|k| height_p.times(q[k]).minus(height_q.times(p[k])));
-    Some((numerators, height_p.minus(height_q)))
+    let numerators = std::array::from_fn(|k| height_p * q[k] - height_q * p[k]);
+    Some((numerators, height_p - height_q))
 }
 
 #[cfg(test)]

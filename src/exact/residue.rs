@@ -7,6 +7,10 @@
 //! Every finite `f64` is a whole number times a power of two, and two has an inverse modulo an odd prime: so coordinates need no common
 //! unit here. Modulo 2^61 - 1 a product with a power of two is a rotation of bits.
 
+use std::ops::{Add, Mul, Sub};
+
+use super::lattice::mantissa_and_exponent;
+
 /// The prime.
 const PRIME: u64 = (1 << BITS) - 1;
 const BITS: u32 = 61;
@@ -22,35 +26,15 @@ impl Residue {
     /// A finite number.
     #[inline]
     pub(super) fn of(value: f64) -> Self {
-        let bits = value.to_bits();
-        let field = (bits >> 52 & 0x7ff) as i32;
-        let fraction = bits & 0x000f_ffff_ffff_ffff;
-        let (mantissa, exponent) =
-            if field == 0 { (fraction, -1074) } else { (fraction | 1 << 52, field - 1075) };
+        let (mantissa, exponent) = mantissa_and_exponent(value);
         let turn = exponent.rem_euclid(BITS as i32) as u32;
         let magnitude = Self(((mantissa << turn) & PRIME) | mantissa >> (BITS - turn));
-        if value.is_sign_negative() { Self::ZERO.minus(magnitude) } else { magnitude }
+        if value.is_sign_negative() { Self::ZERO - magnitude } else { magnitude }
     }
 
     #[inline]
     pub(super) fn is_zero(self) -> bool {
         self == Self::ZERO
-    }
-
-    #[inline]
-    pub(super) fn plus(self, other: Self) -> Self {
-        Self::of_sum(self.0 + other.0)
-    }
-
-    #[inline]
-    pub(super) fn minus(self, other: Self) -> Self {
-        Self::of_sum(self.0 + (PRIME - other.0))
-    }
-
-    #[inline]
-    pub(super) fn times(self, other: Self) -> Self {
-        let product = u128::from(self.0) * u128::from(other.0);
-        Self::of_sum((product as u64 & PRIME) + (product >> BITS) as u64)
     }
 
     /// A number up to twice the prime.
@@ -60,23 +44,29 @@ impl Residue {
     }
 }
 
-/// The differences of the coordinates of two points.
-#[inline]
-pub(super) fn difference(to: &[Residue; 3], from: &[Residue; 3]) -> [Residue; 3] {
-    std::array::from_fn(|k| to[k].minus(from[k]))
+impl Add for Residue {
+    type Output = Self;
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self::of_sum(self.0 + other.0)
+    }
 }
 
-#[inline]
-pub(super) fn cross(u: &[Residue; 3], v: &[Residue; 3]) -> [Residue; 3] {
-    std::array::from_fn(|k| {
-        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-        u[l].times(v[m]).minus(u[m].times(v[l]))
-    })
+impl Sub for Residue {
+    type Output = Self;
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        Self::of_sum(self.0 + (PRIME - other.0))
+    }
 }
 
-#[inline]
-pub(super) fn dot(u: &[Residue; 3], v: &[Residue; 3]) -> Residue {
-    u[0].times(v[0]).plus(u[1].times(v[1])).plus(u[2].times(v[2]))
+impl Mul for Residue {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let product = u128::from(self.0) * u128::from(other.0);
+        Self::of_sum((product as u64 & PRIME) + (product >> BITS) as u64)
+    }
 }
 
 #[cfg(test)]
@@ -101,9 +91,9 @@ mod tests {
             };
             let (x, y) = (number(), number());
             let (big_x, big_y) = (IBig::from(x), IBig::from(y));
-            assert_eq!(Residue(x).plus(Residue(y)).0, modulo(&(&big_x + &big_y)));
-            assert_eq!(Residue(x).minus(Residue(y)).0, modulo(&(&big_x - &big_y)));
-            assert_eq!(Residue(x).times(Residue(y)).0, modulo(&(&big_x * &big_y)));
+            assert_eq!((Residue(x) + Residue(y)).0, modulo(&(&big_x + &big_y)));
+            assert_eq!((Residue(x) - Residue(y)).0, modulo(&(&big_x - &big_y)));
+            assert_eq!((Residue(x) * Residue(y)).0, modulo(&(&big_x * &big_y)));
         }
     }
 
@@ -111,7 +101,7 @@ mod tests {
     fn coordinates_are_whole_numbers_times_powers_of_two() {
         let mut rng = ChaCha8Rng::seed_from_u64(42);
         let half = Residue::of(0.5);
-        assert_eq!(half.times(Residue::of(2.0)), Residue::ONE);
+        assert_eq!(half * Residue::of(2.0), Residue::ONE);
         let extremes = [0.0, -0.0, 1.0, -1.0, f64::MAX, f64::MIN, f64::from_bits(1), f64::MIN_POSITIVE];
         for value in extremes {
             assert_eq!(Residue::of(value).is_zero(), value == 0.0, "{value}");
@@ -123,7 +113,7 @@ mod tests {
                 continue;
             }
             // Doubling and halving is exact here.
-            assert_eq!(Residue::of(0.5 * value), Residue::of(value).times(half));
+            assert_eq!(Residue::of(0.5 * value), Residue::of(value) * half);
             let whole = (rng.random::<i64>() >> 11) as f64;
             assert_eq!(Residue::of(whole).0, modulo(&IBig::from(whole as i64)));
         }

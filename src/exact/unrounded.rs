@@ -3,7 +3,8 @@
 use super::integer::Integer;
 use super::lattice::Lattice;
 use super::perturbed::PerturbedPoint;
-use super::residue::{Residue, cross};
+use super::residue::Residue;
+use super::vector::cross;
 use super::{planes, position};
 
 /// A point as it was before it was rounded.
@@ -51,9 +52,8 @@ fn surely_off_line(points: &[Unrounded; 3]) -> bool {
     let [Some((x, w)), Some((y, v)), Some((z, u))] = points.each_ref().map(Unrounded::residues) else {
         return false;
     };
-    let along = |y: &[Residue; 3], v: Residue| -> [Residue; 3] {
-        std::array::from_fn(|k| y[k].times(w).minus(x[k].times(v)))
-    };
+    let along =
+        |y: &[Residue; 3], v: Residue| -> [Residue; 3] { std::array::from_fn(|k| y[k] * w - x[k] * v) };
     cross(&along(&y, v), &along(&z, u)).iter().any(|part| !part.is_zero())
 }
 
@@ -163,7 +163,7 @@ mod tests {
                 let Some((numerators, denominator)) = point.residues() else { continue };
                 tried[i] += 1;
                 for k in 0..3 {
-                    assert_eq!(numerators[k], Residue::of(at[k]).times(denominator), "{point:?}");
+                    assert_eq!(numerators[k], Residue::of(at[k]) * denominator, "{point:?}");
                 }
             }
         }

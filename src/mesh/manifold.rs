@@ -292,6 +292,7 @@ fn split_points(surface: &mut impl Surface, twins: &[HalfEdge]) -> Vec<(u32, u32
 /// them, as beside a needle, another place; of an edge so short that there is no number inside it, one beside it, a few roundings towards
 /// the triangles. (Else a triangle without area would be left.)
 fn place_between(surface: &impl Surface, half_edges: [HalfEdge; 2]) -> [f64; 3] {
+    /// Parts of the edge that are tried, one after the other: the middle, and others far from both ends.
     const PARTS: [f64; 7] = [0.5, 0.25, 0.75, 0.375, 0.625, 0.125, 0.875];
     /// Ways towards the triangles' other corners, in units in the last place of the largest coordinate.
     const ASIDE: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
@@ -308,7 +309,7 @@ fn place_between(surface: &impl Surface, half_edges: [HalfEdge; 2]) -> [f64; 3] 
         |x: &[f64; 3]| with_area().all(|apex| !collinear(&p, x, apex) && !collinear(x, &q, apex));
     let largest = |x: &[f64; 3]| x.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
     let (middle, [a, b]) = (at(PARTS[0]), &apexes);
-    let way: [f64; 3] = std::array::from_fn(|k| 0.5 * a[k] + 0.5 * b[k] - middle[k]);
+    let way: [f64; 3] = std::array::from_fn(|k| 0.25 * a[k] + 0.25 * b[k] - 0.5 * middle[k]);
     let (unit, length) = (f64::EPSILON * largest(&p).max(largest(&q)), largest(&way).max(f64::MIN_POSITIVE));
     let aside = |by: f64| -> [f64; 3] { std::array::from_fn(|k| middle[k] + by * unit * (way[k] / length)) };
     let all = PARTS.into_iter().map(at).chain(ASIDE.into_iter().map(aside));

@@ -110,15 +110,14 @@ impl<'a> View<'a> {
         if !self.is_front {
             return false;
         }
-        let [x, y, z] = other;
-        let (of_x, of_y) = (orient3d(a, b, c, x), orient3d(a, b, c, y));
-        let are_opposite = |u: Sign, v: Sign| u != v && u != Sign::Zero && v != Sign::Zero;
-        if are_opposite(of_x, of_y) {
-            return false;
-        }
-        let sides = [of_x, of_y, orient3d(a, b, c, z)];
-        if are_opposite(of_x, sides[2]) || are_opposite(of_y, sides[2]) {
-            return false;
+        // (Nearly always the first two tell.)
+        let (mut sides, mut seen) = ([Sign::Zero; 3], Sign::Zero);
+        for (side, x) in sides.iter_mut().zip(other) {
+            *side = orient3d(a, b, c, x);
+            if *side != Sign::Zero && seen != Sign::Zero && *side != seen {
+                return false;
+            }
+            seen = if *side == Sign::Zero { seen } else { *side };
         }
         let in_plane = other.iter().zip(sides).filter(|(_, side)| *side == Sign::Zero);
         let in_plane: SmallVec<[[f64; 2]; 3]> = in_plane.map(|(x, _)| self.seen.project(x)).collect();

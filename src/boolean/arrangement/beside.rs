@@ -5,11 +5,11 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::penetration::unit_normal;
-use super::self_crossings::{Surface, height, norm, positions};
+use super::surface::{Crossing, Surface, height, norm, positions};
 use crate::boolean::complex::Corner;
 use crate::boolean::complex::ids::VertexId;
 use crate::boolean::complex::rays::{Ray, coordinate_past, signed_crossing};
-use crate::mesh::cross;
+use crate::mesh::{SelfCrossing, cross};
 
 /// Distance of the sample points from a crossing, in tolerances.
 const SAMPLE_DISTANCES: [f64; 2] = [64.0, 4096.0];
@@ -22,9 +22,25 @@ const MOST_FACES: usize = 32;
 const BESIDE: [f64; 4] = [0.25, -0.25, 1.0 / 64.0, -1.0 / 64.0];
 
 impl Surface<'_> {
+    /// The crossing of a pair that crosses by no more than some roundings, if the surface overlaps beside it all the same.
+    pub(super) fn overlap_beside(&self, pair: [u32; 2]) -> Option<SelfCrossing> {
+        let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t));
+        let found = self.examine_closely(pair, &a, &b)?;
+        (found.is_deep() || self.leaves_wrong(&found, Look::Everywhere)).then_some(found.crossing)
+    }
+
+    /// Whether a shallow crossing leaves something beside it that is enclosed twice, or inside out. (A body whose corner just pierces the
+    /// wall of another from inside crosses it by no more than rounding, but is in it.)
+    pub(super) fn leaves_wrong(&self, found: &Crossing, look: Look) -> bool {
+        let [a, b] = found.crossing.triangles.map(|t| self.complex.corners_of_triangle(0, t));
+        found
+            .segment
+            .is_some_and(|segment| self.leaves_wrong_winding(&segment, &a, &b, found.tolerance, look))
+    }
+
     /// Whether some point beside a shallow crossing, clear of the surface, has a winding number other than 0 and 1. `segment` is what
     /// the two triangles have in common, roughly.
-    pub(super) fn leaves_wrong_winding(
+    fn leaves_wrong_winding(
         &self,
         segment: &[[f64; 3]; 2],
         a: &[Corner; 3],

@@ -7,7 +7,8 @@
 //! 5. `points`: where crossings are (`location`), and one numbering for all points;
 //! 6. `identify`: which points have become one.
 //!
-//! `nearly_flush` finds faces in one plane but for rounding, and `self_crossings` asks the same predicates of one surface against itself.
+//! `nearly_flush` finds faces in one plane but for rounding, and `self_crossings` asks the same predicates of one surface against itself
+//! (`surface`: how two triangles of it meet; `beside`: what it encloses there).
 
 pub(super) mod apart;
 mod beside;
@@ -29,6 +30,7 @@ pub(in crate::boolean) mod self_crossings;
 mod self_pairs;
 pub(super) mod sheets;
 mod star;
+mod surface;
 mod unrounded;
 
 use crate::Error;

@@ -10,28 +10,18 @@ use std::borrow::Cow;
 
 use rustc_hash::FxHashSet;
 
-use super::apart::{are_plainly_apart, common_corners};
 use super::beside::Look;
 use super::neighbours::Neighbours;
 use super::pairs_of_some::pairs_with;
-use super::penetration;
 use super::self_pairs::{self_pairs, tree_of};
 use super::star::is_star_shaped;
-use crate::boolean::complex::planes;
-use crate::boolean::complex::predicates::Predicates;
-use crate::boolean::complex::{Complex, Corner, Operand};
-use crate::exact::at_hand::{largest_coordinate, size_at_hand};
+use super::surface::{Found, Surface, tolerance_of_one};
+use crate::boolean::complex::{Complex, Operand};
 use crate::mesh::{Bounds, SelfCrossing, SelfCrossings};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame};
 use crate::{Control, Error, Mesh, Solid};
 
-/// Units in the last place of the coordinates at hand that a rounding-level crossing may be deep. Each of two rounded
-/// surfaces is off by less than one in every direction.
-const TOLERATED_ULPS: f64 = 8.0;
-/// A crossing up to so many times deeper than what is tolerated is shallow. (Chains of twenty operations on real models have
-/// left crossings of 5.7e-15 at coordinates of size one, three times the tolerance.)
-const SHALLOW: f64 = 64.0;
 /// The deepest crossings that are kept with their places: enough to look at, and to print.
 const PLACES: usize = 5;
 
@@ -61,7 +51,12 @@ impl Solid {
 #[cfg(feature = "field")]
 pub(crate) fn crossing_pairs(solid: &Solid, control: &Control) -> Result<Vec<[u32; 2]>, Error> {
     let found = find(solid, Runner::new(control, true), Shallow::All, |_| true)?;
-    Ok(found.places.iter().map(|crossing| crossing.triangles).collect())
+    let pairs = found.places.iter().map(|crossing| crossing.triangles).collect();
+    if found.is_clean() {
+        // (Then nothing crosses deeper, and others ask the same.)
+        solid.remember_self_crossings(found);
+    }
+    Ok(pairs)
 }
 
 /// With the deepest few places alone.
@@ -200,7 +195,7 @@ enum Shallow {
     /// Of all.
     All,
     /// Of those of a surface that crosses itself nowhere deeper. It is the most expensive question by far, and where faces that were
-    /// turned together are flush there are many. (Of 219 bars in one file, turned: 991 of 1,515 ms.)
+    /// turned together are flush there are many. (A file of 219 bars, turned: 991 ms to read and check, 98 without.)
     OfNothingDeeper,
 }
 
@@ -247,6 +242,7 @@ fn find(
             }
         }
     }
+    // 3. Which of the shallow ones are real.
     let is_asked = asked == Shallow::All || result.count == 0;
     let (mut doubtful, mut tolerated, mut overlapping_beside) =
         (Vec::new(), Vec::new(), FxHashSet::default());
@@ -262,19 +258,17 @@ fn find(
             let triangles = found.crossing.triangles;
             if is_wrong || found.is_deeper_than_rounding() {
                 result.count += 1;
-                let is_shallow = !is_wrong && found.crossing.depth > 0.0;
-                result.shallow += usize::from(is_shallow);
-                if is_shallow {
-                    doubtful.push(triangles);
-                }
+                result.shallow += usize::from(!is_wrong);
                 result.places.push(found.crossing);
             } else {
-                doubtful.push(triangles);
                 tolerated.push(triangles);
+            }
+            if !is_wrong {
+                doubtful.push(triangles);
             }
         }
     }
-    // 3. Bodies may overlap though all of their faces only touch. Where nothing else tells, it is looked everywhere.
+    // 4. Bodies may overlap though all of their faces only touch. Where nothing else tells, it is looked everywhere.
     if result.is_nearly_simple() && !doubtful.is_empty() {
         let overlapping = runner.pieces(doubtful.len(), PAIRS_AT_ONCE, |range| {
             let found = doubtful[range].iter().filter_map(|&pair| surface.overlap_beside(pair));
@@ -290,25 +284,18 @@ fn find(
             }
         }
     }
-    // 4. What crosses by rounding alone counts only if it does so as the surface grows, too.
+    // 5. What crosses by rounding alone counts only if it does so as the surface grows, too.
     tolerated.retain(|pair| !overlapping_beside.contains(pair));
     let crosses = crossing_grown(mesh, &bounds, &tolerated, runner)?;
     result.tolerated = crosses.into_iter().filter(|&crosses| crosses).count();
     result.places.sort_by(|x, y| y.depth.total_cmp(&x.depth).then(x.triangles.cmp(&y.triangles)));
-    // 5. What crosses itself is resolved next, perhaps, and that begins with the same pairs.
+    // 6. What crosses itself is resolved next, perhaps, and that begins with the same pairs.
     if let Cow::Owned(many) = pairs
         && !result.is_nearly_simple()
     {
         solid.many_near_pairs().leave(many);
     }
     Ok(result)
-}
-
-/// The depth up to which a crossing counts as rounding, as a part of the coordinates there.
-fn tolerance_of_one(positions: &[[f64; 3]]) -> f64 {
-    let single = positions.iter().flatten().all(|&x| f64::from(x as f32) == x);
-    let epsilon = if single { f64::from(f32::EPSILON) } else { f64::EPSILON };
-    TOLERATED_ULPS * epsilon
 }
 
 /// A list in pieces, each four times as long as the one before, as far as it goes.
@@ -321,203 +308,10 @@ fn growing_pieces<T>(all: &[T]) -> impl Iterator<Item = &[T]> {
     })
 }
 
-enum Found {
-    Crossing(Crossing),
-    /// They lie on each other in one plane.
-    Touching,
-}
-
-struct Crossing {
-    crossing: SelfCrossing,
-    /// What both triangles have in common, roughly; `None` where they are one and the same.
-    segment: Option<[[f64; 3]; 2]>,
-    /// The depth that counts as rounding there.
-    tolerance: f64,
-}
-
-impl Crossing {
-    /// Whether it is deeper than what a chain of operations may leave.
-    fn is_deep(&self) -> bool {
-        self.segment.is_none() || self.crossing.depth > SHALLOW * self.tolerance
-    }
-
-    fn is_deeper_than_rounding(&self) -> bool {
-        self.segment.is_none() || self.crossing.depth > self.tolerance
-    }
-}
-
-/// A surface to be tested against itself.
-pub(super) struct Surface<'a> {
-    pub(super) complex: &'a Complex<'a>,
-    pub(super) predicates: Predicates<'a>,
-    pub(super) tree: BoxTree,
-    pub(super) frame: Frame,
-    pub(super) low: [f64; 3],
-    pub(super) high: [f64; 3],
-    /// What is tolerated at coordinates of size one.
-    part: f64,
-    /// The largest coordinate.
-    largest: f64,
-}
-
-impl<'a> Surface<'a> {
-    fn new(complex: &'a Complex<'a>, tree: BoxTree, frame: Frame, bounds: &Bounds, part: f64) -> Self {
-        Self {
-            complex,
-            predicates: Predicates::new(complex),
-            tree,
-            frame,
-            low: bounds.low,
-            high: bounds.high,
-            part,
-            largest: bounds.largest(),
-        }
-    }
-
-    /// The crossing of a pair of triangles, if they cross.
-    fn examine(&self, pair: [u32; 2]) -> Option<Found> {
-        let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t));
-        if are_plainly_apart(&self.predicates, &a, &b) {
-            return None;
-        }
-        if let Some(crossing) = self.examine_closely(pair, &a, &b) {
-            return Some(Found::Crossing(crossing));
-        }
-        self.lie_on_each_other(pair).then_some(Found::Touching)
-    }
-
-    /// Whether two triangles cross or lie on each other, however little.
-    fn has_crossing(&self, pair: [u32; 2]) -> bool {
-        let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t));
-        if are_plainly_apart(&self.predicates, &a, &b) {
-            return false;
-        }
-        let crosses = match common_corners(&a, &b).as_slice() {
-            [] => self.crossing(&a, &b).is_some(),
-            &[corners] => self.crossing_at_common_corner(&a, &b, corners).is_some(),
-            corners => corners.len() > 2,
-        };
-        crosses || self.lie_on_each_other(pair)
-    }
-
-    /// The crossing of a pair that crosses by no more than some roundings, if the surface overlaps beside it all the same.
-    fn overlap_beside(&self, pair: [u32; 2]) -> Option<SelfCrossing> {
-        let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t));
-        let found = self.examine_closely(pair, &a, &b)?;
-        (found.is_deep() || self.leaves_wrong(&found, Look::Everywhere)).then_some(found.crossing)
-    }
-
-    /// Whether a shallow crossing leaves something beside it that is enclosed twice, or inside out. (A body whose corner just pierces the
-    /// wall of another from inside crosses it by no more than rounding, but is in it.)
-    fn leaves_wrong(&self, found: &Crossing, look: Look) -> bool {
-        let [a, b] = found.crossing.triangles.map(|t| self.complex.corners_of_triangle(0, t));
-        found
-            .segment
-            .is_some_and(|segment| self.leaves_wrong_winding(&segment, &a, &b, found.tolerance, look))
-    }
-
-    /// Whether two triangles lie in one plane and overlap.
-    fn lie_on_each_other(&self, pair: [u32; 2]) -> bool {
-        let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t).map(|corner| corner.position));
-        planes::lie_on_each_other(&a, &b)
-    }
-
-    fn examine_closely(&self, pair: [u32; 2], a: &[Corner; 3], b: &[Corner; 3]) -> Option<Crossing> {
-        let segment = match common_corners(a, b).as_slice() {
-            [] => self.crossing(a, b)?,
-            &[corners] => self.crossing_at_common_corner(a, b, corners)?,
-            corners if corners.len() == 2 => return None,
-            _ => {
-                // The same triangle twice. (Opposite copies are left out of every solid.)
-                let place = a[0].position;
-                let crossing = SelfCrossing { triangles: pair, place, depth: 0.0 };
-                return Some(Crossing { crossing, segment: None, tolerance: 0.0 });
-            }
-        };
-        let depth = penetration::penetration(&positions(a), &positions(b)).max(0.0);
-        let depth = depth.min(distance(&segment[0], &segment[1]));
-        let place = std::array::from_fn(|k| 0.5 * segment[0][k] + 0.5 * segment[1][k]);
-        let own = largest_coordinate(&segment[0]).max(largest_coordinate(&segment[1]));
-        let tolerance = self.part * size_at_hand(self.largest, own);
-        let rounding = penetration::rounding(&positions(a), &positions(b));
-        let tolerance = rounding.map_or(tolerance, |moved| tolerance.max(TOLERATED_ULPS * moved));
-        let crossing = SelfCrossing { triangles: pair, place, depth };
-        Some(Crossing { crossing, segment: Some(segment), tolerance })
-    }
-
-    /// The ends of the segment in which two triangles without common corners meet, roughly.
-    fn crossing(&self, a: &[Corner; 3], b: &[Corner; 3]) -> Option<[[f64; 3]; 2]> {
-        let a_inside = [0, 1, 2].map(|i| self.predicates.is_positive(&b[0], &b[1], &b[2], &a[i]));
-        if a_inside == [a_inside[0]; 3] {
-            return None;
-        }
-        let b_inside = [0, 1, 2].map(|i| self.predicates.is_positive(&a[0], &a[1], &a[2], &b[i]));
-        if b_inside == [b_inside[0]; 3] {
-            return None;
-        }
-        let mut ends = Vec::with_capacity(2);
-        for (t, inside, plane) in [(a, a_inside, b), (b, b_inside, a)] {
-            for k in 0..3 {
-                let (p, q) = (&t[k], &t[(k + 1) % 3]);
-                if inside[k] != inside[(k + 1) % 3] && self.predicates.passes(p, q, plane) {
-                    ends.push(meeting(&p.position, &q.position, plane));
-                }
-            }
-        }
-        ends.try_into().ok()
-    }
-
-    /// As [`crossing`](Self::crossing), for triangles with one corner in common: one of the sides opposite it must pass the
-    /// other triangle.
-    fn crossing_at_common_corner(
-        &self,
-        a: &[Corner; 3],
-        b: &[Corner; 3],
-        (i, j): (usize, usize),
-    ) -> Option<[[f64; 3]; 2]> {
-        for (t, k, plane) in [(a, i, b), (b, j, a)] {
-            let (p, q) = (&t[(k + 1) % 3], &t[(k + 2) % 3]);
-            let inside = |x: &Corner| self.predicates.is_positive(&plane[0], &plane[1], &plane[2], x);
-            if inside(p) != inside(q) && self.predicates.passes(p, q, plane) {
-                return Some([t[k].position, meeting(&p.position, &q.position, plane)]);
-            }
-        }
-        None
-    }
-}
-
-pub(super) fn height(normal: &[f64; 3], origin: &[f64; 3], point: &[f64; 3]) -> f64 {
-    (0..3).map(|k| normal[k] * (point[k] - origin[k])).sum()
-}
-
-pub(super) fn norm(v: &[f64; 3]) -> f64 {
-    let size = v.iter().fold(0.0f64, |size, x| size.max(x.abs()));
-    if size == 0.0 { 0.0 } else { size * v.iter().map(|x| (x / size).powi(2)).sum::<f64>().sqrt() }
-}
-
-fn distance(p: &[f64; 3], q: &[f64; 3]) -> f64 {
-    norm(&std::array::from_fn(|k| q[k] - p[k]))
-}
-
-pub(super) fn unit_normal(t: &[Corner; 3]) -> Option<[f64; 3]> {
-    penetration::unit_normal(&positions(t))
-}
-
-pub(super) fn positions(t: &[Corner; 3]) -> [[f64; 3]; 3] {
-    t.each_ref().map(|corner| corner.position)
-}
-
-/// Where a line passes a plane, roughly.
-fn meeting(p: &[f64; 3], q: &[f64; 3], plane: &[Corner; 3]) -> [f64; 3] {
-    let Some(normal) = unit_normal(plane) else { return *p };
-    let (from, to) = (height(&normal, &plane[0].position, p), height(&normal, &plane[0].position, q));
-    let t = if from == to { 0.5 } else { (from / (from - to)).clamp(0.0, 1.0) };
-    std::array::from_fn(|k| p[k] + t * (q[k] - p[k]))
-}
-
 /// How many pairs cross really and how many by rounding, of all pairs there are, without any short cut.
 #[cfg(test)]
 pub(super) fn count_by_all_pairs(solid: &Solid) -> (usize, usize) {
+    use super::surface::Crossing;
     let mesh = solid.mesh();
     let bounds = solid.bounds().expect("not empty");
     let operand = Operand { positions: &mesh.positions, triangles: &mesh.triangles };

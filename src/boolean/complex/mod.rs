@@ -258,7 +258,7 @@ impl Perturbed for Complex<'_> {
         self.largest
     }
 
-    fn count(&self) -> u32 {
-        self.vertex_count()
+    fn vertex_count(&self) -> u32 {
+        Complex::vertex_count(self)
     }
 }

@@ -31,7 +31,7 @@ pub(crate) trait Perturbed: Sync + std::fmt::Debug {
     fn largest_coordinate(&self) -> f64;
 
     /// How many there are: numbers from here on are free, and stand now for this point and now for that.
-    fn count(&self) -> u32;
+    fn vertex_count(&self) -> u32;
 
     /// A corner with the directions it is perturbed along.
     fn perturbed(&self, corner: &Corner) -> PerturbedPoint {
@@ -57,7 +57,7 @@ pub(crate) struct Predicates<'a> {
 impl<'a> Predicates<'a> {
     pub(crate) fn new(complex: &'a dyn Perturbed) -> Self {
         let filter_floor = if complex.largest_coordinate() <= FILTER_RANGE { 0.0 } else { f64::INFINITY };
-        let (asker, first_free) = (Asker::new(), complex.count());
+        let (asker, first_free) = (Asker::new(), complex.vertex_count());
         Self { complex, filter_floor, ties: AtomicU64::new(0), asker, first_free }
     }
 

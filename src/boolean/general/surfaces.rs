@@ -319,8 +319,8 @@ impl Perturbed for Surfaces {
         self.largest
     }
 
-    fn count(&self) -> u32 {
-        self.vertex_count()
+    fn vertex_count(&self) -> u32 {
+        Surfaces::vertex_count(self)
     }
 }
 

@@ -71,10 +71,10 @@ pub(super) fn points_on_edges(
         if i % EDGES_BETWEEN_CHECKS == 0 {
             control.check()?;
         }
-        // 2. Edges all of whose faces are known, unless they are inside one face.
         if !around.includes(u) || !around.includes(v) {
             continue;
         }
+        // 2. Edges all of whose faces are known, unless they are inside one face.
         if !patch.is_complete(u) && !patch.is_complete(v) {
             continue;
         }
