@@ -5,8 +5,9 @@ use std::sync::OnceLock;
 
 use super::clean::{self, Cleaned, Weld};
 use super::diagnose::diagnose_tried;
-use super::measure::{self, signed_volume};
+use super::measure::{self, signed_volume, signed_volume_and_sight};
 use super::mend::{self, Leave, Mending};
+use super::star::Star;
 use super::{Bounds, Cleaning, Links, Mesh, MeshError, Solid, attributes, chain, orient, shells};
 use crate::parallel::join;
 
@@ -281,38 +282,39 @@ impl TryFrom<Mesh> for Solid {
 /// The solid of a mesh that is closed by its indices. Otherwise the mesh, and what is wrong with it if it is closed so but
 /// no solid.
 fn closed_by_indices(mesh: Mesh) -> Result<Solid, Box<(Mesh, Option<MeshError>)>> {
-    let (links, (bounds, volume)) = join(
-        mesh.triangles.len(),
-        || Links::of(&mesh.triangles, mesh.positions.len()),
-        || {
-            let bounds = finite_bounds(&mesh.positions);
-            let volume = bounds.map(|bounds| signed_volume(&mesh.positions, &mesh.triangles, &bounds));
-            (bounds, volume)
-        },
-    );
+    let Some(bounds) = finite_bounds(&mesh.positions) else { return Err(Box::new((mesh, None))) };
+    // 1. In one pass, where one point sees all of the surface.
+    let (positions, triangles) = (&mesh.positions[..], &mesh.triangles[..]);
+    let star = Star::of(positions, triangles, &bounds);
+    let seen = star.map(|star| signed_volume_and_sight(positions, triangles, &bounds, &star));
+    // 2. Else by a look around every vertex.
+    let (links, volume) = match seen {
+        Some((volume, true)) => (Ok(Links::of_ball(positions.len())), volume),
+        Some((volume, false)) => (Links::of(triangles, positions.len()), volume),
+        None => join(
+            triangles.len(),
+            || Links::of(triangles, positions.len()),
+            || signed_volume(positions, triangles, &bounds),
+        ),
+    };
     let as_it_is =
         |links: &Links| links.edge_manifold && links.unreferenced == 0 && !links.two_triangle_vertex;
-    let Some(links) = links.ok().filter(|links| as_it_is(links) && bounds.is_some()) else {
-        return Err(Box::new((mesh, None)));
-    };
-    match volume {
-        Some(volume) if volume.sign == Ordering::Less => {
-            Err(Box::new((mesh, Some(MeshError::InsideOut { volume: volume.value }))))
-        }
-        volume => {
-            let seen_from = volume.and_then(|volume| volume.seen_from);
-            let volume = volume.map_or_else(OnceLock::new, |volume| OnceLock::from(volume.value));
-            Ok(Solid {
-                mesh,
-                bounds,
-                edge_manifold: OnceLock::from(true),
-                links: OnceLock::from(links),
-                volume,
-                seen_from,
-                ..Solid::default()
-            })
-        }
+    let Some(links) = links.ok().filter(as_it_is) else { return Err(Box::new((mesh, None))) };
+    if volume.sign == Ordering::Less {
+        return Err(Box::new((mesh, Some(MeshError::InsideOut { volume: volume.value }))));
     }
+    let solid = Solid {
+        mesh,
+        bounds: Some(bounds),
+        edge_manifold: OnceLock::from(true),
+        links: OnceLock::from(links),
+        volume: OnceLock::from(volume.value),
+        ..Solid::default()
+    };
+    if matches!(seen, Some((_, true))) {
+        solid.set_star_shaped();
+    }
+    Ok(solid)
 }
 
 /// The box round `positions`; `None` if there are none or one is not finite.

@@ -5,7 +5,8 @@
 //! settles at once whether a surface is closed, whether its edges are manifold, and where it is pinched.
 //!
 //! (A sum of hashes would tell in one pass without any memory that a surface is closed. It cannot tell whether an edge has two
-//! triangles or four: to know of n directed edges that all differ takes memory for n of them, by any method.)
+//! triangles or four: to know of n directed edges that all differ takes memory for n of them, by any method. Of star-shaped surfaces it is known
+//! otherwise; see `star`.)
 //!
 //! The edges are filed under their vertices, in rows of eight, every thread for vertices of its own; then no thread waits for
 //! another. Where a vertex has more, its edges are filed by a counting sort. Memory: 68 bytes a vertex, given back at the end.
@@ -48,6 +49,11 @@ impl Links {
     };
     /// What is known of a surface that nobody has looked at.
     pub(super) const UNKNOWN: Self = Self { edge_manifold: false, ..Self::NONE };
+
+    /// Those of a triangulation of the sphere.
+    pub(super) fn of_ball(vertices: usize) -> Self {
+        Self { fans: vertices, ..Self::NONE }
+    }
 
     /// Looks around each of `vertices` vertices of `triangles`. O(n).
     ///

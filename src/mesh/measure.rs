@@ -9,17 +9,16 @@
 use std::borrow::Cow;
 use std::cmp::Ordering;
 
+use super::star::{Sight, Star};
 use super::summation::{ExactSum, Sum};
 use super::{Bounds, Mesh, scale};
-use crate::parallel::map_chunks;
+use crate::parallel::{map_chunks, read_ahead};
 
 /// A volume with its sign, which holds also where the number itself under- or overflows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SignedVolume {
     pub(super) value: f64,
     pub(super) sign: Ordering,
-    /// [`Bounds::beside_center`], if every triangle certainly faces outward as seen from there.
-    pub(super) seen_from: Option<[f64; 3]>,
 }
 
 impl Mesh {
@@ -92,47 +91,75 @@ impl<'a> Framed<'a> {
         (0..dimension).fold(value, |value, _| value / self.scale)
     }
 
+    /// A triangle, if it is in range, spanned.
+    #[inline]
+    fn span(&self, [a, b, c]: [u32; 3]) -> Option<Spanned> {
+        let position = |corner: u32| self.positions.get(corner as usize);
+        let (&a, &b, &c) = (position(a)?, position(b)?, position(c)?);
+        Some(Spanned { corner: difference(a, self.origin), edges: [difference(b, a), difference(c, a)] })
+    }
+
     /// Those of `triangles` that are in range, spanned.
     #[inline]
     fn spanned(&self, triangles: &[[u32; 3]]) -> impl Iterator<Item = Spanned> {
-        triangles.iter().filter_map(|&[a, b, c]| {
-            let position = |corner: u32| self.positions.get(corner as usize);
-            let (&a, &b, &c) = (position(a)?, position(b)?, position(c)?);
-            Some(Spanned { corner: difference(a, self.origin), edges: [difference(b, a), difference(c, a)] })
-        })
+        triangles.iter().filter_map(|&triangle| self.span(triangle))
     }
 
-    /// Six times the volume, a bound on its rounding error, and whether every triangle certainly faces outward as seen from a place that
-    /// is off the origin by so much.
-    fn determinant_sum(&self, off: [f64; 3]) -> (Sum, f64, bool) {
+    /// Six times the volume and a bound on its rounding error.
+    fn determinant_sum(&self) -> (Sum, f64) {
+        let (sum, bound, _) = self.determinant_sum_seen([0.0; 3], |(): &mut (), _, _| {});
+        (sum, bound)
+    }
+
+    /// The same, and what `look` has made of each piece of the triangles, given of each whether it certainly faces outward, strictly, as seen from a place
+    /// that is off the origin by so much.
+    fn determinant_sum_seen<S: Default + Send>(
+        &self,
+        off: [f64; 3],
+        look: impl Fn(&mut S, [u32; 3], bool) + Sync,
+    ) -> (Sum, f64, Vec<S>) {
         /// More than the eight roundings in a determinant and the four in what the place is off, which is a hundredth of the size.
         const ROUNDINGS: f64 = 16.0;
         /// More than products that underflow are off.
         const UNDERFLOW: f64 = 1e-290;
         let doubt = ROUNDINGS * f64::EPSILON * self.reach;
         let chunks = map_chunks(self.triangles, CHUNK, |chunk| {
-            let (mut sum, mut products, mut faces_outward) = (Sum::default(), 0.0, true);
+            let (mut sum, mut products, mut made) = (Sum::default(), 0.0, S::default());
             for run in chunk.chunks(RUN) {
+                read_ahead(run.iter().flatten().map(|&corner| {
+                    self.positions.get(corner as usize).map_or(0, |position| position[0].to_bits() as u32)
+                }));
                 let mut part = 0.0;
-                for triangle in self.spanned(run) {
-                    let (normal, product) = (triangle.normal(), triangle.edge_product());
-                    let determinant = dot(triangle.corner, normal);
+                for &triangle in run {
+                    let Some(spanned) = self.span(triangle) else { continue };
+                    let (normal, product) = (spanned.normal(), spanned.edge_product());
+                    let determinant = dot(spanned.corner, normal);
                     part += determinant;
                     products += product;
-                    faces_outward &= determinant - dot(off, normal) > doubt * product + UNDERFLOW;
+                    let faces_outward = determinant - dot(off, normal) > doubt * product + UNDERFLOW;
+                    look(&mut made, triangle, faces_outward);
                 }
                 sum.add(part);
             }
-            (sum, products, faces_outward)
+            (sum, products, made)
         });
-        let (mut sum, mut products, mut faces_outward) = (Sum::default(), 0.0, true);
-        for (part, part_products, part_faces_outward) in chunks {
+        let (mut sum, mut products, mut all_made) = (Sum::default(), 0.0, Vec::with_capacity(chunks.len()));
+        for (part, part_products, made) in chunks {
             sum.merge(part);
             products += part_products;
-            faces_outward &= part_faces_outward;
+            all_made.push(made);
         }
         // Eight roundings in a determinant (the differences, which enter three times, included), RUN in a plain sum.
-        (sum, (10 + RUN) as f64 * f64::EPSILON * self.reach * products, faces_outward)
+        (sum, (10 + RUN) as f64 * f64::EPSILON * self.reach * products, all_made)
+    }
+
+    /// The volume of which six times is a sum with such a bound on its error.
+    fn signed_volume(&self, (mut sum, bound): (Sum, f64)) -> SignedVolume {
+        if bound > 1e-9 * sum.value().abs() {
+            sum = self.exact_determinant_sum();
+        }
+        let sign = sum.value().partial_cmp(&0.0).unwrap_or(Ordering::Equal);
+        SignedVolume { value: self.unscaled(sum.divided_by(6.0), 3), sign }
     }
 
     /// Six times the volume without any rounding, relative to the coordinates' own origin.
@@ -199,14 +226,24 @@ impl Spanned {
 /// The volume of `triangles`, which lie in `bounds`.
 pub(super) fn signed_volume(positions: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Bounds) -> SignedVolume {
     let framed = Framed::new(positions, triangles, bounds);
-    let place = bounds.beside_center();
-    let (mut sum, bound, faces_outward) = framed.determinant_sum(difference(place, framed.origin));
-    if bound > 1e-9 * sum.value().abs() {
-        sum = framed.exact_determinant_sum();
-    }
-    let sign = sum.value().partial_cmp(&0.0).unwrap_or(Ordering::Equal);
-    let seen_from = (faces_outward && framed.scale == 1.0).then_some(place);
-    SignedVolume { value: framed.unscaled(sum.divided_by(6.0), 3), sign, seen_from }
+    framed.signed_volume(framed.determinant_sum())
+}
+
+/// The same, and whether one point sees every triangle once, if it may.
+pub(super) fn signed_volume_and_sight(
+    positions: &[[f64; 3]],
+    triangles: &[[u32; 3]],
+    bounds: &Bounds,
+    star: &Star<'_>,
+) -> (SignedVolume, bool) {
+    let framed = Framed::new(positions, triangles, bounds);
+    let off = difference(star.point, framed.origin);
+    let (sum, bound, parts) = framed.determinant_sum_seen(off, |sight, triangle, faces_outward| {
+        star.look(sight, triangle, faces_outward)
+    });
+    // (Of very large and very small bodies the frame has other coordinates.)
+    let is_star = framed.scale == 1.0 && Sight::of_all(parts).is_whole(triangles.len(), positions.len());
+    (framed.signed_volume((sum, bound)), is_star)
 }
 
 /// The area of `triangles`, which lie in `bounds`.
@@ -235,7 +272,7 @@ fn centroid(positions: &[[f64; 3]], triangles: &[[u32; 3]], bounds: &Bounds) -> 
             moments[axis].add(determinant * (3.0 * corner[axis] + u[axis] + v[axis]));
         }
     }
-    let (sum, bound, _) = framed.determinant_sum([0.0; 3]);
+    let (sum, bound) = framed.determinant_sum();
     if sum.value().abs() <= bound {
         return None;
     }

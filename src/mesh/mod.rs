@@ -43,6 +43,7 @@ mod separate;
 mod shells;
 mod solid;
 mod sparse_union_find;
+pub(crate) mod star;
 mod summation;
 mod topology;
 mod transform;

@@ -59,8 +59,6 @@ pub struct Solid {
     pub(super) mending: Option<Box<Mending>>,
     pub(super) volume: OnceLock<f64>,
     pub(super) area: OnceLock<f64>,
-    /// A point from which every triangle faces outward, strictly, if one is known.
-    pub(super) seen_from: Option<[f64; 3]>,
     /// How the triangles around each vertex hang together.
     pub(super) links: OnceLock<Links>,
     pub(super) shape: OnceLock<Shape>,
@@ -192,11 +190,6 @@ impl Solid {
     /// The same where there are more than triangles: to be left for who comes next, and to be taken.
     pub(crate) fn many_near_pairs(&self) -> &Handover<Vec<[u32; 2]>> {
         &self.many_near_pairs
-    }
-
-    /// A point from which every triangle faces outward, strictly, if one is known.
-    pub(crate) fn seen_from(&self) -> Option<[f64; 3]> {
-        self.seen_from
     }
 
     /// Notes that every direction from some point meets the surface once: it is a ball, and meets itself nowhere.

@@ -12,9 +12,11 @@
 mod loops;
 #[cfg(feature = "parallel")]
 mod pools;
+mod read_ahead;
 mod runner;
 
 pub(crate) use loops::{all, append, build, join, map, map_chunks, parts, piece_count, ranges, try_map};
 #[cfg(feature = "parallel")]
 pub(crate) use pools::run_in_pool;
+pub(crate) use read_ahead::read_ahead;
 pub(crate) use runner::Runner;

@@ -12,9 +12,8 @@ use obvhs::aabb::Aabb;
 use smallvec::{SmallVec, smallvec};
 
 use super::pack::{LANES, Pack, for_each_bit};
-use super::read_ahead::read_ahead;
 use super::{morton, radix};
-use crate::parallel::{append, build};
+use crate::parallel::{append, build, read_ahead};
 
 /// Items whose boxes are read ahead; a multiple of [`LANES`], and few enough to stay in the first-level cache.
 const AT_ONCE: usize = 64;

@@ -12,8 +12,8 @@ use crate::boolean::complex::ids::{FaceId, NodeId, SegmentId, VertexId};
 use crate::boolean::complex::meeting::Meeting;
 use crate::boolean::complex::predicates::{KnownSides, Plane, Predicates};
 use crate::boolean::complex::{Complex, Corner};
-use crate::parallel::Runner;
-use crate::spatial::{radix_sort, read_ahead};
+use crate::parallel::{Runner, read_ahead};
+use crate::spatial::radix_sort;
 
 /// A crossing of an edge of one operand with a face of the other. Every cut edge runs from `low` to `high`, its vertices in
 /// ascending order.

@@ -7,7 +7,8 @@ use super::cut_edges::CutEdges;
 use crate::boolean::complex::Complex;
 use crate::boolean::complex::ids::{CutEdgeId, CutFaceId, FaceId, NodeId, SegmentId, VertexId};
 use crate::mesh::BitSet;
-use crate::spatial::{radix_sort, read_ahead};
+use crate::parallel::read_ahead;
+use crate::spatial::radix_sort;
 
 /// A cut face.
 #[derive(Clone, Copy, Debug)]

@@ -1,12 +1,12 @@
 //! Walks over the cut faces of an operand with what will be looked up for some dozens of them read first, so that cache
-//! misses overlap. (Gain measured on two spheres of 1.3 million triangles: see `spatial::read_ahead`.)
+//! misses overlap. (Gain measured on two spheres of 1.3 million triangles: see `parallel::read_ahead`.)
 
 use std::ops::Range;
 
 use super::curve::Curve;
 use super::points::Points;
 use crate::boolean::complex::ids::{CutEdgeId, CutFaceId};
-use crate::spatial::read_ahead;
+use crate::parallel::read_ahead;
 
 /// Faces whose data are read at once.
 const FACES_AT_ONCE: usize = 64;

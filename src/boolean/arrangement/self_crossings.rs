@@ -94,7 +94,7 @@ fn known_or_found<'a>(
         return Ok((Cow::Owned(many), None));
     }
     let (mesh, largest) = (solid.mesh(), bounds.largest());
-    if is_star_shaped(mesh, bounds, solid.seen_from(), runner)? {
+    if is_star_shaped(mesh, bounds, runner)? {
         return Ok((Cow::Borrowed(solid.set_star_shaped()), None));
     }
     // (Of neighbours of any lifetime, which the method itself is not.)

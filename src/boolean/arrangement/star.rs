@@ -11,8 +11,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::Mesh;
 use crate::control::Limit;
-use crate::exact::{FILTER_RANGE, Projection, Sign, orient2d, orient3d};
+use crate::exact::{FILTER_RANGE, Sign, orient3d};
 use crate::mesh::Bounds;
+use crate::mesh::star::meets_ray;
 use crate::parallel::Runner;
 
 /// Triangles that are looked at before all are: most surfaces that are not star-shaped show it.
@@ -22,25 +23,13 @@ const VERTICES: usize = 256;
 /// Triangles that one thread looks at before the limits are checked.
 const AT_ONCE: usize = 1 << 14;
 
-/// Whether a closed surface is certainly star-shaped: as seen from `seen_from`, where it is known that every triangle faces outward from there, from the
-/// mean of some vertices, or from the middle of its bounds. O(n).
+/// Whether a closed surface is certainly star-shaped: as seen from the mean of some vertices, or from beside the middle of its bounds. O(n).
 ///
 /// # Errors
 /// Only limits.
-pub(super) fn is_star_shaped(
-    mesh: &Mesh,
-    bounds: &Bounds,
-    seen_from: Option<[f64; 3]>,
-    runner: Runner<'_>,
-) -> Result<bool, Limit> {
+pub(super) fn is_star_shaped(mesh: &Mesh, bounds: &Bounds, runner: Runner<'_>) -> Result<bool, Limit> {
     if bounds.largest() > FILTER_RANGE {
         return Ok(false);
-    }
-    // (A ray through a corner or an edge tells nothing.)
-    if let Some(point) = seen_from
-        && is_met_once(mesh, &point, |_| true, runner)?
-    {
-        return Ok(true);
     }
     let faces_outward = |triangle: &[u32; 3], point: &[f64; 3]| faces_outward(mesh, triangle, point);
     let (middle, beside) = (bounds.center(), bounds.beside_center());
@@ -78,7 +67,8 @@ fn is_met_once(
         }
         let mut met = 0;
         for triangle in &mesh.triangles[range] {
-            let hit = if faces_outward(triangle) { meets_ray(mesh, triangle, point) } else { None };
+            let hit =
+                if faces_outward(triangle) { meets_ray(&mesh.positions, *triangle, point) } else { None };
             let Some(hit) = hit else {
                 has_failed.store(true, Ordering::Relaxed);
                 return None;
@@ -96,33 +86,6 @@ fn faces_outward(mesh: &Mesh, triangle: &[u32; 3], point: &[f64; 3]) -> bool {
     orient3d(a, b, c, point) == Sign::Positive
 }
 
-/// Whether the ray along the first axis from a point meets a triangle that faces outward from there; nothing where it passes a corner or
-/// an edge.
-#[inline(always)]
-fn meets_ray(mesh: &Mesh, triangle: &[u32; 3], point: &[f64; 3]) -> Option<bool> {
-    let corners = triangle.map(|v| &mesh.positions[v as usize]);
-    // 1. Nearly all lie beside it.
-    let is_beside = |k: usize| {
-        let [a, b, c] = corners.map(|corner| corner[k]);
-        let at = point[k];
-        ((a < at) & (b < at) & (c < at)) | ((a > at) & (b > at) & (c > at))
-    };
-    if is_beside(1) | is_beside(2) {
-        return Some(false);
-    }
-    // 2. Of what faces outward, the ray meets what is seen from the front against it; what is seen from behind lies on the other side of
-    // the point.
-    let view = Projection::seen_from(0, true);
-    let ([a, b, c], at) = (corners.map(|corner| view.project(corner)), view.project(point));
-    let sides = [(a, b), (b, c), (c, a)].map(|(p, q)| orient2d(p, q, at));
-    let has = |side: Sign| sides.contains(&side);
-    match (has(Sign::Positive), has(Sign::Negative), has(Sign::Zero)) {
-        (true, true, _) => Some(false),
-        (is_front, _, false) => Some(is_front),
-        _ => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use rand::rngs::ChaCha8Rng;
@@ -136,13 +99,11 @@ mod tests {
         let control = Control::new();
         let bounds = Bounds::of(&mesh.positions).unwrap();
         let [serial, parallel] = [false, true]
-            .map(|parallel| is_star_shaped(mesh, &bounds, None, Runner::new(&control, parallel)).unwrap());
+            .map(|parallel| is_star_shaped(mesh, &bounds, Runner::new(&control, parallel)).unwrap());
         assert_eq!(serial, parallel);
-        // What the gate has found on its way says the same.
+        // What the gate has found on its way is found here, too.
         if let Ok(solid) = Solid::try_from(mesh.clone()) {
-            let by_gate =
-                is_star_shaped(mesh, &bounds, solid.seen_from(), Runner::new(&control, false)).unwrap();
-            assert_eq!(by_gate, serial);
+            assert!(serial || solid.known_near_pairs().is_none());
         }
         serial
     }

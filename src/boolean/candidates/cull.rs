@@ -9,8 +9,8 @@ use super::refined_boxes::Corners;
 use super::{SAMPLE, corners};
 use crate::boolean::complex::Complex;
 use crate::control::Limit;
-use crate::parallel::Runner;
-use crate::spatial::{Cell, Frame, Occupancy, read_ahead};
+use crate::parallel::{Runner, read_ahead};
+use crate::spatial::{Cell, Frame, Occupancy};
 
 /// The grid pays only if its cells are this many times shorter than those of the overlap's, which ruled out what it can.
 const FINER: f32 = 2.0;
