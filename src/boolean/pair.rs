@@ -187,6 +187,7 @@ fn build(
         .add(sums.crossings.into_iter().map(|crossing| AddedPoint::Crossing(Box::new(crossing))));
     let body = Body { arrangement, windings, parts };
     let cut = cut(body, &sums.done, rounding, runner)?;
+    assert!(!cut.is_open, "all crossings are known");
     let mut pieces = sums.pieces;
     pieces.extend(cut.pieces);
     // 8. Tidying, near the curve only.

@@ -27,7 +27,7 @@ pub struct SelfCrossings {
     pub count: usize,
     /// Pairs that cross no deeper than rounding; every computed mesh may have some. They are tolerated. (One that all the same leaves
     /// something beside it that is enclosed twice, or inside out, counts as crossing really. That is asked of surfaces alone that
-    /// cross themselves nowhere deeper.)
+    /// cross themselves nowhere deeper.) Triangles that touch each other without a point inside both are not counted.
     pub tolerated: usize,
     /// Those of the `count` pairs that are no deeper than 64 times what is tolerated, and not flat: what a chain of operations
     /// may leave. The multiplicities of the boolean of two operands carry them.
@@ -35,6 +35,9 @@ pub struct SelfCrossings {
     /// Pairs that lie on each other in one plane, with area in common: bodies that touch face to face, or sheets without
     /// thickness.
     pub touching: usize,
+    /// Pairs that touch, and cross as the surface shrinks a little.
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub(crate) contacts: usize,
     /// The depth that counts as rounding at the largest coordinates, in units of these; where all coordinates are smaller than a
     /// sixteenth of the largest, less in proportion.
     pub tolerance: f64,
@@ -54,6 +57,11 @@ impl SelfCrossings {
     /// Whether the surface crosses itself nowhere deeper than a few roundings, nor lies on itself.
     pub(crate) fn is_nearly_simple(&self) -> bool {
         self.count == self.shallow && self.touching == 0
+    }
+
+    /// Whether it is known that the surface crosses itself nowhere, not even by a rounding or where it shrinks a little.
+    pub(crate) fn has_nothing(&self) -> bool {
+        self.is_simple() && self.tolerated == 0 && self.contacts == 0
     }
 
     /// Whether the surface neither crosses itself, except by rounding, nor lies on itself anywhere.

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use trisect::exact::{Sign, collinear, orient3d};
+use trisect::mesh::SelfCrossings;
 use trisect::{
     BooleanOptions, Control, Embed, Expression, Grid, Mesh, OperandState, Operation, Outcome, Rule, Solid,
     primitives,
@@ -413,35 +414,93 @@ fn results_on_a_grid_are_free_of_crossings_or_say_how_many_are_left() {
     assert!(tried > 30 && left * 20 < tried, "{left} of {tried} with crossings left");
 }
 
+/// Two random operands that cross themselves, on a grid of 3 or 8 cells or anywhere, turned or not, and what is made of them.
+fn random_pair(seed: u64) -> Option<([Solid; 2], Expression)> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let grid = [0.0, 3.0, 8.0][rng.random_range(0..3)];
+    let turn = [0.0, 42.0][rng.random_range(0..2)];
+    let mut operand = || random_operand(&mut rng, grid, turn);
+    let (a, b) = (operand(), operand());
+    let expression = ["a + b", "a - b", "a & b"][(seed % 3) as usize].parse().unwrap();
+    Some(([a?, b?], expression))
+}
+
+/// What crosses in a result as it is read again, when nothing is known of it.
+fn crossings_again(outcome: &Outcome) -> SelfCrossings {
+    let mesh = outcome.solid().mesh();
+    let again = Solid::try_from(Mesh::new(mesh.positions.clone(), mesh.triangles.clone())).unwrap();
+    again.self_crossings(&Control::new()).unwrap().clone()
+}
+
 #[test]
 fn edges_that_cross_by_a_rounding_come_apart() {
-    // Results in which edges cross by a rounding: with a vertex where they do both are resolved, and without, as cleaning up left them, they
-    // were what they had been, and crossed again in every round.
+    // Results in which edges cross by a rounding: with a vertex where they do the first are resolved, and without, as cleaning up left them, they
+    // were what they had been, and crossed again in every round. The next take one of the other manners, and the last are shaken.
     let seeds = [
-        100_177, 100_783, 100_885, 101_088, 101_229, 101_361, 101_427, 101_538, 101_563, 101_616, 101_783,
-        101_865, 102_037, 102_508, 102_660, 102_691, 102_854, 102_993,
+        (
+            Grid::Double,
+            &[
+                100_177, 100_783, 100_885, 101_088, 101_229, 101_361, 101_427, 101_538, 101_563, 101_616,
+                101_783, 101_865, 102_037, 102_508, 102_660, 102_691, 102_854, 102_993, 103_639, 109_390,
+                112_996, 113_760, 118_774, 118_780, 121_006, 122_916, 124_038, 127_918, 128_871, 132_099,
+                138_582, 224_678, 229_498, 280_638, 284_103,
+            ][..],
+        ),
+        (Grid::Single, &[117_464, 119_349, 121_980, 123_634]),
     ];
-    for seed in seeds {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let grid = [0.0, 3.0, 8.0][rng.random_range(0..3)];
-        let turn = [0.0, 42.0][rng.random_range(0..2)];
-        let solids: Vec<Solid> = (0..2).filter_map(|_| random_operand(&mut rng, grid, turn)).collect();
-        let expression = ["a + b", "a - b", "a & b"][(seed % 3) as usize].parse().unwrap();
-        let exact = BooleanOptions::new().evaluate(&expression, &solids).unwrap();
+    for (grid, seed) in
+        seeds.into_iter().flat_map(|(grid, seeds)| seeds.iter().map(move |&seed| (grid, seed)))
+    {
+        let (operands, expression) = random_pair(seed).expect("both are operands");
+        let exact = BooleanOptions::new().evaluate(&expression, &operands).unwrap();
         let outcome =
-            BooleanOptions::new().embed(Embed::OnGrid(Grid::Double)).evaluate(&expression, &solids).unwrap();
+            BooleanOptions::new().embed(Embed::OnGrid(grid)).evaluate(&expression, &operands).unwrap();
         let embedding = outcome.certificate().embedding.expect("it was asked for");
         assert!(embedding.rounds > 0 && embedding.left == 0, "seed {seed}: {embedding:?}");
-        assert!(embedding.displacement < 1e-13, "seed {seed}: {embedding:?}");
+        let furthest = if grid == Grid::Double { 5e-13 } else { 3e-5 };
+        assert!(embedding.displacement < furthest, "seed {seed}: {embedding:?}");
         assert!(outcome.certificate().closed && outcome.certificate().manifold, "seed {seed}");
         let change = (outcome.solid().volume() - exact.solid().volume()).abs();
-        assert!(change < 1e-12, "seed {seed}: {change:e}");
-        // Read again, by itself.
-        let mesh = outcome.solid().mesh();
-        let again = Solid::try_from(Mesh::new(mesh.positions.clone(), mesh.triangles.clone())).unwrap();
-        let found = again.self_crossings(&Control::new()).unwrap();
+        assert!(change < 10.0 * furthest, "seed {seed}: {change:e}");
+        let found = crossings_again(&outcome);
         assert!(found.is_simple() && found.tolerated == 0, "seed {seed}: {found:?}");
     }
+}
+
+#[test]
+fn what_rounding_has_laid_on_its_own_back_vanishes() {
+    // On the grid of single precision two triangles have the same corners and look opposite ways.
+    for seed in [113_185, 115_054, 116_386, 120_887] {
+        let (operands, expression) = random_pair(seed).expect("both are operands");
+        let options = BooleanOptions::new().embed(Embed::OnGrid(Grid::Single));
+        let outcome = options.evaluate(&expression, &operands).unwrap();
+        let found = crossings_again(&outcome);
+        assert!(found.is_simple() && found.tolerated == 0, "seed {seed}: {found:?}");
+    }
+}
+
+#[test]
+fn edges_that_touch_crosswise_are_no_crossings() {
+    // Edges touch edges in points, exactly, and nothing is inside anything; where all vertices move a little, they cross whichever way.
+    for seed in [111_075, 111_135, 115_866, 117_997, 120_939, 123_423, 123_634, 128_017] {
+        let (operands, expression) = random_pair(seed).expect("both are operands");
+        let options = BooleanOptions::new().embed(Embed::OnGrid(Grid::Double));
+        let outcome = options.evaluate(&expression, &operands).unwrap();
+        let found = crossings_again(&outcome);
+        assert!(found.is_simple() && found.tolerated == 0, "seed {seed}: {found:?}");
+    }
+}
+
+#[test]
+fn what_was_cut_and_is_whole_again_is_looked_at() {
+    // The tip of a body reaches through an edge by less than rounding: cleaned up, its faces are what they were. They cross the other body in
+    // the result, so that what was known of the one half of this contact did not fit the other.
+    let (operands, expression) = random_pair(110_385).expect("both are operands");
+    let outcome = BooleanOptions::new().embed(Embed::NearCut).evaluate(&expression, &operands).unwrap();
+    let embedding = outcome.certificate().embedding.expect("it was asked for");
+    assert!(embedding.rounds > 0 && embedding.left == 0, "{embedding:?}");
+    let found = crossings_again(&outcome);
+    assert!(found.is_simple() && found.tolerated == 0, "{found:?}");
 }
 
 #[test]

@@ -284,10 +284,13 @@ fn find(
             }
         }
     }
-    // 5. What crosses by rounding alone counts only if it does so as the surface grows, too.
+    // 5. What crosses by rounding alone counts only if it does so as the surface grows, too, and does not merely touch.
     tolerated.retain(|pair| !overlapping_beside.contains(pair));
     let crosses = crossing_grown(mesh, &bounds, &tolerated, runner)?;
-    result.tolerated = crosses.into_iter().filter(|&crosses| crosses).count();
+    let crosses =
+        tolerated.iter().zip(crosses).filter(|&(&pair, grown)| grown && surface.crosses_as_given(pair));
+    result.tolerated = crosses.count();
+    result.contacts = tolerated.len() - result.tolerated;
     result.places.sort_by(|x, y| y.depth.total_cmp(&x.depth).then(x.triangles.cmp(&y.triangles)));
     // 6. What crosses itself is resolved next, perhaps, and that begins with the same pairs.
     if let Cow::Owned(many) = pairs
@@ -339,5 +342,6 @@ pub(super) fn count_by_all_pairs(solid: &Solid) -> (usize, usize) {
     let shallow: Vec<[u32; 2]> = shallow.iter().map(|found| found.crossing.triangles).collect();
     let control = Control::new();
     let grown = crossing_grown(mesh, &bounds, &shallow, Runner::new(&control, false)).expect("no limits");
-    (real.len(), grown.into_iter().filter(|&crosses| crosses).count())
+    let crosses = shallow.iter().zip(grown).filter(|&(&pair, grown)| grown && surface.crosses_as_given(pair));
+    (real.len(), crosses.count())
 }

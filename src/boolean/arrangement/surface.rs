@@ -6,6 +6,7 @@ use crate::boolean::complex::planes;
 use crate::boolean::complex::predicates::Predicates;
 use crate::boolean::complex::{Complex, Corner};
 use crate::exact::at_hand::{largest_coordinate, size_at_hand};
+use crate::exact::{Sign, orient3d};
 use crate::mesh::{Bounds, SelfCrossing};
 use crate::spatial::{BoxTree, Frame};
 
@@ -110,6 +111,12 @@ impl<'a> Surface<'a> {
         crosses || self.lie_on_each_other(pair)
     }
 
+    /// Whether two triangles have a point in common that is inside both, or area, just as they are: nothing is moved, not by the smallest of moves.
+    pub(super) fn crosses_as_given(&self, pair: [u32; 2]) -> bool {
+        let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t).map(|corner| corner.position));
+        interiors_cross(&a, &b) || planes::lie_on_each_other(&a, &b)
+    }
+
     /// Whether two triangles lie in one plane and overlap.
     fn lie_on_each_other(&self, pair: [u32; 2]) -> bool {
         let [a, b] = pair.map(|t| self.complex.corners_of_triangle(0, t).map(|corner| corner.position));
@@ -186,6 +193,35 @@ impl<'a> Surface<'a> {
     }
 }
 
+/// Whether two triangles that do not lie in one plane have a point in common that is inside both, exactly.
+fn interiors_cross(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> bool {
+    // 1. Each passes the plane of the other: some corner is alone on its side, and two edges leave it.
+    let alone = |t: &[[f64; 3]; 3], plane: &[[f64; 3]; 3]| {
+        let sides = t.map(|corner| orient3d(&plane[0], &plane[1], &plane[2], &corner));
+        if !(sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative)) {
+            return None;
+        }
+        let is_alone = |&k: &usize| {
+            sides[k] != Sign::Zero && sides[(k + 1) % 3] != sides[k] && sides[(k + 2) % 3] != sides[k]
+        };
+        (0..3).find(is_alone)
+    };
+    let (Some(i), Some(j)) = (alone(a, b), alone(b, a)) else { return false };
+    // 2. In the line of both planes each has an interval between its two edges. How an end of the one lies to an end of the other is how
+    //    the two edges wind around each other, all four ways alike; the intervals overlap where it is not the same for all.
+    let (mut before, mut after) = (false, false);
+    for p in [a[(i + 1) % 3], a[(i + 2) % 3]] {
+        for q in [b[(j + 1) % 3], b[(j + 2) % 3]] {
+            match orient3d(&a[i], &p, &b[j], &q) {
+                Sign::Positive => before = true,
+                Sign::Negative => after = true,
+                Sign::Zero => {}
+            }
+        }
+    }
+    before && after
+}
+
 pub(super) fn height(normal: &[f64; 3], origin: &[f64; 3], point: &[f64; 3]) -> f64 {
     (0..3).map(|k| normal[k] * (point[k] - origin[k])).sum()
 }
@@ -213,4 +249,77 @@ fn meeting(p: &[f64; 3], q: &[f64; 3], plane: &[Corner; 3]) -> [f64; 3] {
     let (from, to) = (height(&normal, &plane[0].position, p), height(&normal, &plane[0].position, q));
     let t = if from == to { 0.5 } else { (from / (from - to)).clamp(0.0, 1.0) };
     std::array::from_fn(|k| p[k] + t * (q[k] - p[k]))
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+
+    use super::*;
+
+    type Vector = [i128; 3];
+
+    fn minus(p: Vector, q: Vector) -> Vector {
+        std::array::from_fn(|k| p[k] - q[k])
+    }
+
+    fn cross(u: Vector, v: Vector) -> Vector {
+        std::array::from_fn(|k| u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3])
+    }
+
+    fn dot(u: Vector, v: Vector) -> i128 {
+        (0..3).map(|k| u[k] * v[k]).sum()
+    }
+
+    /// Where a triangle meets a plane that it passes, along a direction: the ends, as fractions with positive denominators.
+    fn interval(t: [Vector; 3], origin: Vector, normal: Vector, along: Vector) -> Option<[(i128, i128); 2]> {
+        let heights = t.map(|corner| dot(normal, minus(corner, origin)));
+        if !(heights.iter().any(|&h| h > 0) && heights.iter().any(|&h| h < 0)) {
+            return None;
+        }
+        let mut ends: Vec<(i128, i128)> = Vec::new();
+        for k in 0..3 {
+            let (p, q, hp, hq) = (t[k], t[(k + 1) % 3], heights[k], heights[(k + 1) % 3]);
+            if hp == 0 {
+                ends.push((dot(along, p), 1));
+            } else if hp * hq < 0 {
+                // p + (q - p) hp / (hp - hq)
+                let (n, d) = (dot(along, p) * (hp - hq) + dot(along, minus(q, p)) * hp, hp - hq);
+                ends.push(if d > 0 { (n, d) } else { (-n, -d) });
+            }
+        }
+        ends.sort_by(|x, y| (x.0 * y.1).cmp(&(y.0 * x.1)));
+        Some([ends[0], ends[ends.len() - 1]])
+    }
+
+    #[test]
+    fn interiors_cross_as_fractions_say() {
+        let mut random = ChaCha8Rng::seed_from_u64(1_519);
+        let (mut crossing, mut touching) = (0, 0);
+        for round in 0..60_000 {
+            // On so few places that corners, edges and planes coincide often.
+            let size = [2, 3, 5][round % 3];
+            let mut triangle = || [0; 3].map(|_| [0; 3].map(|_| random.random_range(0..=size)));
+            let (a, b): ([Vector; 3], [Vector; 3]) = (triangle(), triangle());
+            let normal = |t: [Vector; 3]| cross(minus(t[1], t[0]), minus(t[2], t[0]));
+            let (m, n) = (normal(a), normal(b));
+            if m == [0; 3] || n == [0; 3] {
+                continue;
+            }
+            let along = cross(m, n);
+            let both = interval(a, b[0], n, along).zip(interval(b, a[0], m, along));
+            let less = |x: (i128, i128), y: (i128, i128)| x.0 * y.1 < y.0 * x.1;
+            let expected = both.is_some_and(|([a, b], [c, d])| less(a, d) && less(c, b));
+            let places = |t: [Vector; 3]| t.map(|corner| corner.map(|x| x as f64));
+            assert_eq!(interiors_cross(&places(a), &places(b)), expected, "{a:?} {b:?}");
+            crossing += u32::from(expected);
+            touching +=
+                u32::from(both.is_some_and(|([a, b], [c, d])| {
+                    !less(a, d) && !less(d, a) || !less(c, b) && !less(b, c)
+                }));
+        }
+        println!("{crossing} cross, {touching} touch end to end");
+        assert!(crossing > 2_000 && touching > 200, "{crossing} {touching}");
+    }
 }

@@ -39,6 +39,9 @@ pub(crate) struct Cut {
     pub(crate) has_inverted: bool,
     /// Whether some triangle has no area, or an edge no longer than rounding.
     pub(crate) has_slivers: bool,
+    /// Whether the boundary of what is kept of some face is not closed, so that what lies beside it is not known: crossings have been
+    /// missed.
+    pub(crate) is_open: bool,
 }
 
 impl Cut {
@@ -46,6 +49,7 @@ impl Cut {
         self.pieces.append(&mut other.pieces);
         self.has_inverted |= other.has_inverted;
         self.has_slivers |= other.has_slivers;
+        self.is_open |= other.is_open;
     }
 }
 
@@ -114,9 +118,15 @@ impl Filler {
         ids.extend(self.boundary.iter().map(|edge| edge[0]));
         ids.sort_unstable();
         ids.dedup();
-        let local = |point: PointId| ids.binary_search(&point).expect("every point is left") as u32;
+        let local = |point: PointId| ids.binary_search(&point).ok().map(|place| place as u32);
         self.local_boundary.clear();
-        self.local_boundary.extend(self.boundary.iter().map(|edge| edge.map(local)));
+        for &[from, to] in &self.boundary {
+            let (Some(from), Some(to)) = (local(from), local(to)) else {
+                cut.is_open = true;
+                return;
+            };
+            self.local_boundary.push([from, to]);
+        }
         self.positions.clear();
         self.positions.extend(ids.iter().map(|&point| *position(point)));
         self.projected.clear();

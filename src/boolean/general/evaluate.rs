@@ -55,12 +55,28 @@ pub(crate) fn evaluate(
     finish: Finish,
     runner: Runner<'_>,
 ) -> Result<Evaluated, Error> {
+    Ok(evaluate_if_closed(general, inside, finish, runner)?.expect("all crossings are known"))
+}
+
+/// The same of an arrangement that may lack crossings; `None` where that shows, since what is kept of some face has no closed boundary.
+///
+/// # Errors
+/// Only limits.
+pub(crate) fn evaluate_if_closed(
+    general: &General,
+    inside: &[bool],
+    finish: Finish,
+    runner: Runner<'_>,
+) -> Result<Option<Evaluated>, Error> {
     let rounding = Rounding::up_to(general.surfaces.largest_coordinate()).in_units_of(finish.unit);
     let mut shape = Shape::new(general, inside);
     // 1. Sheets are added up.
     let mut sums = add_up(&mut shape, runner)?;
     // 2. All other cut faces.
     let cut = cut(&shape, &sums.done, rounding, runner)?;
+    if cut.is_open {
+        return Ok(None);
+    }
     sums.pieces.extend(cut.pieces);
     // 3. Tidying.
     let nearly_flush: &[_] = if finish.flatten { &general.crossings.nearly_flush } else { &[] };
@@ -97,7 +113,7 @@ pub(crate) fn evaluate(
     let may_cross =
         finish.find_low && (has_inverted || has_low(&pieces, rounding, |point| shape.position(point)));
     let arrays = Assembled { has_inverted, may_cross, clean_up_stopped, flattening, ..arrays };
-    Ok(Evaluated { arrays, walls_left: sums.declined })
+    Ok(Some(Evaluated { arrays, walls_left: sums.declined }))
 }
 
 /// Whether two faces that cross lie in one plane, but for an angle that rounding can have made.
@@ -242,5 +258,13 @@ fn assemble(shape: &Shape<'_>, pieces: &[Piece], replaced: Option<&BitSet>) -> A
     for piece in pieces {
         add(piece.corners, FaceId::new(piece.origin.triangle), piece.origin.reversed);
     }
-    Assembled { positions, triangles, origins, ..Assembled::default() }
+    let faces = pieces.iter().map(|piece| (FaceId::new(piece.origin.triangle), piece.origin.reversed));
+    let origin = |(face, reversed)| Origin {
+        operand: surfaces.owner(face),
+        triangle: surfaces.triangle(face),
+        reversed,
+    };
+    let mut cut: Vec<Origin> = faces.map(origin).collect();
+    cut.dedup();
+    Assembled { positions, triangles, origins, cut, ..Assembled::default() }
 }

@@ -155,6 +155,7 @@ impl Arranged<'_> {
         };
         let made = Made {
             may_cross: arrays.may_cross,
+            cut: arrays.cut,
             origins: arrays.origins,
             groups: FaceGroups { list: self.groups.list.clone(), of_triangle },
             solid,

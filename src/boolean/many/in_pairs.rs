@@ -16,7 +16,7 @@ use crate::boolean::complex::origin::Origin;
 use crate::boolean::pair::{self, Attributed, Combined, Settings};
 use crate::boolean::result::certificate::{Notes, OperandState};
 use crate::boolean::result::inverted::count_inverted;
-use crate::boolean::result::origins::Origins;
+use crate::boolean::result::origins::{Origins, Sequence};
 use crate::boolean::result::outcome::Outcome;
 use crate::boolean::tidy::Flattening;
 use crate::mesh::FaceGroups;
@@ -33,6 +33,8 @@ struct Partial<'a> {
     origins: Origins,
     /// The result's group of each triangle; empty if no operand has groups.
     groups: Vec<u32>,
+    /// The operands' faces that were cut on the way, some several times.
+    cut: Vec<Origin>,
     /// How many decisions on the way plain coordinates left open.
     contacts: u64,
     /// Whether rounding turned over some triangle on the way.
@@ -51,6 +53,7 @@ impl<'a> Partial<'a> {
             solid,
             origins,
             groups,
+            cut: Vec::new(),
             contacts: 0,
             may_be_inverted: false,
             may_cross: false,
@@ -134,6 +137,7 @@ pub(super) fn run(
     let is_clean = policy.contact == Contact::Fuse && operands.iter().all(|solid| solid.is_known_clean());
     let made = Made {
         may_cross: result.may_cross,
+        cut: result.cut,
         origins: result.origins,
         groups: FaceGroups { list: groups.list, of_triangle: result.groups },
         solid: result.solid.into_owned(),
@@ -249,11 +253,19 @@ impl Engine<'_> {
                 .map(|origin| sources[origin.operand as usize].groups[origin.triangle as usize])
                 .collect()
         };
+        let cut = if self.policy.embed == Embed::NearCut {
+            let sources = [&a.origins, &b.origins].map(Sequence::new);
+            let of_operand = |origin: &Origin| sources[origin.operand as usize].at(origin.triangle);
+            a.cut.iter().chain(&b.cut).copied().chain(made.cut.iter().map(of_operand)).collect()
+        } else {
+            Vec::new()
+        };
         let origins = made.origins.compose(&[&a.origins, &b.origins]);
         Ok(Partial {
             solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(made.positions, made.triangles))),
             origins,
             groups,
+            cut,
             contacts: a.contacts + b.contacts + contacts,
             may_be_inverted: a.may_be_inverted || b.may_be_inverted || made.has_inverted,
             may_cross: a.may_cross || b.may_cross || made.may_cross,

@@ -1,6 +1,6 @@
 //! The last step of every result: crossings that rounding made are resolved, and the outcome is put together.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::policy::{Embed, Policy};
 use crate::boolean::arrangement::self_crossings::pairs_if_crossing_at;
@@ -10,7 +10,7 @@ use crate::boolean::result::attributes::carried;
 use crate::boolean::result::certificate::Notes;
 use crate::boolean::result::origins::{Origins, is_as_given};
 use crate::boolean::result::outcome::Outcome;
-use crate::mesh::{FaceGroups, Mesh, Polygons};
+use crate::mesh::{FaceGroups, Mesh, Polygons, SelfCrossings};
 use crate::parallel::Runner;
 use crate::{Error, Solid};
 
@@ -22,6 +22,8 @@ pub(in crate::boolean) struct Made {
     pub(in crate::boolean) notes: Notes,
     /// Whether rounding may have made something cross.
     pub(in crate::boolean) may_cross: bool,
+    /// The operands' faces that were cut on the way, some several times, where the rest may be looked at less closely.
+    pub(in crate::boolean) cut: Vec<Origin>,
     /// Whether it is known to cross itself no deeper than rounding.
     pub(in crate::boolean) is_clean: bool,
 }
@@ -41,7 +43,7 @@ impl Made {
             }
             // (What is not known to be clean could be resolved by this where it is not asked for.)
             Embed::NearCut if self.is_clean => {
-                let changed = changed(&self.origins, self.solid.mesh(), operands);
+                let changed = changed(&self.origins, &self.cut, self.solid.mesh(), operands);
                 self.notes.embedding = Some(Embedding::default());
                 if let Some(near) = pairs_if_crossing_at(&self.solid, &changed, runner)? {
                     // (Elsewhere operands that cross themselves by a rounding do so here, too.)
@@ -100,11 +102,13 @@ impl Made {
 
 /// Whether it is known of a solid that it crosses itself nowhere, not even by a rounding.
 fn crosses_nowhere(solid: &Solid) -> bool {
-    solid.known_self_crossings().is_some_and(|known| known.is_simple() && known.tolerated == 0)
+    solid.known_self_crossings().is_some_and(SelfCrossings::has_nothing)
 }
 
-/// For each triangle of a result whether it is no triangle of an operand as it was.
-fn changed(origins: &Origins, mesh: &Mesh, operands: &[&Solid]) -> Vec<bool> {
+/// For each triangle of a result whether it is no triangle of an operand as it was, or comes of one that was cut: what was thinner than rounding
+/// is cleaned up, so that it may be what it was again, and what crossed it crosses it still.
+fn changed(origins: &Origins, cut: &[Origin], mesh: &Mesh, operands: &[&Solid]) -> Vec<bool> {
+    let cut: FxHashSet<(u32, u32)> = cut.iter().map(|origin| (origin.operand, origin.triangle)).collect();
     let corners = |mesh: &Mesh, t: usize| mesh.triangles[t].map(|v| mesh.positions[v as usize]);
     let mut changed = Vec::with_capacity(mesh.triangles.len());
     for (origin, count, whole) in origins.stretches() {
@@ -115,7 +119,8 @@ fn changed(origins: &Origins, mesh: &Mesh, operands: &[&Solid]) -> Vec<bool> {
                 let first = changed.len();
                 changed.extend((0..count).map(|i| {
                     let source = corners(given, origin.triangle as usize + i);
-                    !is_as_given(corners(mesh, first + i), source, origin.reversed)
+                    cut.contains(&(origin.operand, origin.triangle + i as u32))
+                        || !is_as_given(corners(mesh, first + i), source, origin.reversed)
                 }));
             }
         }

@@ -21,6 +21,8 @@ pub(crate) struct Assembled {
     pub(crate) positions: Vec<[f64; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,
     pub(crate) origins: Origins,
+    /// The faces that were cut, or changed since: of some, pieces may have become the whole again. A face may be there several times.
+    pub(crate) cut: Vec<Origin>,
     /// Whether rounding turned over some triangle.
     pub(crate) has_inverted: bool,
     /// Whether rounding may have made something cross: some new triangle is no higher than rounding, or was turned over.
@@ -41,7 +43,9 @@ impl Assembled {
             let clean_up_stopped = self.clean_up_stopped + other.clean_up_stopped;
             let may_cross = self.may_cross || other.may_cross;
             let flattening = self.flattening.beside(other.flattening);
-            return Ok(Self { clean_up_stopped, may_cross, flattening, ..other });
+            let mut cut = self.cut;
+            cut.extend(other.cut);
+            return Ok(Self { cut, clean_up_stopped, may_cross, flattening, ..other });
         }
         let vertices = self.positions.len() + other.positions.len();
         if vertices > u32::MAX as usize {
@@ -51,6 +55,7 @@ impl Assembled {
         self.positions.extend(other.positions);
         self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|v| v + offset)));
         self.origins.append(other.origins);
+        self.cut.extend(other.cut);
         self.has_inverted |= other.has_inverted;
         self.may_cross |= other.may_cross;
         self.clean_up_stopped += other.clean_up_stopped;
@@ -97,7 +102,9 @@ impl Assembly<'_> {
         let mut positions = numbers.into_positions();
         shrink(&mut positions);
         shrink(&mut triangles);
-        Ok(Assembled { positions, triangles, origins, ..Assembled::default() })
+        let mut cut: Vec<Origin> = self.new.iter().map(|triangle| triangle.origin).collect();
+        cut.dedup();
+        Ok(Assembled { positions, triangles, origins, cut, ..Assembled::default() })
     }
 
     /// Numbers the points in use: A's, B's, nodes, added points.

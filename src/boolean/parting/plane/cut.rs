@@ -233,6 +233,7 @@ impl Cut<'_> {
             groups,
             notes,
             may_cross: inverted > 0 || !cap.is_simple,
+            cut: Vec::new(),
             is_clean: self.solid.is_known_clean(),
         };
         // (The cap comes from no triangle; what it shows is given to it at the end.)
