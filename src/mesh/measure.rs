@@ -239,7 +239,7 @@ pub(super) fn signed_volume_and_sight(
     let framed = Framed::new(positions, triangles, bounds);
     let off = difference(star.point, framed.origin);
     let (sum, bound, parts) = framed.determinant_sum_seen(off, |sight, triangle, faces_outward| {
-        star.look(sight, triangle, faces_outward)
+        star.look(sight, triangle, faces_outward);
     });
     // (Of very large and very small bodies the frame has other coordinates.)
     let is_star = framed.scale == 1.0 && Sight::of_all(parts).is_whole(triangles.len(), positions.len());

@@ -319,7 +319,6 @@ mod tests {
                     !less(a, d) && !less(d, a) || !less(c, b) && !less(b, c)
                 }));
         }
-        println!("{crossing} cross, {touching} touch end to end");
         assert!(crossing > 2_000 && touching > 200, "{crossing} {touching}");
     }
 }
