@@ -63,7 +63,7 @@ pub(crate) struct Parts {
 }
 
 /// How it is tried, one after the other, what moves points least first. Of 280,000 results of random bodies on coarse grids, turned and not, rounded to either grid, 10,000 have
-/// crossings; the first manner leaves some in 50 of these, all that do not shake in 4, and all together in none.
+/// crossings; all manners that do not shake leave some in 4 of these, and all together in none. (The first alone does in 17 of the 2,800 of 80,000.)
 const MANNERS: [Manner; 9] = [
     // Rounds on the grid as it is nearly always do.
     Manner { kept_from: 3, coarser_from: 7, most_bits: 6, shakes: None },
