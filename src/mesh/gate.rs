@@ -134,7 +134,8 @@ impl Gate {
         self
     }
 
-    /// Makes a solid of a mesh. A few nanoseconds a triangle where it is closed by its indices; O(n log n) otherwise.
+    /// Makes a solid of a mesh. A few nanoseconds a triangle where it is closed by its indices; O(n log n) otherwise. (That a surface of
+    /// which one point sees every point once is closed, a sum of hashes of its edges tells, wrong by a chance of one in 2^64; of all others it is exact.)
     ///
     /// # Errors
     /// The mesh, unchanged, with
