@@ -76,6 +76,10 @@ pub(super) fn orient3d_exact(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64;
         return Sign::Zero;
     }
     let points = [a, b, c, d];
+    // In a plane along an axis, above one another in pairs: the commonest tie of extruded bodies.
+    if (0..3).any(|axis| are_above_two_places(&points, axis)) {
+        return Sign::Zero;
+    }
     let lattice = || Lattice::of(points.into_iter().flatten());
     let has_small = !points.iter().any(|point| has_many_bits(*point));
     if let Some(lattice) = has_small.then(lattice).filter(|lattice| lattice.is_small()) {
@@ -101,6 +105,14 @@ pub(super) fn orient3d_exact(a: &[f64; 3], b: &[f64; 3], c: &[f64; 3], d: &[f64;
         std::array::from_fn(|k| lattice.integer(p[k]).minus(&lattice.integer(d[k])))
     };
     Sign::of_i32(determinant(&row(a), &row(b), &row(c)).signum())
+}
+
+/// Whether points seen along an axis are at two places at most.
+fn are_above_two_places(points: &[&[f64; 3]; 4], axis: usize) -> bool {
+    let place = |point: &[f64; 3]| [point[(axis + 1) % 3], point[(axis + 2) % 3]];
+    let first = place(points[0]);
+    let mut others = points[1..].iter().map(|point| place(point)).filter(|&other| other != first);
+    others.next().is_none_or(|second| others.all(|other| other == second))
 }
 
 /// The sign in twice the precision, where that tells: for nearly all points that are off a plane by rounding alone, a tenth of
@@ -259,6 +271,35 @@ mod tests {
         }
         assert!(zeros > 300, "the sample must hold ties: {zeros}");
         assert!(decided > 10_000, "the filter must decide most: {decided}");
+    }
+
+    #[test]
+    fn points_above_two_places_are_in_one_plane() {
+        let mut rng = ChaCha8Rng::seed_from_u64(16);
+        for round in 0..3_000 {
+            let (kind, axis) = (round % 8, round as usize % 3);
+            let places: [[f64; 2]; 2] =
+                std::array::from_fn(|_| std::array::from_fn(|_| wild(&mut rng, kind)));
+            let [a, b, c, d]: [[f64; 3]; 4] = std::array::from_fn(|i| {
+                let [x, y] = places[i % 2];
+                let mut point = [0.0; 3];
+                (point[axis], point[(axis + 1) % 3], point[(axis + 2) % 3]) = (wild(&mut rng, kind), x, y);
+                point
+            });
+            let orders = [[&a, &b, &c, &d], [&a, &c, &b, &d], [&b, &d, &c, &a]];
+            for [a, b, c, d] in orders {
+                assert_eq!(orient3d(a, b, c, d), Sign::Zero, "{a:?} {b:?} {c:?} {d:?}");
+                assert!(are_above_two_places(&[a, b, c, d], axis));
+            }
+            // One of them elsewhere: no plane, unless by chance.
+            let mut away = d;
+            away[(axis + 1) % 3] = wild(&mut rng, kind);
+            assert_eq!(
+                orient3d(&a, &b, &c, &away),
+                reference([&a, &b, &c, &away]),
+                "{a:?} {b:?} {c:?} {away:?}"
+            );
+        }
     }
 
     #[test]

@@ -41,6 +41,18 @@ impl Bounds {
         }
     }
 
+    /// Which sides a point lies beyond by more than `reach`, a bit for each of the six. A triangle is further than that from the box, along
+    /// some axis, iff its corners have a side in common.
+    #[inline]
+    pub(crate) fn sides_beyond(&self, point: &[f64; 3], reach: f64) -> u8 {
+        let mut sides = 0;
+        for axis in 0..3 {
+            sides |= u8::from(point[axis] < self.low[axis] - reach) << (2 * axis);
+            sides |= u8::from(point[axis] > self.high[axis] + reach) << (2 * axis + 1);
+        }
+        sides
+    }
+
     /// The smallest box that contains both.
     #[must_use]
     pub fn union(mut self, other: &Self) -> Self {
@@ -100,6 +112,15 @@ mod tests {
         assert_eq!(bounds.size(), [1.0, 6.0, 0.0]);
         assert_eq!(bounds.center(), [0.5, 1.0, 0.5]);
         assert!(bounds.contains(&bounds));
+    }
+
+    #[test]
+    fn sides_tell_what_is_beyond_a_box() {
+        let bounds = Bounds { low: [0.0; 3], high: [1.0, 2.0, 3.0] };
+        let sides = |point, reach| bounds.sides_beyond(&point, reach);
+        assert_eq!((sides([0.5, 1.0, 1.0], 0.0), sides([0.0, 2.0, 3.0], 0.0)), (0, 0));
+        assert_eq!((sides([-0.5, 3.0, 1.0], 0.0), sides([1.0, 1.0, 3.5], 0.0)), (0b1001, 0b100000));
+        assert_eq!((sides([-0.5, 3.0, 1.0], 0.75), sides([1.0, 1.0, 3.5], 0.5)), (0b1000, 0));
     }
 
     #[test]

@@ -13,12 +13,22 @@
 
 use std::ops::Range;
 
+use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
+use super::BitSet;
 use crate::parallel::{map, piece_count, ranges};
 
 /// Vertices from which a thread of its own is worth it: some tenths of a millisecond.
 const VERTICES_PER_THREAD: usize = 1 << 14;
+
+/// Where the surface of a result may hang together in another way than its operands do: at the corners of the triangles from some number on,
+/// and at some other vertices. All other vertices have all triangles that they have in an operand, in one fan.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Changed {
+    pub(crate) from: usize,
+    pub(crate) vertices: Vec<u32>,
+}
 
 /// What the links of the vertices of a set of triangles are like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,6 +87,29 @@ impl Links {
         Ok(links)
     }
 
+    /// The same for a surface of which most is known. All corners must be in range and differ, and all vertices in use. A pass over the triangles,
+    /// of a nanosecond or two each, and a look around the vertices that changed.
+    pub(super) fn of_changed(triangles: &[[u32; 3]], vertices: usize, changed: &Changed) -> Self {
+        let mut has_changed = BitSet::new(vertices);
+        let corners = triangles[changed.from..].iter().flatten();
+        corners.chain(&changed.vertices).for_each(|&v| has_changed.insert(v));
+        let is_around = |corners: &&[u32; 3]| corners.iter().any(|&v| has_changed.contains(v));
+        let around: Vec<[u32; 3]> = triangles.iter().filter(is_around).copied().collect();
+        let mut numbers: FxHashMap<u32, usize> = FxHashMap::default();
+        for vertex in has_changed.iter() {
+            numbers.insert(vertex, numbers.len());
+        }
+        let count = numbers.len();
+        let number = |vertex: u32| numbers.get(&vertex).copied().unwrap_or(count);
+        let mut links = Self::of_ball(vertices - count);
+        for link in LinkLists::of(around.iter().copied(), count, number).each() {
+            if !links.add(link.len(), cycles(link)) {
+                break;
+            }
+        }
+        links
+    }
+
     /// The same for some of the vertices; `None` where a triangle names one that is not there.
     fn of_range(triangles: &[[u32; 3]], vertices: usize, range: Range<usize>) -> Option<Self> {
         // 1. All edges, where a vertex has few.
@@ -105,6 +138,11 @@ impl Links {
             }
         }
         Some(links)
+    }
+
+    /// Whether both say the same, where they say anything.
+    pub(super) fn agrees(&self, other: &Self) -> bool {
+        self == other || !(self.edge_manifold || other.edge_manifold)
     }
 
     /// Adds the link of a vertex with so many triangles, which is so many cycles; false where it is none.

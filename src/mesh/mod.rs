@@ -55,6 +55,7 @@ pub(crate) use attributes::moved as move_attributes;
 pub(crate) use attributes::of_pieces as attributes_of_pieces;
 pub use attributes::{Attribute, AttributeKind};
 pub(crate) use attributes::{CornerPlace, Descent, Run, carry, continues, reach};
+pub(crate) use links::Changed;
 use links::Links;
 
 pub(crate) use bit_set::BitSet;

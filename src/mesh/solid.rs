@@ -8,7 +8,8 @@ use super::measure::{area, signed_volume};
 use super::patches::Patches;
 use super::topology::{self, Shape};
 use super::{
-    Attribute, Bounds, FaceGroup, FaceGroups, Fault, Links, Mending, Mesh, Polygons, SelfCrossings, chain,
+    Attribute, Bounds, Changed, FaceGroup, FaceGroups, Fault, Links, Mending, Mesh, Polygons, SelfCrossings,
+    chain,
 };
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
@@ -61,6 +62,8 @@ pub struct Solid {
     pub(super) area: OnceLock<f64>,
     /// How the triangles around each vertex hang together.
     pub(super) links: OnceLock<Links>,
+    /// Around which vertices that is not known.
+    pub(super) changed: Option<Changed>,
     pub(super) shape: OnceLock<Shape>,
     pub(super) self_crossings: OnceLock<SelfCrossings>,
     /// Pairs of triangles that may cross or lie on each other, where these are no more than triangles.
@@ -110,6 +113,11 @@ impl Solid {
             debug_assert!(mesh.positions.iter().flatten().all(|x| x.is_finite()), "not finite");
         }
         Self { bounds: Bounds::of(&mesh.positions), mesh, ..Self::default() }
+    }
+
+    /// The same given how it hangs together but for what has changed.
+    pub(crate) fn from_changed_unchecked(mesh: Mesh, changed: Option<Changed>) -> Self {
+        Self { changed, ..Self::from_closed_unchecked(mesh) }
     }
 
     /// The mesh.
@@ -336,9 +344,22 @@ impl Solid {
     }
 
     fn links(&self) -> &Links {
+        let (triangles, vertices) = (&self.mesh.triangles, self.mesh.positions.len());
         // A solid's corners are all in range.
-        let compute = || Links::of(&self.mesh.triangles, self.mesh.positions.len()).unwrap_or(Links::UNKNOWN);
-        self.links.get_or_init(compute)
+        let look = || Links::of(triangles, vertices).unwrap_or(Links::UNKNOWN);
+        self.links.get_or_init(|| match &self.changed {
+            Some(changed) => {
+                let links = Links::of_changed(triangles, vertices, changed);
+                debug_assert!(look().agrees(&links), "{links:?}, not {:?}", look());
+                links
+            }
+            None => look(),
+        })
+    }
+
+    /// Whether it is known that it is a 2-manifold without two triangles on the same vertices.
+    pub(crate) fn is_known_simple_complex(&self) -> bool {
+        self.links.get().is_some() && self.is_simple_complex()
     }
 
     fn shape(&self) -> &Shape {

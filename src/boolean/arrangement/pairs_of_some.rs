@@ -1,7 +1,5 @@
 //! Pairs of triangles of one surface of which one is among some: those that an operation made, or that have moved.
 
-use obvhs::aabb::Aabb;
-
 use super::neighbours::Neighbours;
 use super::self_pairs::self_pairs;
 use crate::mesh::Bounds;
@@ -14,10 +12,12 @@ use crate::{Error, Mesh};
 const MANY: usize = 8;
 /// Triangles that one thread compares with boxes before the limits are checked.
 const TRIANGLES_AT_ONCE: usize = 1 << 14;
+/// The same for vertices.
+const VERTICES_AT_ONCE: usize = 1 << 16;
 
 /// The pairs of triangles of a closed surface, the lower one first, that may cross or lie on each other and of which at least one is
-/// among `some`, in order; `bounds` are those of all. Takes a pass over all triangles, of some tens of nanoseconds each in the box of
-/// those; where many are asked for, a walk over all.
+/// among `some`, in order; `bounds` are those of all. Takes a pass over all vertices and triangles, of some tens of nanoseconds for each in the
+/// box of those; where many are asked for, a walk over all.
 ///
 /// # Errors
 /// Only limits.
@@ -48,17 +48,27 @@ pub(super) fn pairs_with(
     let beside = (0..).zip(&mesh.triangles).filter(|(_, corners)| is_beside(corners)).map(|(t, _)| t);
     let beside: Vec<u32> = beside.collect();
     let neighbours = Neighbours::new(mesh, bounds.largest(), is_other, &beside);
-    // 2. Whose boxes meet theirs.
+    // 2. Vertices beyond sides of the box around all of those: nearly all triangles are wholly beyond one.
+    let corners = chosen.iter().flat_map(|&t| mesh.triangles[t as usize]);
+    let all = Bounds::of(corners.map(|v| &mesh.positions[v as usize])).unwrap_or(Bounds::NOTHING);
+    let mut beyond = vec![0u8; mesh.positions.len()];
+    runner.fill(&mut beyond, VERTICES_AT_ONCE, |first, sides| {
+        let positions = &mesh.positions[first..];
+        sides
+            .iter_mut()
+            .zip(positions)
+            .for_each(|(sides, position)| *sides = all.sides_beyond(position, 0.0));
+    })?;
+    // 3. Whose boxes meet theirs.
     let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
     let tree = BoxTree::new(&chosen, box_of);
-    let all = chosen.iter().map(|&t| box_of(t)).reduce(|a, b| a.union(&b)).unwrap_or(Aabb::INVALID);
     let mut pairs = runner.gather(mesh.triangles.len(), TRIANGLES_AT_ONCE, 0, |range, found| {
         for t in range.map(|t| t as u32) {
-            let own = box_of(t);
-            if !own.intersect_aabb(&all) {
+            let [a, b, c] = mesh.triangles[t as usize].map(|v| beyond[v as usize]);
+            if a & b & c != 0 {
                 continue;
             }
-            tree.meeting(&own, |other| {
+            tree.meeting(&box_of(t), |other| {
                 // Of two that are both among them, once.
                 let pair = [t.min(other), t.max(other)];
                 if t != other && (t < other || !some[t as usize]) && neighbours.may_meet(pair) {

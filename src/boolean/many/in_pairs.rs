@@ -261,8 +261,10 @@ impl Engine<'_> {
             Vec::new()
         };
         let origins = made.origins.compose(&[&a.origins, &b.origins]);
+        let changed = made.changed.filter(|_| [a, b].iter().all(|of| of.solid.is_known_simple_complex()));
+        let mesh = Mesh::new(made.positions, made.triangles);
         Ok(Partial {
-            solid: Cow::Owned(Solid::from_closed_unchecked(Mesh::new(made.positions, made.triangles))),
+            solid: Cow::Owned(Solid::from_changed_unchecked(mesh, changed)),
             origins,
             groups,
             cut,

@@ -12,7 +12,7 @@ use crate::boolean::cut::piece::Piece;
 use crate::boolean::result::numbers::Numbers;
 use crate::boolean::result::origins::{Kept, Origins};
 use crate::boolean::tidy::Flattening;
-use crate::mesh::BitSet;
+use crate::mesh::{BitSet, Changed};
 use crate::parallel::{Runner, parts, ranges};
 
 /// The arrays of a result.
@@ -23,6 +23,8 @@ pub(crate) struct Assembled {
     pub(crate) origins: Origins,
     /// The faces that were cut, or changed since: of some, pieces may have become the whole again. A face may be there several times.
     pub(crate) cut: Vec<Origin>,
+    /// Where the surface hangs together in another way than those of the operands; `None` where that is not known.
+    pub(crate) changed: Option<Changed>,
     /// Whether rounding turned over some triangle.
     pub(crate) has_inverted: bool,
     /// Whether rounding may have made something cross: some new triangle is no higher than rounding, or was turned over.
@@ -56,6 +58,7 @@ impl Assembled {
         self.triangles.extend(other.triangles.iter().map(|corners| corners.map(|v| v + offset)));
         self.origins.append(other.origins);
         self.cut.extend(other.cut);
+        self.changed = None;
         self.has_inverted |= other.has_inverted;
         self.may_cross |= other.may_cross;
         self.clean_up_stopped += other.clean_up_stopped;
@@ -95,6 +98,7 @@ impl Assembly<'_> {
         } else {
             self.whole(&numbers, runner)?
         };
+        let changed = self.changed(&numbers, triangles.len());
         for triangle in self.new {
             triangles.push(triangle.corners.map(|point| numbers.of(point)));
             origins.push(triangle.origin);
@@ -104,7 +108,19 @@ impl Assembly<'_> {
         shrink(&mut triangles);
         let mut cut: Vec<Origin> = self.new.iter().map(|triangle| triangle.origin).collect();
         cut.dedup();
-        Ok(Assembled { positions, triangles, origins, cut, ..Assembled::default() })
+        Ok(Assembled { positions, triangles, origins, cut, changed, ..Assembled::default() })
+    }
+
+    /// Where the surface hangs together in another way than those of the operands, after so many whole triangles, where each is there at most
+    /// once.
+    ///
+    /// Around every other vertex there are whole triangles alone, and all of those that there are in an operand: the result is closed, and of a
+    /// fan that is closed no part is. (The vertex stands for no other.)
+    fn changed(&self, numbers: &Numbers, whole: usize) -> Option<Changed> {
+        let identified = self.body.arrangement.identification.identified();
+        let vertices = identified.map(|point| numbers.of(point)).filter(|&number| number != Numbers::NONE);
+        let is_known = self.body.parts.iter().all(|&part| self.is_simple(part, numbers));
+        is_known.then(|| Changed { from: whole, vertices: vertices.collect() })
     }
 
     /// Numbers the points in use: A's, B's, nodes, added points.

@@ -7,12 +7,12 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::boolean::complex::origin::Origin;
 use crate::boolean::complex::planes::unit_normal;
+use crate::boolean::result::origins::Origins;
 use crate::exact::at_hand::largest_coordinate;
 use crate::exact::{Projection, Sign, orient2d, orient3d};
 use crate::mesh::Bounds;
-use crate::parallel::{Runner, map};
+use crate::parallel::{Runner, map, map_chunks};
 use crate::spatial::{BoxTree, Frame, visit_pairs};
 use crate::{Control, Mesh};
 
@@ -53,10 +53,13 @@ pub struct NearContacts {
 }
 
 impl NearContacts {
-    /// Of a result with the origin of each triangle. O(n) to find out where the parts of the operands are, O(k log k) for the k
+    /// Of a result with the origins of its triangles. O(n) to find out where the parts of the operands are, O(k log k) for the k
     /// triangles where they may be near one another.
-    pub(crate) fn find(mesh: &Mesh, origins: impl Iterator<Item = Origin>) -> Self {
-        let operands: Vec<u32> = origins.map(|origin| origin.operand).collect();
+    pub(crate) fn find(mesh: &Mesh, origins: &Origins) -> Self {
+        let mut operands: Vec<u32> = Vec::with_capacity(mesh.triangles.len());
+        for (origin, count, _) in origins.stretches() {
+            operands.resize(operands.len() + count as usize, origin.operand);
+        }
         let Some(region) = Region::of(mesh, &operands) else { return Self::default() };
         let mut found = region.pairs().unwrap_or_default();
         // One for each corner, the nearest.
@@ -96,6 +99,14 @@ fn boxes_of_operands(mesh: &Mesh, operands: &[u32], count: usize) -> Vec<Bounds>
     parts.into_iter().reduce(unite).unwrap_or_else(|| vec![Bounds::NOTHING; count])
 }
 
+/// For each vertex which sides of a box it lies beyond by more than `reach`.
+fn sides_beyond(of: &Bounds, reach: f64, mesh: &Mesh) -> Vec<u8> {
+    map_chunks(&mesh.positions, CHUNK, |positions| {
+        positions.iter().map(|position| of.sides_beyond(position, reach)).collect::<Vec<u8>>()
+    })
+    .concat()
+}
+
 /// The triangles of a result that may be near one of another operand.
 struct Region<'a> {
     mesh: &'a Mesh,
@@ -113,26 +124,24 @@ impl<'a> Region<'a> {
         // 1. The boxes of what is left of the operands.
         let count = 1 + *operands.iter().max()? as usize;
         let boxes = boxes_of_operands(mesh, operands, count);
-        // 2. Where two of them meet.
-        let meet = |x: &Bounds, y: &Bounds, reach: f64| {
-            (0..3).all(|k| x.low[k] - reach <= y.high[k] && y.low[k] - reach <= x.high[k])
-        };
-        let used: Vec<&Bounds> = boxes.iter().filter(|of| of.low[0] <= of.high[0]).collect();
+        let has_any = |k: &usize| boxes[*k].low[0] <= boxes[*k].high[0];
+        let used: Vec<usize> = (0..count).filter(has_any).collect();
         if used.len() < 2 {
             return None;
         }
-        let whole = used.iter().fold(Bounds::NOTHING, |sum, of| sum.union(of));
+        // 2. How near is near.
+        let whole = used.iter().fold(Bounds::NOTHING, |sum, &k| sum.union(&boxes[k]));
         let extent = (0..3).fold(0.0f64, |extent, k| extent.max(0.5 * whole.high[k] - 0.5 * whole.low[k]));
         let reach = (SINGLE * whole.largest()).min(2.0 * PART_OF_REGION * extent);
-        // 3. The triangles there. (Of many operands, each is near some other.)
+        // 3. The triangles in reach of another's box, wholly beyond none of its sides. (Of many operands, each is near some other.)
+        let are_many = used.len() > FEW_OPERANDS;
+        let few: &[usize] = if are_many { &[] } else { &used };
+        let sides: Vec<Vec<u8>> = few.iter().map(|&k| sides_beyond(&boxes[k], reach, mesh)).collect();
         let is_near = |t: usize| {
-            let corners = mesh.triangles[t].map(|v| &mesh.positions[v as usize]);
-            let own = corners.iter().fold(Bounds::NOTHING, |mut sum, corner| {
-                sum.include(corner);
-                sum
-            });
-            let others = boxes.iter().enumerate().filter(|(k, _)| *k != operands[t] as usize);
-            used.len() > FEW_OPERANDS || others.clone().any(|(_, other)| meet(&own, other, reach))
+            let [a, b, c] = mesh.triangles[t].map(|v| v as usize);
+            let is_in_reach = |sides: &Vec<u8>| sides[a] & sides[b] & sides[c] == 0;
+            let mut others = few.iter().zip(&sides).filter(|(k, _)| **k != operands[t] as usize);
+            are_many || others.any(|(_, sides)| is_in_reach(sides))
         };
         let mut triangles = vec![Vec::new(); count];
         (0..mesh.triangles.len())

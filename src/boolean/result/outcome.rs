@@ -161,7 +161,7 @@ impl Outcome {
     /// parts of different operands are near one another.
     #[must_use]
     pub fn nearly_flush(&self) -> &NearContacts {
-        self.nearly_flush.get_or_init(|| NearContacts::find(self.solid.mesh(), self.origins.iter()))
+        self.nearly_flush.get_or_init(|| NearContacts::find(self.solid.mesh(), &self.origins))
     }
 
     /// [`Certificate::operands`] alone: known without any work.
