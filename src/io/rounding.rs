@@ -1,12 +1,15 @@
 //! What rounding to single precision does to a mesh: what the file holds against what was to be written.
 
+use std::borrow::Cow;
+
 use rustc_hash::FxHashMap;
 
 use super::{Format, Precision, WriteOptions, unsupported};
 use crate::exact::collinear;
-use crate::mesh::{enclosed_volume, is_closed};
-use crate::parallel;
-use crate::spatial::{Film, lost_films};
+use crate::mesh::star::mixed;
+use crate::mesh::{BitSet, Bounds, enclosed_volume_within, is_closed};
+use crate::parallel::{self, read_ahead};
+use crate::spatial::{Film, lost_films, radix_sort};
 use crate::{Error, Mesh};
 
 /// How far the volume of the file may be from that of the mesh, relative to it, without a warning. Rounding each coordinate
@@ -15,6 +18,8 @@ use crate::{Error, Mesh};
 const VOLUME_TOLERANCE: f64 = 1e-5;
 /// Where coordinates are larger than this many times the model, moving it to the origin makes steps finer that much.
 const FAR: f64 = 2.0;
+/// Triangles whose corners are read ahead.
+const RUN: usize = 16;
 /// Below this ratio of doubled area to the product of two sides, whether corners are on a line is decided exactly.
 const THIN: f64 = 1e-9;
 
@@ -137,11 +142,19 @@ pub(super) struct Measure {
 impl Measure {
     /// Coordinates as they are.
     pub(super) const PLAIN: Self = Self { offset: [0.0; 3], scale: 1.0 };
+
+    fn is_plain(self) -> bool {
+        self.offset == [0.0; 3] && self.scale == 1.0
+    }
 }
 
 /// Refuses a mesh whose coordinates are beyond single precision, and says what rounding does to it.
 pub(super) fn of_single(mesh: &Mesh, format: Format, options: &WriteOptions) -> Result<Written, Error> {
-    let largest = mesh.positions.as_flattened().iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+    let (mut largest, mut is_held) = (0.0_f64, true);
+    for &x in mesh.positions.as_flattened() {
+        largest = largest.max(x.abs());
+        is_held &= f64::from(x as f32) == x;
+    }
     if !(largest as f32).is_finite() {
         return Err(unsupported(
             format,
@@ -150,7 +163,7 @@ pub(super) fn of_single(mesh: &Mesh, format: Format, options: &WriteOptions) -> 
             ),
         ));
     }
-    if mesh.positions.as_flattened().iter().all(|&x| f64::from(x as f32) == x) {
+    if is_held {
         return Ok(Written::default());
     }
     examined(mesh, format, Measure::PLAIN, options)
@@ -179,8 +192,20 @@ pub(super) fn examined(
 struct Examination<'a> {
     mesh: &'a Mesh,
     measure: Measure,
-    before: Vec<[f64; 3]>,
+    before: Cow<'a, [[f64; 3]]>,
     after: Vec<[f64; 3]>,
+    /// The vertices that are elsewhere after it.
+    moved: BitSet,
+    /// The largest absolute value of a coordinate after it.
+    largest: f64,
+    /// The most that a coordinate was moved by.
+    largest_shift: f64,
+}
+
+/// A point in single precision.
+#[inline]
+fn rounded(point: &[f64; 3]) -> [f64; 3] {
+    point.map(|x| f64::from(x as f32))
 }
 
 impl<'a> Examination<'a> {
@@ -188,31 +213,60 @@ impl<'a> Examination<'a> {
         let _reservation = options.control.reserve(48 * mesh.positions.len() as u64)?;
         let unit = measure.scale.recip();
         let local = |point: &[f64; 3]| [0, 1, 2].map(|k| (point[k] - measure.offset[k]) * unit);
-        let before: Vec<[f64; 3]> = mesh.positions.iter().map(local).collect();
-        let after = before.iter().map(|point| point.map(|x| f64::from(x as f32))).collect();
-        Ok(Self { mesh, measure, before, after })
+        let before: Cow<'_, [[f64; 3]]> = if measure.is_plain() {
+            (&*mesh.positions).into()
+        } else {
+            mesh.positions.iter().map(local).collect()
+        };
+        let mut after = Vec::with_capacity(before.len());
+        let mut moved = BitSet::new(before.len());
+        let (mut largest, mut largest_shift) = (0.0_f64, 0.0_f64);
+        for (v, point) in (0..).zip(&*before) {
+            let rounded = rounded(point);
+            for k in 0..3 {
+                largest = largest.max(rounded[k].abs());
+                largest_shift = largest_shift.max((point[k] - rounded[k]).abs());
+            }
+            if rounded != *point {
+                moved.insert(v);
+            }
+            after.push(rounded);
+        }
+        Ok(Self { mesh, measure, before, after, moved, largest, largest_shift })
+    }
+
+    /// The distance of neighbouring numbers at the largest coordinate: each is moved by half of it at most.
+    fn step(&self) -> f64 {
+        f64::from((self.largest as f32).next_up()) - self.largest
     }
 
     fn rounding(&self, options: &WriteOptions) -> Result<Rounding, Error> {
-        let Self { mesh, measure, before, after } = self;
-        let scale = measure.scale;
-        let largest = after.as_flattened().iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let step = f64::from((largest as f32).next_up()) - largest;
-        let shifts = before.as_flattened().iter().zip(after.as_flattened()).map(|(x, y)| (x - y).abs());
-        let largest_shift = shifts.fold(0.0, f64::max);
-        let bounds = mesh.bounds();
-        let size = bounds.map_or(0.0, |bounds| bounds.size().into_iter().fold(0.0, f64::max)) / scale;
+        let Self { mesh, measure, before, after, moved, largest, largest_shift } = self;
+        let (scale, largest) = (measure.scale, *largest);
+        let step = self.step();
+        let bounds = Bounds::of_corners(before, &mesh.triangles);
+        let size = bounds.map_or(0.0, |bounds| bounds.size().into_iter().fold(0.0, f64::max));
         let closed = is_closed(mesh);
         options.control.check()?;
-        let films = lost_films(before, after, &mesh.triangles, step, &options.control)?;
+        let films = lost_films(before, after, moved, &mesh.triangles, step, &options.control)?;
         let found: Option<Film> = films.first_film.or(films.first_gap);
         let [collapsed_triangles, flat_triangles, turned_triangles] = self.lost_triangles();
-        let written_volume = || enclosed_volume(after, &mesh.triangles) * scale * scale * scale;
+        let volume = || {
+            if measure.is_plain() {
+                enclosed_volume_within(before, &mesh.triangles, bounds)
+            } else {
+                mesh.volume()
+            }
+        };
+        // (Numbers keep their order as they are rounded.)
+        let rounded = bounds.map(|Bounds { low, high }| Bounds { low: rounded(&low), high: rounded(&high) });
+        let written_volume =
+            || enclosed_volume_within(after, &mesh.triangles, rounded) * scale * scale * scale;
         Ok(Rounding {
             step: step * scale,
             largest_shift: largest_shift * scale,
             closed,
-            volume: closed.then(|| mesh.volume()).filter(|volume| volume.is_finite()),
+            volume: closed.then(volume).filter(|volume| volume.is_finite()),
             written_volume: closed.then(written_volume).filter(|volume| volume.is_finite()),
             collapsed_triangles,
             flat_triangles,
@@ -222,20 +276,21 @@ impl<'a> Examination<'a> {
             lost_gaps: films.gaps,
             lost_place: found.map(|film| [0, 1, 2].map(|k| film.place[k] * scale + measure.offset[k])),
             lost_thickness: found.map(|film| film.thickness * scale),
-            has_offset: measure.offset != [0.0; 3] || scale != 1.0,
+            has_offset: !measure.is_plain(),
             finer_at_origin: largest > FAR * size,
         })
     }
 
     /// How many triangles lose a corner, lose their area, and turn over.
     fn lost_triangles(&self) -> [usize; 3] {
-        let triangles = &self.mesh.triangles;
+        let (triangles, step) = (&self.mesh.triangles, self.step());
         let count = triangles.len();
         let ranges = parallel::ranges(count, parallel::piece_count(count, 1 << 16));
         let parts = parallel::map(ranges, |range| {
             let mut counts = [0; 3];
-            for triangle in &triangles[range] {
-                if let Some(kind) = self.loss(triangle) {
+            for run in triangles[range].chunks(RUN) {
+                read_ahead(run.iter().flatten().map(|&v| self.before[v as usize][0].to_bits() as u32));
+                for kind in run.iter().filter_map(|triangle| self.loss(triangle, step)) {
                     counts[kind] += 1;
                 }
             }
@@ -245,35 +300,57 @@ impl<'a> Examination<'a> {
     }
 
     /// What a triangle loses, if anything: 0 a corner, 1 its area, 2 its side.
-    fn loss(&self, triangle: &[u32; 3]) -> Option<usize> {
-        let [a, b, c] = triangle.map(|v| self.after[v as usize]);
+    fn loss(&self, triangle: &[u32; 3], step: f64) -> Option<usize> {
+        if !triangle.iter().any(|&v| self.moved.contains(v)) {
+            return None;
+        }
+        // 1. Nearly all are too wide for it: two sides change by no more than a step along each axis, so that their product n changes by less than
+        //    n is long, and goes on pointing to its side.
         let [p, q, r] = triangle.map(|v| self.before[v as usize]);
+        let between = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| b[k] - a[k]);
+        let longest = |x: [f64; 3]| x[0].abs().max(x[1].abs()).max(x[2].abs());
+        let spanned = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
+            let (u, v) = (between(a, b), between(a, c));
+            let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+            (normal, longest(u), longest(v))
+        };
+        let (old, u, v) = spanned(p, q, r);
+        if longest(old) > 4.0 * step * (u + v + step) {
+            return None;
+        }
+        // 2. The others before and after.
+        let [a, b, c] = [p, q, r].map(|point| rounded(&point));
         if a == b || b == c || c == a {
             return ((a == b && p != q) || (b == c && q != r) || (c == a && r != p)).then_some(0);
         }
-        let spanned = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
-            let (u, v) = ([0, 1, 2].map(|k| b[k] - a[k]), [0, 1, 2].map(|k| c[k] - a[k]));
-            let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-            let length = |x: [f64; 3]| x.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-            (normal, length(normal), length(u) * length(v))
-        };
-        let (normal, area, sides) = spanned(a, b, c);
-        if area <= THIN * sides && collinear(&a, &b, &c) {
+        let (normal, u, v) = spanned(a, b, c);
+        if longest(normal) <= THIN * u * v && collinear(&a, &b, &c) {
             return (!collinear(&p, &q, &r)).then_some(1);
         }
-        let (old, ..) = spanned(p, q, r);
         (normal[0] * old[0] + normal[1] * old[1] + normal[2] * old[2] < 0.0).then_some(2)
     }
 
     /// How many vertices come to lie at the place of one that was elsewhere.
     fn joined_vertices(&self) -> usize {
-        let Self { before, after, .. } = self;
-        let key = |v: usize| after[v].map(|x| (x as f32 + 0.0).to_bits());
+        let Self { before, after, moved, .. } = self;
+        let key = |v: u32| after[v as usize].map(|x| (x as f32 + 0.0).to_bits());
+        // 1. Those that are not alone at theirs, and a few of which a hash cannot tell: sorted, equal hashes are side by side.
+        let hash = |v: u32| {
+            let [x, y, z] = key(v).map(u64::from);
+            mixed(mixed(x | y << 32) ^ z) & !u64::from(u32::MAX)
+        };
+        let mut hashes: Vec<u64> = (0..after.len() as u32).map(|v| hash(v) | u64::from(v)).collect();
+        radix_sort(&mut hashes, &mut Vec::new(), |hash| (hash >> 32) as u32, u32::BITS);
+        let groups = hashes.chunk_by(|x, y| x >> 32 == y >> 32).filter(|group| group.len() > 1);
+        let mut together: Vec<u32> = groups.flatten().map(|&hash| hash as u32).collect();
+        together.sort_unstable();
+        // 2. The first that has come to each place.
         let mut first: FxHashMap<[u32; 3], u32> = FxHashMap::default();
-        for v in (0..after.len()).filter(|&v| before[v] != after[v]) {
-            first.entry(key(v)).or_insert(v as u32);
+        for &v in together.iter().filter(|&&v| moved.contains(v)) {
+            first.entry(key(v)).or_insert(v);
         }
-        let joins = |v: &usize| first.get(&key(*v)).is_some_and(|&w| before[w as usize] != before[*v]);
-        (0..after.len()).filter(joins).count()
+        let is_joined =
+            |v: &&u32| first.get(&key(**v)).is_some_and(|&w| before[w as usize] != before[**v as usize]);
+        together.iter().filter(is_joined).count()
     }
 }

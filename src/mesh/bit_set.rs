@@ -21,7 +21,12 @@ impl BitSet {
     pub(crate) fn iter(&self) -> impl Iterator<Item = u32> {
         let words = self.0.iter().enumerate().filter(|&(_, &word)| word != 0);
         words.flat_map(|(i, &word)| {
-            (0..64).filter(move |bit| word >> bit & 1 == 1).map(move |bit| 64 * i as u32 + bit)
+            let mut left = word;
+            std::iter::from_fn(move || {
+                let bit = (left != 0).then(|| left.trailing_zeros())?;
+                left &= left - 1;
+                Some(64 * i as u32 + bit)
+            })
         })
     }
 

@@ -1,5 +1,7 @@
 //! Axis-aligned boxes.
 
+use super::BitSet;
+
 /// An axis-aligned box, closed: `low[k] <= x[k] <= high[k]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -18,6 +20,15 @@ impl Bounds {
             bounds.include(point);
         }
         (bounds.low[0] <= bounds.high[0]).then_some(bounds)
+    }
+
+    /// The smallest box round the corners of triangles; those out of range are left out.
+    pub(crate) fn of_corners(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Option<Self> {
+        // Marked first, so that the positions, each of which belongs to six triangles, are read once and in order.
+        let mut used = BitSet::new(positions.len());
+        let corners = triangles.iter().flatten().filter(|&&corner| (corner as usize) < positions.len());
+        corners.for_each(|&corner| used.insert(corner));
+        Self::of(used.iter().map(|corner| &positions[corner as usize]))
     }
 
     /// Contains nothing: the neutral element of [`include`](Self::include) and [`union`](Self::union).

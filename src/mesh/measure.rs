@@ -53,15 +53,22 @@ impl Mesh {
     /// The smallest box around the triangles; `None` if there are none. O(n).
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
-        let corners = self.triangles.iter().flatten();
-        Bounds::of(corners.filter_map(|&corner| self.positions.get(corner as usize)))
+        Bounds::of_corners(&self.positions, &self.triangles)
     }
 }
 
 /// The volume that `triangles` over `positions` enclose, as [`Mesh::volume`].
 pub(crate) fn enclosed_volume(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> f64 {
-    let corners = triangles.iter().flatten().filter_map(|&corner| positions.get(corner as usize));
-    Bounds::of(corners).map_or(0.0, |bounds| signed_volume(positions, triangles, &bounds).value)
+    enclosed_volume_within(positions, triangles, Bounds::of_corners(positions, triangles))
+}
+
+/// The same given the box around the corners.
+pub(crate) fn enclosed_volume_within(
+    positions: &[[f64; 3]],
+    triangles: &[[u32; 3]],
+    bounds: Option<Bounds>,
+) -> f64 {
+    bounds.map_or(0.0, |bounds| signed_volume(positions, triangles, &bounds).value)
 }
 
 /// Triangles with their coordinates in a frame: multiplied by a power of two where that brings them nearer one, and

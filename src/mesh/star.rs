@@ -11,6 +11,7 @@
 
 use super::Bounds;
 use crate::exact::{FILTER_RANGE, Projection, Sign, orient2d};
+use crate::parallel::map_chunks;
 
 /// Triangles that are looked at before all are: most surfaces that are not star-shaped show it.
 const SAMPLE: usize = 64;
@@ -86,9 +87,15 @@ impl Sight {
     }
 }
 
+/// Triangles a piece of work.
+const CHUNK: usize = 1 << 14;
+
 /// Whether every directed edge is met by its opposite as often as it occurs; wrong by a chance of one in 2^64. O(n), in one pass.
 pub(crate) fn edges_cancel(triangles: &[[u32; 3]]) -> bool {
-    triangles.iter().fold(0, |sum: u64, &triangle| sum.wrapping_add(edges_of(triangle))) == 0
+    let sum_of = |triangles: &[[u32; 3]]| {
+        triangles.iter().fold(0, |sum: u64, &triangle| sum.wrapping_add(edges_of(triangle)))
+    };
+    map_chunks(triangles, CHUNK, sum_of).into_iter().fold(0, u64::wrapping_add) == 0
 }
 
 /// The sum over the edges of a triangle.

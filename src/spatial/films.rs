@@ -1,14 +1,18 @@
 //! Films and gaps of a surface that moving its vertices a little closes: pairs of triangles back to back, or face to face,
 //! that a plane separates before and none does after.
 //!
-//! Only triangles with nearly opposite normals can lie so, and on most surfaces neighbours have similar ones. The hierarchy
-//! keeps a box of normals beside each box of points and passes over every part without opposite normals, which leaves next to
-//! nothing of a surface without thin walls (Volino, Magnenat-Thalmann 1994, cull self-collisions by cones alike).
+//! Only triangles with nearly opposite normals can lie so, and on most surfaces neighbours have similar ones. A coarse grid with the
+//! normals in each cell, and then a hierarchy with a box of normals beside each box of points, pass over every part without opposite
+//! normals, which leaves next to nothing of a surface without thin walls (Volino, Magnenat-Thalmann 1994, cull self-collisions by
+//! cones alike).
 
 use glam::DVec3;
 
 use super::morton::coherent_order;
+use super::opposed::{Cells, Normals};
 use crate::exact::{Sign, orient3d};
+use crate::mesh::BitSet;
+use crate::parallel::read_ahead;
 use crate::{Control, Limit};
 
 /// Triangles in a leaf: few, since all pairs in a leaf are looked at; more than one, so that the tree is small.
@@ -45,26 +49,35 @@ pub(crate) struct LostFilms {
     pub(crate) first_gap: Option<Film>,
 }
 
-/// Looks for films and gaps between `triangles` that were there with the vertices at `before` and are not at `after`, no
-/// coordinate being moved by more than half a `step`. O(n log n).
+/// Looks for films and gaps between `triangles` that were there with the vertices at `before` and are not at `after`, where those in
+/// `moved` are elsewhere, no coordinate being moved by more than half a `step`. O(n log n).
 ///
 /// # Errors
 /// The limits of `control`.
 pub(crate) fn lost_films(
     before: &[[f64; 3]],
     after: &[[f64; 3]],
+    moved: &BitSet,
     triangles: &[[u32; 3]],
     step: f64,
     control: &Control,
 ) -> Result<LostFilms, Limit> {
-    let candidates = candidates(before, after, triangles, step);
+    let surface = Surface { before, after, moved, triangles, step };
+    search(&surface, MOST_PASSED * triangles.len(), control)
+}
+
+/// The same, with marks for no more than so many cells that triangles pass.
+fn search(surface: &Surface<'_>, most_passed: usize, control: &Control) -> Result<LostFilms, Limit> {
+    let Surface { before, after, triangles, step, .. } = *surface;
+    let candidates = surface.candidates(most_passed);
     if candidates.is_empty() {
         return Ok(LostFilms::default());
     }
     let tree = Tree::new(&candidates);
     let mut search =
         Search { before, after, triangles, step, candidates: &candidates, found: LostFilms::default() };
-    tree.visit_pairs(2.0 * step, control, |i, j| search.examine(i, j))?;
+    let most = MOST_PAIRS.saturating_mul(triangles.len());
+    tree.visit_pairs(2.0 * step, most, control, |i, j| search.examine(i, j))?;
     Ok(search.found)
 }
 
@@ -77,79 +90,140 @@ struct Candidate {
     high: DVec3,
 }
 
-/// The triangles wide enough to be a side of a film, in an order along a curve through space; those far from every moved
-/// vertex left out.
-fn candidates(before: &[[f64; 3]], after: &[[f64; 3]], triangles: &[[u32; 3]], step: f64) -> Vec<Candidate> {
-    let has_moved = |triangle: &[u32; 3]| triangle.iter().any(|&v| before[v as usize] != after[v as usize]);
-    let corners = |triangle: &[u32; 3]| triangle.map(|v| DVec3::from_array(before[v as usize]));
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for triangle in triangles.iter().filter(|triangle| has_moved(triangle)) {
-        let [a, b, c] = corners(triangle);
-        (low, high) = (low.min(a).min(b).min(c), high.max(a).max(b).max(c));
+impl Candidate {
+    fn normals(&self) -> Normals {
+        Normals::of(self.normal.as_vec3().to_array(), self.moved)
     }
-    (low, high) = (low - 2.0 * step, high + 2.0 * step);
-    let mut found = Vec::new();
-    let mut middles = Vec::new();
-    for (index, triangle) in triangles.iter().enumerate() {
-        let [a, b, c] = corners(triangle);
-        let (least, most) = (a.min(b).min(c), a.max(b).max(c));
-        if most.cmplt(low).any() || least.cmpgt(high).any() {
-            continue;
-        }
+}
+
+/// A surface before and after its vertices were moved.
+struct Surface<'a> {
+    before: &'a [[f64; 3]],
+    after: &'a [[f64; 3]],
+    moved: &'a BitSet,
+    triangles: &'a [[u32; 3]],
+    step: f64,
+}
+
+impl Surface<'_> {
+    fn has_moved(&self, triangle: &[u32; 3]) -> bool {
+        triangle.iter().any(|&v| self.moved.contains(v))
+    }
+
+    fn corners(&self, triangle: &[u32; 3]) -> [DVec3; 3] {
+        triangle.map(|v| DVec3::from_array(self.before[v as usize]))
+    }
+
+    /// A triangle, if it is wide enough to be a side of a film.
+    #[inline]
+    fn candidate(&self, index: u32) -> Option<Candidate> {
+        let triangle = &self.triangles[index as usize];
+        let [a, b, c] = self.corners(triangle);
         let normal = (b - a).cross(c - a);
         let (doubled_area, longest) =
             (normal.length(), (b - a).length().max((c - b).length()).max((a - c).length()));
-        if doubled_area > LEAST_ALTITUDE * step * longest && doubled_area.is_finite() {
-            let normal = normal / doubled_area;
-            let moved = has_moved(triangle);
-            found.push(Candidate { triangle: index as u32, moved, normal, low: least, high: most });
-            middles.push((least * 0.5 + most * 0.5).to_array());
-        }
+        let is_wide = doubled_area > LEAST_ALTITUDE * self.step * longest && doubled_area.is_finite();
+        is_wide.then(|| Candidate {
+            triangle: index,
+            moved: self.has_moved(triangle),
+            normal: normal / doubled_area,
+            low: a.min(b).min(c),
+            high: a.max(b).max(c),
+        })
     }
-    let mut in_order = Vec::with_capacity(found.len());
-    let mut found: Vec<Option<Candidate>> = found.into_iter().map(Some).collect();
-    in_order.extend(coherent_order(&middles).into_iter().filter_map(|index| found[index as usize].take()));
-    in_order
+
+    /// The candidates, in an order along a curve through space; those far from every moved vertex, and from all that look the other way,
+    /// left out.
+    fn candidates(&self, most_passed: usize) -> Vec<Candidate> {
+        // 1. The box of all triangles that have moved. (Their corners are marked, and then read in order.)
+        let mut ends = BitSet::new(self.before.len());
+        let triangles = self.triangles.iter().filter(|triangle| self.has_moved(triangle));
+        triangles.flatten().for_each(|&v| ends.insert(v));
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for place in ends.iter().map(|v| DVec3::from_array(self.before[v as usize])) {
+            (low, high) = (low.min(place), high.max(place));
+        }
+        let reach = 2.0 * self.step;
+        (low, high) = (low - reach, high + reach);
+        if !low.cmple(high).all() {
+            return Vec::new();
+        }
+        let is_there =
+            |candidate: &Candidate| candidate.high.cmpge(low).all() && candidate.low.cmple(high).all();
+        // 2. Which cells have nearly opposite normals. (Where triangles pass many cells each, that is not asked.)
+        let mut cells = Cells::new(low, high, self.triangles.len());
+        let (mut homes, mut passed) = (Vec::with_capacity(self.triangles.len()), 0);
+        for index in 0..self.triangles.len() as u32 {
+            if index.is_multiple_of(RUN) {
+                let run = self.triangles[index as usize..].iter().take(RUN as usize).flatten();
+                read_ahead(run.map(|&v| self.before[v as usize][0].to_bits() as u32));
+            }
+            let home = match self.candidate(index).filter(is_there) {
+                Some(candidate) if passed <= most_passed => {
+                    let (least, most) = (candidate.low - reach, candidate.high + reach);
+                    let (cell, count) = cells.add(least, most, &candidate.normals());
+                    passed += count;
+                    cell.unwrap_or(SEVERAL)
+                }
+                Some(_) => SEVERAL,
+                None => NOWHERE,
+            };
+            homes.push(home);
+        }
+        // 3. The triangles there.
+        let may_have = |candidate: &Candidate| {
+            let (least, most) = (candidate.low - reach, candidate.high + reach);
+            passed > most_passed || cells.is_any_opposed(least, most, NORMAL_SLACK)
+        };
+        let found = (0..).zip(&homes).filter_map(|(index, &home)| match home {
+            NOWHERE => None,
+            SEVERAL => self.candidate(index).filter(may_have),
+            cell => (passed > most_passed || cells.is_opposed(cell, NORMAL_SLACK))
+                .then(|| self.candidate(index))
+                .flatten(),
+        });
+        let found: Vec<Candidate> = found.collect();
+        drop((cells, homes));
+        let middle = |of: &Candidate| (of.low * 0.5 + of.high * 0.5).to_array();
+        let middles: Vec<[f64; 3]> = found.iter().map(middle).collect();
+        let mut found: Vec<Option<Candidate>> = found.into_iter().map(Some).collect();
+        coherent_order(&middles).into_iter().filter_map(|index| found[index as usize].take()).collect()
+    }
 }
 
-/// A node: a box of points and a box of normals.
+/// Triangles whose corners are read ahead.
+const RUN: u32 = 16;
+/// Cells that triangles pass on average, at most: beyond, marking them costs more than it saves.
+const MOST_PASSED: usize = 8;
+/// In place of the number of a cell: several.
+const SEVERAL: u32 = u32::MAX - 1;
+/// In place of the number of a cell: the triangle is no candidate.
+const NOWHERE: u32 = u32::MAX;
+
+/// A node: a box of points and the normals there.
 #[derive(Clone, Copy)]
 struct Node {
     low: DVec3,
     high: DVec3,
-    least_normal: [f32; 3],
-    most_normal: [f32; 3],
-    moved: bool,
+    normals: Normals,
 }
 
 impl Node {
-    const NOTHING: Self = Self {
-        low: DVec3::INFINITY,
-        high: DVec3::NEG_INFINITY,
-        least_normal: [f32::INFINITY; 3],
-        most_normal: [f32::NEG_INFINITY; 3],
-        moved: false,
-    };
+    const NOTHING: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, normals: Normals::NOTHING };
 
     fn with(self, other: &Self) -> Self {
         Self {
             low: self.low.min(other.low),
             high: self.high.max(other.high),
-            least_normal: [0, 1, 2].map(|k| self.least_normal[k].min(other.least_normal[k])),
-            most_normal: [0, 1, 2].map(|k| self.most_normal[k].max(other.most_normal[k])),
-            moved: self.moved || other.moved,
+            normals: self.normals.with(&other.normals),
         }
     }
 
     /// Whether triangles of both may lie back to back within `reach`.
     fn may_meet(&self, other: &Self, reach: f64) -> bool {
-        (self.moved || other.moved)
-            && (self.low - reach).cmple(other.high).all()
+        (self.low - reach).cmple(other.high).all()
             && (other.low - reach).cmple(self.high).all()
-            && (0..3).all(|k| {
-                self.least_normal[k] + other.least_normal[k] <= NORMAL_SLACK
-                    && self.most_normal[k] + other.most_normal[k] >= -NORMAL_SLACK
-            })
+            && self.normals.may_oppose(&other.normals, NORMAL_SLACK)
     }
 }
 
@@ -167,9 +241,7 @@ impl Tree {
         let mut nodes = vec![Node::NOTHING; 2 * leaves - 1];
         for (leaf, run) in candidates.chunks(LEAF).enumerate() {
             nodes[leaves - 1 + leaf] = run.iter().fold(Node::NOTHING, |node, candidate| {
-                let normal = candidate.normal.as_vec3().to_array();
-                let Candidate { low, high, moved, .. } = *candidate;
-                node.with(&Node { low, high, least_normal: normal, most_normal: normal, moved })
+                node.with(&Node { low: candidate.low, high: candidate.high, normals: candidate.normals() })
             });
         }
         for node in (0..leaves - 1).rev() {
@@ -178,15 +250,16 @@ impl Tree {
         Self { nodes, leaves, candidates: candidates.len() }
     }
 
-    /// Calls `visit` for every two candidates in leaves that may meet, until too many nodes have been looked at.
+    /// Calls `visit` for every two candidates in leaves that may meet, until `most` pairs of nodes have been looked at.
     fn visit_pairs(
         &self,
         reach: f64,
+        most: usize,
         control: &Control,
         mut visit: impl FnMut(usize, usize),
     ) -> Result<(), Limit> {
         let mut stack = vec![(0, 0)];
-        let (mut steps, most) = (0_usize, MOST_PAIRS.saturating_mul(self.candidates));
+        let mut steps = 0_usize;
         while let Some((a, b)) = stack.pop() {
             steps += 1;
             if steps > most {
@@ -307,9 +380,20 @@ mod tests {
         mesh.positions.iter().map(|p| p.map(|x| f64::from(x as f32))).collect()
     }
 
+    fn moved(mesh: &Mesh, after: &[[f64; 3]]) -> BitSet {
+        let mut moved = BitSet::new(after.len());
+        (0..)
+            .zip(mesh.positions.iter().zip(after))
+            .filter(|(_, (p, q))| p != q)
+            .for_each(|(v, _)| moved.insert(v));
+        moved
+    }
+
     fn lost(mesh: &Mesh) -> LostFilms {
         let step = f64::from(f32::EPSILON) * mesh.bounds().unwrap().largest();
-        lost_films(&mesh.positions, &rounded(mesh), &mesh.triangles, step, &Control::new()).unwrap()
+        let after = rounded(mesh);
+        let moved = moved(mesh, &after);
+        lost_films(&mesh.positions, &after, &moved, &mesh.triangles, step, &Control::new()).unwrap()
     }
 
     #[test]
@@ -333,11 +417,45 @@ mod tests {
     }
 
     #[test]
+    fn cells_leave_out_nothing_that_is_lost() {
+        // Shells with thin walls and without, in one surface, and nearly closed slots of a plate.
+        let ball = primitives::icosphere(1.0, 4).unwrap().rotated([1.0, 2.0, 3.0], 0.7).unwrap();
+        let hollow = |thickness: f64| {
+            let inner = ball.clone().scaled([1.0 - thickness; 3]).unwrap().reversed();
+            Mesh::merged([&ball, &inner]).unwrap()
+        };
+        let plates = [1e-9, 3e-8, 1e-3].map(|gap| {
+            let low = primitives::cuboid([3.0; 3], [4.0; 3]).unwrap();
+            let high = primitives::cuboid([3.25, 3.25, 4.0 + gap], [3.75, 3.75, 5.0]).unwrap();
+            Mesh::merged([&low, &high]).unwrap()
+        });
+        for thickness in [1e-9, 2e-8, 3e-7, 0.1] {
+            let far = hollow(0.3).translated([5.0, 0.0, 0.0]);
+            let meshes: Vec<&Mesh> = plates.iter().collect();
+            let mesh = Mesh::merged([&[&hollow(thickness), &far], &*meshes].concat()).unwrap();
+            let step = f64::from(f32::EPSILON) * mesh.bounds().unwrap().largest();
+            let after = rounded(&mesh);
+            let moved = moved(&mesh, &after);
+            let (before, triangles) = (&*mesh.positions, &*mesh.triangles);
+            let surface = Surface { before, after: &after, moved: &moved, triangles, step };
+            let all = surface.candidates(0);
+            let some = surface.candidates(MOST_PASSED * mesh.triangles.len());
+            assert!(some.len() < all.len(), "{} of {}", some.len(), all.len());
+            let with = |most_passed: usize| search(&surface, most_passed, &Control::new()).unwrap();
+            let (found, expected) = (with(MOST_PASSED * mesh.triangles.len()), with(0));
+            assert_eq!((found.films, found.gaps), (expected.films, expected.gaps), "{thickness}");
+            assert!(found.gaps > 0 && (found.films > 0) == (thickness < 1e-7), "{thickness}: {found:?}");
+        }
+    }
+
+    #[test]
     fn smooth_surfaces_and_exact_ones_have_none() {
         let ball = primitives::uv_sphere(1.0, 24, 12).unwrap().translated([0.1, 0.2, 0.3]);
         assert_eq!(lost(&ball), LostFilms::default());
         let plate = primitives::cuboid([0.0; 3], [1.0, 1.0, 1e-9]).unwrap();
-        let found = lost_films(&plate.positions, &plate.positions, &plate.triangles, 1e-7, &Control::new());
+        let none = BitSet::new(plate.positions.len());
+        let Mesh { positions, triangles, .. } = &plate;
+        let found = lost_films(positions, positions, &none, triangles, 1e-7, &Control::new());
         assert_eq!(found.unwrap(), LostFilms::default());
     }
 }

@@ -24,6 +24,7 @@ mod marks;
 mod morton;
 mod nearest;
 mod occupancy;
+mod opposed;
 mod pack;
 mod radix;
 mod regions;

@@ -283,6 +283,34 @@ mod tests {
     use crate::{BooleanOptions, FaceGroup, primitives};
 
     #[test]
+    fn what_is_known_of_operands_tells_how_results_hang_together() {
+        let cube =
+            |low: [f64; 3]| Solid::try_from(primitives::cuboid(low, low.map(|x| x + 1.0)).unwrap()).unwrap();
+        let ball = |x: f64| {
+            let ball = primitives::icosphere(1.0, 3).unwrap().translated([x, 0.1, 0.2]);
+            Solid::try_from(ball).unwrap()
+        };
+        // Apart, through one another, in a face, part of a face, an edge, a vertex, and with a corner on a face.
+        let places = [[3.0, 0.0, 0.0], [0.5; 3], [1.0, 0.0, 0.0], [1.0, 0.5, 0.0], [1.0, 1.0, 0.0], [1.0; 3]];
+        let mut pairs: Vec<[Solid; 2]> = places.iter().map(|&low| [cube([0.0; 3]), cube(low)]).collect();
+        pairs.extend([0.0, 0.5, 1.5, 3.0].map(|x| [ball(0.0), ball(x)]));
+        pairs.extend([0.0, 0.7, 1.1].map(|x| [cube([0.0; 3]), ball(x)]));
+        for (i, [a, b]) in pairs.iter().enumerate() {
+            for operation in Operation::ALL {
+                for options in [BooleanOptions::new(), BooleanOptions::new().contact(Contact::Separate)] {
+                    let outcome = options.run(operation, [a, b]).unwrap();
+                    let known = outcome.solid();
+                    let unknown = Solid::from_closed_unchecked(known.mesh().clone());
+                    let facts = |solid: &Solid| {
+                        (solid.is_edge_manifold(), solid.is_manifold(), solid.components(), solid.genus())
+                    };
+                    assert_eq!(facts(known), facts(&unknown), "pair {i}, {operation:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn bodies_that_touch_in_a_vertex_have_one_each_in_the_result() {
         // Two boxes in one mesh that share a corner.
         let mut both = primitives::cuboid([0.0; 3], [1.0; 3]).unwrap();
