@@ -132,7 +132,9 @@ fn finish(
     let mut outputs = Vec::new();
     for ((outcome, targets), suffix) in outcomes.iter().zip(targets).zip(suffixes) {
         let name = suffix.strip_prefix('-').unwrap_or("result");
-        outputs.extend(write(&arguments.results, targets, outcome, style, session)?);
+        let is_reported = session.is_reported();
+        let write = || write(&arguments.results, targets, outcome, style, session);
+        outputs.extend(while_looking_at(outcome, is_reported, write)?);
         results.push(tell(name, outcome, targets, seconds, session));
     }
     if let Some(first) = results.first() {
@@ -143,6 +145,22 @@ fn finish(
     }
     session.note("outputs", outputs);
     Ok(())
+}
+
+/// What `write` returns, which runs while another thread, if there is one, finds out what [`tell`] will ask of the result.
+fn while_looking_at<T: Send>(outcome: &Outcome, is_reported: bool, write: impl FnOnce() -> T + Send) -> T {
+    let look = || {
+        let _ = outcome.nearly_flush();
+        drop(Measures::for_line(outcome.solid()));
+        if is_reported {
+            let _ = outcome.certificate();
+        }
+    };
+    #[cfg(feature = "parallel")]
+    let (written, ()) = rayon::join(write, look);
+    #[cfg(not(feature = "parallel"))]
+    let (written, ()) = (write(), look());
+    written
 }
 
 /// How the operands are combined.

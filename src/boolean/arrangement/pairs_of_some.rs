@@ -44,9 +44,10 @@ pub(super) fn pairs_with(
     for &t in &chosen {
         mesh.triangles[t as usize].iter().for_each(|&v| is_other[v as usize] = false);
     }
-    let is_beside = |corners: &[u32; 3]| corners.iter().any(|&v| !is_other[v as usize]);
-    let beside = (0..).zip(&mesh.triangles).filter(|(_, corners)| is_beside(corners)).map(|(t, _)| t);
-    let beside: Vec<u32> = beside.collect();
+    let is_beside = |t: &u32| mesh.triangles[*t as usize].iter().any(|&v| !is_other[v as usize]);
+    let beside = runner.gather(mesh.triangles.len(), TRIANGLES_AT_ONCE, 0, |range, beside| {
+        beside.extend(range.map(|t| t as u32).filter(is_beside));
+    })?;
     let neighbours = Neighbours::new(mesh, bounds.largest(), is_other, &beside);
     // 2. Vertices beyond sides of the box around all of those: nearly all triangles are wholly beyond one.
     let corners = chosen.iter().flat_map(|&t| mesh.triangles[t as usize]);

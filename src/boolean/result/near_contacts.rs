@@ -3,8 +3,6 @@
 //! Exact contact leaves nothing behind. Where faces that were meant to be flush are a little apart, the exact result has a film
 //! of material or a gap between them. It is right, but lost as soon as it is written in single precision, and hardly meant.
 
-use std::ops::Range;
-
 use glam::DVec3;
 
 use crate::boolean::complex::planes::unit_normal;
@@ -12,7 +10,7 @@ use crate::boolean::result::origins::Origins;
 use crate::exact::at_hand::largest_coordinate;
 use crate::exact::{Projection, Sign, orient2d, orient3d};
 use crate::mesh::Bounds;
-use crate::parallel::{Runner, map, map_chunks};
+use crate::parallel::{Runner, map_chunks};
 use crate::spatial::{BoxTree, Frame, visit_pairs};
 use crate::{Control, Mesh};
 
@@ -22,7 +20,7 @@ const SINGLE: f64 = f32::EPSILON as f64;
 const PART_OF_REGION: f64 = 1e-6;
 /// Faces at no larger angle than this, in radians, are nearly parallel: others meet along a curve, and are near it there.
 const ANGLE: f64 = 1e-3;
-/// Operands up to which each has a tree of its own; more are in one tree, where pairs within an operand are found for nothing.
+/// Operands, of which each has a bit, up to which each has a tree of its own; more are in one tree, where pairs within an operand are found for nothing.
 const FEW_OPERANDS: usize = 8;
 /// The thinnest places that are kept: enough to look at, and to print.
 const PLACES: usize = 5;
@@ -76,27 +74,30 @@ impl NearContacts {
 /// A vertex, and what it is near to.
 type Found = (u32, NearContact);
 
-/// Triangles a piece of work.
+/// Vertices a piece of work.
 const CHUNK: usize = 1 << 14;
 
-/// The boxes of what a result has of each operand.
-fn boxes_of_operands(mesh: &Mesh, operands: &[u32], count: usize) -> Vec<Bounds> {
-    // Of very many operands there are few triangles each: then the pieces are longer than the lists of boxes.
-    let chunk = CHUNK.max(8 * count);
-    let triangles = mesh.triangles.len();
-    let pieces = (0..triangles).step_by(chunk).map(|start| start..(start + chunk).min(triangles));
-    let parts = map(pieces.collect(), |range: Range<usize>| {
-        let mut boxes = vec![Bounds::NOTHING; count];
-        for (corners, &operand) in mesh.triangles[range.clone()].iter().zip(&operands[range]) {
-            corners.iter().for_each(|&v| boxes[operand as usize].include(&mesh.positions[v as usize]));
+/// The boxes of what a result has of each of a few operands.
+fn boxes_of(few: &[u32], mesh: &Mesh, operands: &[u32]) -> Vec<Bounds> {
+    // Marked first at the vertices, whose positions are then read once and in order.
+    let mut marks = vec![0u8; mesh.positions.len()];
+    let mut t = 0;
+    for run in operands.chunk_by(|one, next| one == next) {
+        let mark = 1 << few.iter().position(|operand| *operand == run[0]).unwrap_or_default();
+        for corners in &mesh.triangles[t..t + run.len()] {
+            corners.iter().for_each(|&v| marks[v as usize] |= mark);
         }
-        boxes
-    });
-    // (An empty box may be among them.)
-    let unite = |sum: Vec<Bounds>, part: Vec<Bounds>| {
-        sum.into_iter().zip(part).map(|(sum, part)| sum.united(part)).collect()
-    };
-    parts.into_iter().reduce(unite).unwrap_or_else(|| vec![Bounds::NOTHING; count])
+        t += run.len();
+    }
+    let mut boxes = vec![Bounds::NOTHING; few.len()];
+    for (&marks, position) in marks.iter().zip(&*mesh.positions) {
+        let mut left = marks;
+        while left != 0 {
+            boxes[left.trailing_zeros() as usize].include(position);
+            left &= left - 1;
+        }
+    }
+    boxes
 }
 
 /// For each vertex which sides of a box it lies beyond by more than `reach`.
@@ -121,29 +122,29 @@ struct Region<'a> {
 impl<'a> Region<'a> {
     /// `None` where no two operands come near one another.
     fn of(mesh: &'a Mesh, operands: &'a [u32]) -> Option<Self> {
-        // 1. The boxes of what is left of the operands.
-        let count = 1 + *operands.iter().max()? as usize;
-        let boxes = boxes_of_operands(mesh, operands, count);
-        let has_any = |k: &usize| boxes[*k].low[0] <= boxes[*k].high[0];
-        let used: Vec<usize> = (0..count).filter(has_any).collect();
+        // 1. What is left of which operands, and where, if they are few.
+        let mut used: Vec<u32> = operands.chunk_by(|one, next| one == next).map(|run| run[0]).collect();
+        used.sort_unstable();
+        used.dedup();
         if used.len() < 2 {
             return None;
         }
+        let are_many = used.len() > FEW_OPERANDS;
+        let few: &[u32] = if are_many { &[] } else { &used };
+        let boxes = boxes_of(few, mesh, operands);
         // 2. How near is near.
-        let whole = used.iter().fold(Bounds::NOTHING, |sum, &k| sum.union(&boxes[k]));
+        let whole = boxes.iter().copied().reduce(Bounds::united).or_else(|| mesh.bounds())?;
         let extent = (0..3).fold(0.0f64, |extent, k| extent.max(0.5 * whole.high[k] - 0.5 * whole.low[k]));
         let reach = (SINGLE * whole.largest()).min(2.0 * PART_OF_REGION * extent);
         // 3. The triangles in reach of another's box, wholly beyond none of its sides. (Of many operands, each is near some other.)
-        let are_many = used.len() > FEW_OPERANDS;
-        let few: &[usize] = if are_many { &[] } else { &used };
-        let sides: Vec<Vec<u8>> = few.iter().map(|&k| sides_beyond(&boxes[k], reach, mesh)).collect();
+        let sides: Vec<Vec<u8>> = boxes.iter().map(|of| sides_beyond(of, reach, mesh)).collect();
         let is_near = |t: usize| {
             let [a, b, c] = mesh.triangles[t].map(|v| v as usize);
             let is_in_reach = |sides: &Vec<u8>| sides[a] & sides[b] & sides[c] == 0;
-            let mut others = few.iter().zip(&sides).filter(|(k, _)| **k != operands[t] as usize);
+            let mut others = few.iter().zip(&sides).filter(|(k, _)| **k != operands[t]);
             are_many || others.any(|(_, sides)| is_in_reach(sides))
         };
-        let mut triangles = vec![Vec::new(); count];
+        let mut triangles = vec![Vec::new(); 1 + *used.last()? as usize];
         (0..mesh.triangles.len())
             .filter(|&t| is_near(t))
             .for_each(|t| triangles[operands[t] as usize].push(t as u32));
