@@ -151,7 +151,7 @@ fn finish(
 fn while_looking_at<T: Send>(outcome: &Outcome, is_reported: bool, write: impl FnOnce() -> T + Send) -> T {
     let look = || {
         let _ = outcome.nearly_flush();
-        drop(Measures::for_line(outcome.solid()));
+        let _ = Measures::for_line(outcome.solid());
         if is_reported {
             let _ = outcome.certificate();
         }

@@ -20,7 +20,7 @@ const SINGLE: f64 = f32::EPSILON as f64;
 const PART_OF_REGION: f64 = 1e-6;
 /// Faces at no larger angle than this, in radians, are nearly parallel: others meet along a curve, and are near it there.
 const ANGLE: f64 = 1e-3;
-/// Operands, of which each has a bit, up to which each has a tree of its own; more are in one tree, where pairs within an operand are found for nothing.
+/// Operands up to which each has a tree of its own, and a bit; more are in one tree, where pairs within an operand are found for nothing.
 const FEW_OPERANDS: usize = 8;
 /// The thinnest places that are kept: enough to look at, and to print.
 const PLACES: usize = 5;
@@ -131,7 +131,7 @@ impl<'a> Region<'a> {
         }
         let are_many = used.len() > FEW_OPERANDS;
         let few: &[u32] = if are_many { &[] } else { &used };
-        let boxes = boxes_of(few, mesh, operands);
+        let boxes = if are_many { Vec::new() } else { boxes_of(few, mesh, operands) };
         // 2. How near is near.
         let whole = boxes.iter().copied().reduce(Bounds::united).or_else(|| mesh.bounds())?;
         let extent = (0..3).fold(0.0f64, |extent, k| extent.max(0.5 * whole.high[k] - 0.5 * whole.low[k]));
@@ -246,6 +246,23 @@ mod tests {
             let beside = cuboid([1.0 + gap, 0.25, 0.25], [2.0, 0.75, 0.75]);
             let outcome = body.union(&beside).expect("no limits");
             assert_eq!(outcome.certificate().nearly_flush.count, 4);
+        }
+    }
+
+    #[test]
+    fn gaps_between_any_number_of_operands_are_told() {
+        for count in [2, 8, 9, 20] {
+            // A row of boxes that nearly touch: each but the last has four corners nearly on the face of the next.
+            let boxes: Vec<Solid> = (0..count)
+                .map(|i| {
+                    let x = f64::from(i) * (1.0 + 1e-9);
+                    cuboid([x, 0.0, 0.0], [x + 1.0, 1.0 + 0.1 * f64::from(i), 1.0 + 0.1 * f64::from(i)])
+                })
+                .collect();
+            let outcome =
+                crate::BooleanOptions::new().run(crate::Operation::Union, &boxes).expect("no limits");
+            let told = outcome.certificate().nearly_flush.count;
+            assert!(told >= 4 * (count as usize - 1), "{count}: {told}");
         }
     }
 
