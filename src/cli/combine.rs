@@ -148,7 +148,14 @@ fn finish(
 }
 
 /// What `write` returns, which runs while another thread, if there is one, finds out what [`tell`] will ask of the result.
+///
+/// Neither waits for the other for ever: what is found out is behind locks that are taken by whoever asks first, and no piece of work that threads hand to
+/// each other takes one.
+#[cfg(feature = "parallel")]
 fn while_looking_at<T: Send>(outcome: &Outcome, is_reported: bool, write: impl FnOnce() -> T + Send) -> T {
+    if rayon::current_num_threads() == 1 {
+        return write();
+    }
     let look = || {
         let _ = outcome.nearly_flush();
         let _ = Measures::for_line(outcome.solid());
@@ -156,11 +163,12 @@ fn while_looking_at<T: Send>(outcome: &Outcome, is_reported: bool, write: impl F
             let _ = outcome.certificate();
         }
     };
-    #[cfg(feature = "parallel")]
-    let (written, ()) = rayon::join(write, look);
-    #[cfg(not(feature = "parallel"))]
-    let (written, ()) = (write(), look());
-    written
+    rayon::join(write, look).0
+}
+
+#[cfg(not(feature = "parallel"))]
+fn while_looking_at<T>(_: &Outcome, _: bool, write: impl FnOnce() -> T) -> T {
+    write()
 }
 
 /// How the operands are combined.

@@ -304,8 +304,8 @@ impl<'a> Examination<'a> {
         if !triangle.iter().any(|&v| self.moved.contains(v)) {
             return None;
         }
-        // 1. Nearly all are too wide for it: two sides change by no more than a step along each axis, so that their product n changes by less than
-        //    n is long, and goes on pointing to its side.
+        // 1. Nearly all are too wide for it: two sides u and v change by no more than a step along each axis, so that their product n changes by 2 step
+        //    (u + v + step) along each axis at most, less than 3.5 of it in length. If n is longer, it goes on pointing to its side.
         let [p, q, r] = triangle.map(|v| self.before[v as usize]);
         let between = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| b[k] - a[k]);
         let longest = |x: [f64; 3]| x[0].abs().max(x[1].abs()).max(x[2].abs());
@@ -352,5 +352,65 @@ impl<'a> Examination<'a> {
         let is_joined =
             |v: &&u32| first.get(&key(**v)).is_some_and(|&w| before[w as usize] != before[**v as usize]);
         together.iter().filter(is_joined).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+
+    use super::*;
+
+    /// What a triangle loses, by its corners before and after alone.
+    fn plain_loss(before: [[f64; 3]; 3], after: [[f64; 3]; 3]) -> Option<usize> {
+        let ([p, q, r], [a, b, c]) = (before, after);
+        if a == b || b == c || c == a {
+            return ((a == b && p != q) || (b == c && q != r) || (c == a && r != p)).then_some(0);
+        }
+        let normal = |a: [f64; 3], b: [f64; 3], c: [f64; 3]| {
+            let [u, v] = [b, c].map(|end| glam::DVec3::from_array(end) - glam::DVec3::from_array(a));
+            u.cross(v)
+        };
+        if collinear(&a, &b, &c) {
+            return (!collinear(&p, &q, &r)).then_some(1);
+        }
+        (normal(p, q, r).dot(normal(a, b, c)) < 0.0).then_some(2)
+    }
+
+    #[test]
+    fn short_cuts_count_what_all_are_asked_for() {
+        let mut random = ChaCha8Rng::seed_from_u64(37);
+        let mut sums = [0; 4];
+        for round in 0..60 {
+            // Points a few steps of single precision apart, along a line, on a plane and in space; and some that it holds.
+            let spread = [1e-7, 1e-6, 1e-3][round % 3];
+            let mut coordinate = |k: usize| match random.random_range(0..4) {
+                _ if k > round / 3 % 3 => -0.0,
+                0 => f64::from((spread * random.random_range(-1.0..1.0)) as f32),
+                _ => 1.0 + spread * random.random_range(-1.0..1.0),
+            };
+            let positions: Vec<[f64; 3]> = (0..900).map(|_| [0, 1, 2].map(&mut coordinate)).collect();
+            let triangles: Vec<[u32; 3]> =
+                (0..2_000).map(|_| [0; 3].map(|_| random.random_range(0..850))).collect();
+            let mesh = Mesh::new(positions.clone(), triangles.clone());
+            let seen = Examination::new(&mesh, Measure::PLAIN, &WriteOptions::new()).unwrap();
+            let after: Vec<[f64; 3]> = positions.iter().map(rounded).collect();
+            let mut lost = [0; 3];
+            for corners in &triangles {
+                let [before, after] = [&positions, &after].map(|of| corners.map(|v| of[v as usize]));
+                plain_loss(before, after).into_iter().for_each(|kind| lost[kind] += 1);
+            }
+            assert_eq!(seen.lost_triangles(), lost, "round {round}");
+            let joins =
+                |v: usize| (0..positions.len()).find(|&w| positions[w] != after[w] && after[w] == after[v]);
+            let joined =
+                (0..positions.len()).filter(|&v| joins(v).is_some_and(|w| positions[w] != positions[v]));
+            let joined = joined.count();
+            assert_eq!(seen.joined_vertices(), joined, "round {round}");
+            (0..3).for_each(|kind| sums[kind] += lost[kind]);
+            sums[3] += joined;
+        }
+        assert!(sums.iter().all(|&sum| sum > 100), "{sums:?}");
     }
 }

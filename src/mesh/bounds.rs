@@ -24,9 +24,13 @@ impl Bounds {
 
     /// The smallest box round the corners of triangles; those out of range are left out.
     pub(crate) fn of_corners(positions: &[[f64; 3]], triangles: &[[u32; 3]]) -> Option<Self> {
+        let corners = triangles.iter().flatten().filter(|&&corner| (corner as usize) < positions.len());
+        // Of a few triangles of many.
+        if 3 * triangles.len() < positions.len() / 64 {
+            return Self::of(corners.map(|&corner| &positions[corner as usize]));
+        }
         // Marked first, so that the positions, each of which belongs to six triangles, are read once and in order.
         let mut used = BitSet::new(positions.len());
-        let corners = triangles.iter().flatten().filter(|&&corner| (corner as usize) < positions.len());
         corners.for_each(|&corner| used.insert(corner));
         Self::of(used.iter().map(|corner| &positions[corner as usize]))
     }
@@ -123,6 +127,22 @@ mod tests {
         assert_eq!(bounds.size(), [1.0, 6.0, 0.0]);
         assert_eq!(bounds.center(), [0.5, 1.0, 0.5]);
         assert!(bounds.contains(&bounds));
+    }
+
+    #[test]
+    fn corners_of_few_and_of_many_triangles_have_a_box() {
+        let positions: Vec<[f64; 3]> = (0..1_000).map(|i| [f64::from(i), f64::from(-i % 7), 1.0]).collect();
+        let triangles: Vec<[u32; 3]> = (0..990).map(|i| [i, i + 1, i + 5]).collect();
+        for count in [0, 1, 5, 6, 100, 990] {
+            let triangles = &triangles[990 - count..];
+            let corners = triangles.iter().flatten().map(|&v| &positions[v as usize]);
+            assert_eq!(Bounds::of_corners(&positions, triangles), Bounds::of(corners), "{count}");
+            let out_of_range = [triangles, &[[1_000, 2_000, u32::MAX]]].concat();
+            assert_eq!(
+                Bounds::of_corners(&positions, &out_of_range),
+                Bounds::of_corners(&positions, triangles)
+            );
+        }
     }
 
     #[test]

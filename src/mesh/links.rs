@@ -417,6 +417,33 @@ mod tests {
     }
 
     #[test]
+    fn a_look_around_what_changed_tells_all() {
+        let mut random = ChaCha8Rng::seed_from_u64(36);
+        let (mut manifold, mut pinched) = (0, 0);
+        for _ in 0..3_000 {
+            // Balls with vertices and edges in common here and there, of which some come last.
+            let mut triangles = Vec::new();
+            let mut vertices = 0;
+            for _ in 0..random.random_range(1..6) {
+                let first = if vertices == 0 { 0 } else { vertices - random.random_range(0..3) };
+                triangles.extend(TETRAHEDRON.map(|corners| corners.map(|corner| first + corner)));
+                vertices = vertices.max(first + 4);
+            }
+            let from = random.random_range(0..=triangles.len());
+            let lists = LinkLists::of(triangles.iter().copied(), vertices as usize, |v| v as usize);
+            let is_one_fan = |link: &[u64]| cycles(link) == Some(1);
+            let others = (0..).zip(lists.each()).filter(|(_, link)| !is_one_fan(link)).map(|(v, _)| v);
+            let changed = Changed { from, vertices: others.collect() };
+            let links = Links::of(&triangles, vertices as usize).unwrap();
+            let found = Links::of_changed(&triangles, vertices as usize, &changed);
+            assert!(links.agrees(&found), "{links:?}, not {found:?}: {triangles:?}, {changed:?}");
+            manifold += u32::from(links.edge_manifold);
+            pinched += u32::from(links.pinched > 0);
+        }
+        assert!(manifold > 500 && manifold < 2_500 && pinched > 200, "{manifold}, {pinched}");
+    }
+
+    #[test]
     fn hubs_of_any_size() {
         for ring in [3, 7, 8, 9, 15, 16, 17, 31, 32, 33, 1_000, 70_000] {
             // Two fans round hubs 0 and 1 over one ring, and the same again at the same hubs.

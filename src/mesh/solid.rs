@@ -62,7 +62,8 @@ pub struct Solid {
     pub(super) area: OnceLock<f64>,
     /// How the triangles around each vertex hang together.
     pub(super) links: OnceLock<Links>,
-    /// Around which vertices that is not known.
+    /// Around which vertices one has to look for that, if it is known that there is one fan around all others; `None`: around all. (Triangles
+    /// keep their order as long as it is there.)
     pub(super) changed: Option<Changed>,
     pub(super) shape: OnceLock<Shape>,
     pub(super) self_crossings: OnceLock<SelfCrossings>,
@@ -115,7 +116,7 @@ impl Solid {
         Self { bounds: Bounds::of(&mesh.positions), mesh, ..Self::default() }
     }
 
-    /// The same given how it hangs together but for what has changed.
+    /// The same, given the vertices around which the triangles may form more or less than one fan, if these are known.
     pub(crate) fn from_changed_unchecked(mesh: Mesh, changed: Option<Changed>) -> Self {
         Self { changed, ..Self::from_closed_unchecked(mesh) }
     }
@@ -355,6 +356,11 @@ impl Solid {
             }
             None => look(),
         })
+    }
+
+    #[cfg(test)]
+    pub(crate) fn changed(&self) -> Option<&Changed> {
+        self.changed.as_ref()
     }
 
     /// Whether it is known that it is a 2-manifold without two triangles on the same vertices.

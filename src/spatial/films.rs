@@ -449,6 +449,25 @@ mod tests {
     }
 
     #[test]
+    fn a_gap_at_the_border_of_cells_is_found() {
+        // Two plates with a border of cells between them, and balls, so that there are cells.
+        let gap = 1e-9;
+        let low = primitives::cuboid([-1.0; 3], [1.0, 1.0, -0.5 * gap]).unwrap();
+        let high = primitives::cuboid([-1.0, -1.0, 0.5 * gap], [1.0; 3]).unwrap();
+        let balls = [-3.0, 3.0].map(|z| primitives::icosphere(0.3, 4).unwrap().translated([0.0, 0.0, z]));
+        let mesh = Mesh::merged([&low, &high, &balls[0], &balls[1]]).unwrap();
+        let step = 1e-6;
+        let after: Vec<[f64; 3]> =
+            mesh.positions.iter().map(|point| point.map(|x| (x / step).round() * step)).collect();
+        let moved = moved(&mesh, &after);
+        let (before, triangles) = (&*mesh.positions, &*mesh.triangles);
+        let surface = Surface { before, after: &after, moved: &moved, triangles, step };
+        let found = search(&surface, MOST_PASSED * triangles.len(), &Control::new()).unwrap();
+        assert!(found.gaps > 0 && found.films == 0, "{found:?}");
+        assert!((found.first_gap.unwrap().thickness - gap).abs() < 1e-15);
+    }
+
+    #[test]
     fn smooth_surfaces_and_exact_ones_have_none() {
         let ball = primitives::uv_sphere(1.0, 24, 12).unwrap().translated([0.1, 0.2, 0.3]);
         assert_eq!(lost(&ball), LostFilms::default());

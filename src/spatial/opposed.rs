@@ -7,7 +7,7 @@ use glam::DVec3;
 
 /// Triangles to a cell that a surface passes, about.
 const TRIANGLES_PER_CELL: usize = 150;
-/// Cells that an even surface passes, of a grid of one cell along each axis: those of a ball.
+/// A surface such as a ball passes about so many times n^2 cells of a grid of n^3.
 const PASSED: usize = 3;
 /// Cells along each axis, at most: the grid then has 7 MB.
 const MOST_CELLS: usize = 64;

@@ -52,13 +52,15 @@ pub(super) fn pairs_with(
     // 2. Vertices beyond sides of the box around all of those: nearly all triangles are wholly beyond one.
     let corners = chosen.iter().flat_map(|&t| mesh.triangles[t as usize]);
     let all = Bounds::of(corners.map(|v| &mesh.positions[v as usize])).unwrap_or(Bounds::NOTHING);
+    // (By more than a rounding to the single precision of boxes, so that what nearly touches them is not lost.)
+    let reach = 2.0 * f64::from(f32::EPSILON) * bounds.largest();
     let mut beyond = vec![0u8; mesh.positions.len()];
     runner.fill(&mut beyond, VERTICES_AT_ONCE, |first, sides| {
         let positions = &mesh.positions[first..];
         sides
             .iter_mut()
             .zip(positions)
-            .for_each(|(sides, position)| *sides = all.sides_beyond(position, 0.0));
+            .for_each(|(sides, position)| *sides = all.sides_beyond(position, reach));
     })?;
     // 3. Whose boxes meet theirs.
     let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
@@ -103,6 +105,16 @@ mod tests {
         assert!(all.len() > 100);
         for step in [1, 2, 7, 40] {
             let some: Vec<bool> = (0..mesh.triangles.len()).map(|t| t % step == 0).collect();
+            let wanted = all.iter().copied().filter(|pair| pair.iter().any(|&t| some[t as usize]));
+            assert_eq!(pairs_with(&mesh, &bounds, &some, runner).expect("pairs"), wanted.collect::<Vec<_>>());
+        }
+        // Those in a corner of the whole, and those around them alone.
+        for part in [0.1, 0.3] {
+            let is_there =
+                |corners: &[u32; 3]| corners.iter().all(|&v| mesh.positions[v as usize][0] < part - 1.0);
+            let some: Vec<bool> = mesh.triangles.iter().map(is_there).collect();
+            let count = some.iter().filter(|&&is_one| is_one).count();
+            assert!(0 < count && count < some.len() / MANY, "{count}");
             let wanted = all.iter().copied().filter(|pair| pair.iter().any(|&t| some[t as usize]));
             assert_eq!(pairs_with(&mesh, &bounds, &some, runner).expect("pairs"), wanted.collect::<Vec<_>>());
         }

@@ -20,7 +20,7 @@ const SINGLE: f64 = f32::EPSILON as f64;
 const PART_OF_REGION: f64 = 1e-6;
 /// Faces at no larger angle than this, in radians, are nearly parallel: others meet along a curve, and are near it there.
 const ANGLE: f64 = 1e-3;
-/// Operands up to which each has a tree of its own, and a bit; more are in one tree, where pairs within an operand are found for nothing.
+/// Operands up to which each has a tree of its own, and a bit in a byte of marks; more are in one tree, where pairs within an operand are found for nothing.
 const FEW_OPERANDS: usize = 8;
 /// The thinnest places that are kept: enough to look at, and to print.
 const PLACES: usize = 5;
@@ -252,13 +252,14 @@ mod tests {
     #[test]
     fn gaps_between_any_number_of_operands_are_told() {
         for count in [2, 8, 9, 20] {
-            // A row of boxes that nearly touch: each but the last has four corners nearly on the face of the next.
-            let boxes: Vec<Solid> = (0..count)
-                .map(|i| {
-                    let x = f64::from(i) * (1.0 + 1e-9);
-                    cuboid([x, 0.0, 0.0], [x + 1.0, 1.0 + 0.1 * f64::from(i), 1.0 + 0.1 * f64::from(i)])
-                })
-                .collect();
+            // A row of boxes that nearly touch: each but the last has four corners nearly on the face of the next. Of one inside the first
+            // nothing is left.
+            let row = (0..count).map(|i| {
+                let x = f64::from(i) * (1.0 + 1e-9);
+                cuboid([x, 0.0, 0.0], [x + 1.0, 1.0 + 0.1 * f64::from(i), 1.0 + 0.1 * f64::from(i)])
+            });
+            let mut boxes: Vec<Solid> = row.collect();
+            boxes.insert(1, cuboid([0.25; 3], [0.5; 3]));
             let outcome =
                 crate::BooleanOptions::new().run(crate::Operation::Union, &boxes).expect("no limits");
             let told = outcome.certificate().nearly_flush.count;
