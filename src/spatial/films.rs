@@ -450,12 +450,29 @@ mod tests {
 
     #[test]
     fn a_gap_at_the_border_of_cells_is_found() {
-        // Two plates with a border of cells between them, and balls, so that there are cells.
-        let gap = 1e-9;
-        let low = primitives::cuboid([-1.0; 3], [1.0, 1.0, -0.5 * gap]).unwrap();
-        let high = primitives::cuboid([-1.0, -1.0, 0.5 * gap], [1.0; 3]).unwrap();
-        let balls = [-3.0, 3.0].map(|z| primitives::icosphere(0.3, 4).unwrap().translated([0.0, 0.0, z]));
-        let mesh = Mesh::merged([&low, &high, &balls[0], &balls[1]]).unwrap();
+        // Two sheets of many triangles, face to face, with a border of cells between them: on either side all look the same way.
+        let (gap, along) = (1e-9, 24u32);
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        for side in [-1.0, 1.0] {
+            let first = positions.len() as u32;
+            let at = |i: u32, j: u32| first + i * (along + 1) + j;
+            let place = |i: u32| 2.0 * f64::from(i) / f64::from(along) - 1.0;
+            let places = (0..=along).flat_map(|i| (0..=along).map(move |j| (i, j)));
+            positions.extend(places.map(|(i, j)| [place(i), place(j), 0.5 * side * gap]));
+            // (And one far from it, so that the sheets are the middle of all.)
+            positions.extend([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|[x, y]| [x, y, side * (3.0 + 1e-7)]));
+            let last = positions.len() as u32;
+            let squares = (0..along).flat_map(|i| (0..along).map(move |j| (i, j)));
+            let mut own: Vec<[u32; 3]> = squares
+                .flat_map(|(i, j)| {
+                    let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                    [[a, b, c], [a, c, d]]
+                })
+                .collect();
+            own.push([last - 3, last - 2, last - 1]);
+            triangles.extend(own.into_iter().map(|[a, b, c]| if side < 0.0 { [a, b, c] } else { [a, c, b] }));
+        }
+        let mesh = Mesh::new(positions, triangles);
         let step = 1e-6;
         let after: Vec<[f64; 3]> =
             mesh.positions.iter().map(|point| point.map(|x| (x / step).round() * step)).collect();
