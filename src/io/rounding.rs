@@ -47,7 +47,7 @@ pub struct Rounding {
     pub step: f64,
     /// The most that a coordinate was moved by.
     pub largest_shift: f64,
-    /// Whether the surface in the file is closed.
+    /// Whether the surface in the file is closed: told by a sum of hashes of its edges, wrong by a chance of one in 2^64.
     pub closed: bool,
     /// The volume of the mesh; nothing if it is not closed.
     pub volume: Option<f64>,

@@ -27,6 +27,14 @@ const LEAST_ALTITUDE: f64 = 4.0;
 /// Pairs of nodes and of triangles looked at for each triangle before the search ends. Usual surfaces have about one; where
 /// so many triangles lie within a rounding of each other, the surface is lost as a whole, and its volume tells.
 const MOST_PAIRS: usize = 64;
+/// Triangles whose corners are read ahead, as where volumes are summed up.
+const RUN: u32 = 16;
+/// Cells that triangles pass on average, at most: bounds the time of marking them where triangles are large.
+const MOST_PASSED: usize = 8;
+/// In place of the number of a cell: several.
+const SEVERAL: u32 = u32::MAX - 1;
+/// In place of the number of a cell: the triangle is no candidate.
+const NOWHERE: u32 = u32::MAX;
 
 /// A pair of triangles that lost what was between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,6 +159,7 @@ impl Surface<'_> {
         let is_there =
             |candidate: &Candidate| candidate.high.cmpge(low).all() && candidate.low.cmple(high).all();
         // 2. Which cells have nearly opposite normals. (Where triangles pass many cells each, that is not asked.)
+        let around = |of: &Candidate| [of.low - reach, of.high + reach];
         let mut cells = Cells::new(low, high, self.triangles.len());
         let (mut homes, mut passed) = (Vec::with_capacity(self.triangles.len()), 0);
         for index in 0..self.triangles.len() as u32 {
@@ -160,8 +169,7 @@ impl Surface<'_> {
             }
             let home = match self.candidate(index).filter(is_there) {
                 Some(candidate) if passed <= most_passed => {
-                    let (least, most) = (candidate.low - reach, candidate.high + reach);
-                    let (cell, count) = cells.add(least, most, &candidate.normals());
+                    let (cell, count) = cells.add(around(&candidate), &candidate.normals());
                     passed += count;
                     cell.unwrap_or(SEVERAL)
                 }
@@ -171,16 +179,13 @@ impl Surface<'_> {
             homes.push(home);
         }
         // 3. The triangles there.
-        let may_have = |candidate: &Candidate| {
-            let (least, most) = (candidate.low - reach, candidate.high + reach);
-            passed > most_passed || cells.is_any_opposed(least, most, NORMAL_SLACK)
-        };
+        let are_all = passed > most_passed;
+        let is_opposed = |of: &Candidate| are_all || cells.is_any_opposed(around(of), NORMAL_SLACK);
         let found = (0..).zip(&homes).filter_map(|(index, &home)| match home {
             NOWHERE => None,
-            SEVERAL => self.candidate(index).filter(may_have),
-            cell => (passed > most_passed || cells.is_opposed(cell, NORMAL_SLACK))
-                .then(|| self.candidate(index))
-                .flatten(),
+            SEVERAL => self.candidate(index).filter(is_opposed),
+            cell if are_all || cells.is_opposed(cell, NORMAL_SLACK) => self.candidate(index),
+            _ => None,
         });
         let found: Vec<Candidate> = found.collect();
         drop((cells, homes));
@@ -190,15 +195,6 @@ impl Surface<'_> {
         coherent_order(&middles).into_iter().filter_map(|index| found[index as usize].take()).collect()
     }
 }
-
-/// Triangles whose corners are read ahead.
-const RUN: u32 = 16;
-/// Cells that triangles pass on average, at most: beyond, marking them costs more than it saves.
-const MOST_PASSED: usize = 8;
-/// In place of the number of a cell: several.
-const SEVERAL: u32 = u32::MAX - 1;
-/// In place of the number of a cell: the triangle is no candidate.
-const NOWHERE: u32 = u32::MAX;
 
 /// A node: a box of points and the normals there.
 #[derive(Clone, Copy)]

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
-/// Triangles to a cell that a surface passes, about.
+/// Triangles to a cell that a surface passes, about: so many that few pass several cells.
 const TRIANGLES_PER_CELL: usize = 150;
 /// A surface such as a ball passes about so many times n^2 cells of a grid of n^3.
 const PASSED: usize = 3;
@@ -70,19 +70,19 @@ impl Cells {
         Self { low, scale: DVec3::from_array(scale), along, normals: vec![Normals::NOTHING; along.pow(3)] }
     }
 
-    /// The cells that the box from `least` to `most` meets. (What is outside the grid is in its outermost cells.)
+    /// The cells that the box between two ends meets. (What is outside the grid is in its outermost cells.)
     #[inline]
-    fn range(&self, least: DVec3, most: DVec3) -> Range {
+    fn range(&self, [least, most]: [DVec3; 2]) -> Range {
         let last = DVec3::splat((self.along - 1) as f64);
         let cell = |point: DVec3| ((point - self.low) * self.scale).clamp(DVec3::ZERO, last).to_array();
         let (from, to) = (cell(least), cell(most));
         [0, 1, 2].map(|k| from[k] as usize..=to[k] as usize)
     }
 
-    /// Adds a triangle in the box from `least` to `most`; the one cell, if that is all, and how many it is.
+    /// Adds a triangle in a box; the cell that this meets, if it is one, and how many it meets.
     #[inline]
-    pub(super) fn add(&mut self, least: DVec3, most: DVec3, normals: &Normals) -> (Option<u32>, usize) {
-        let range = self.range(least, most);
+    pub(super) fn add(&mut self, ends: [DVec3; 2], normals: &Normals) -> (Option<u32>, usize) {
+        let range = self.range(ends);
         let (mut count, mut last) = (0, 0);
         for cell in numbers(range, self.along) {
             let of = &mut self.normals[cell];
@@ -99,9 +99,9 @@ impl Cells {
         normals.may_oppose(normals, slack)
     }
 
-    /// Whether one of those that the box from `least` to `most` meets does.
-    pub(super) fn is_any_opposed(&self, least: DVec3, most: DVec3, slack: f32) -> bool {
-        numbers(self.range(least, most), self.along).any(|cell| self.is_opposed(cell as u32, slack))
+    /// Whether one of those that a box meets does.
+    pub(super) fn is_any_opposed(&self, ends: [DVec3; 2], slack: f32) -> bool {
+        numbers(self.range(ends), self.along).any(|cell| self.is_opposed(cell as u32, slack))
     }
 }
 

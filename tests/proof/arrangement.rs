@@ -468,15 +468,19 @@ fn edges_that_cross_by_a_rounding_come_apart() {
     }
 }
 
+/// Whether a random pair, resolved on a grid, crosses itself nowhere when it is read again.
+fn nothing_crosses_on(grid: Grid, seed: u64) {
+    let (operands, expression) = random_pair(seed).expect("both are operands");
+    let outcome = BooleanOptions::new().embed(Embed::OnGrid(grid)).evaluate(&expression, &operands).unwrap();
+    let found = crossings_again(&outcome);
+    assert!(found.is_simple() && found.tolerated == 0, "seed {seed}: {found:?}");
+}
+
 #[test]
 fn what_rounding_has_laid_on_its_own_back_vanishes() {
     // On the grid of single precision two triangles have the same corners and look opposite ways.
     for seed in [113_185, 115_054, 116_386, 120_887] {
-        let (operands, expression) = random_pair(seed).expect("both are operands");
-        let options = BooleanOptions::new().embed(Embed::OnGrid(Grid::Single));
-        let outcome = options.evaluate(&expression, &operands).unwrap();
-        let found = crossings_again(&outcome);
-        assert!(found.is_simple() && found.tolerated == 0, "seed {seed}: {found:?}");
+        nothing_crosses_on(Grid::Single, seed);
     }
 }
 
@@ -484,11 +488,7 @@ fn what_rounding_has_laid_on_its_own_back_vanishes() {
 fn edges_that_touch_crosswise_are_no_crossings() {
     // Edges touch edges in points, exactly, and nothing is inside anything; where all vertices move a little, they cross whichever way.
     for seed in [111_075, 111_135, 115_866, 117_997, 120_939, 123_423, 123_634, 128_017] {
-        let (operands, expression) = random_pair(seed).expect("both are operands");
-        let options = BooleanOptions::new().embed(Embed::OnGrid(Grid::Double));
-        let outcome = options.evaluate(&expression, &operands).unwrap();
-        let found = crossings_again(&outcome);
-        assert!(found.is_simple() && found.tolerated == 0, "seed {seed}: {found:?}");
+        nothing_crosses_on(Grid::Double, seed);
     }
 }
 

@@ -52,8 +52,8 @@ pub(super) fn pairs_with(
     // 2. Vertices beyond sides of the box around all of those: nearly all triangles are wholly beyond one.
     let corners = chosen.iter().flat_map(|&t| mesh.triangles[t as usize]);
     let all = Bounds::of(corners.map(|v| &mesh.positions[v as usize])).unwrap_or(Bounds::NOTHING);
-    // (By more than a rounding to the single precision of boxes, so that what nearly touches them is not lost.)
-    let reach = 2.0 * f64::from(f32::EPSILON) * bounds.largest();
+    // (By more than boxes are off in single precision, where coordinates of the frame are below 2, so that what nearly touches is not lost.)
+    let reach = 4.0 * f64::from(f32::EPSILON) / frame.scale();
     let mut beyond = vec![0u8; mesh.positions.len()];
     runner.fill(&mut beyond, VERTICES_AT_ONCE, |first, sides| {
         let positions = &mesh.positions[first..];

@@ -130,8 +130,7 @@ impl<'a> Region<'a> {
             return None;
         }
         let are_many = used.len() > FEW_OPERANDS;
-        let few: &[u32] = if are_many { &[] } else { &used };
-        let boxes = if are_many { Vec::new() } else { boxes_of(few, mesh, operands) };
+        let boxes = if are_many { Vec::new() } else { boxes_of(&used, mesh, operands) };
         // 2. How near is near.
         let whole = boxes.iter().copied().reduce(Bounds::united).or_else(|| mesh.bounds())?;
         let extent = (0..3).fold(0.0f64, |extent, k| extent.max(0.5 * whole.high[k] - 0.5 * whole.low[k]));
@@ -141,7 +140,7 @@ impl<'a> Region<'a> {
         let is_near = |t: usize| {
             let [a, b, c] = mesh.triangles[t].map(|v| v as usize);
             let is_in_reach = |sides: &Vec<u8>| sides[a] & sides[b] & sides[c] == 0;
-            let mut others = few.iter().zip(&sides).filter(|(k, _)| **k != operands[t]);
+            let mut others = used.iter().zip(&sides).filter(|(k, _)| **k != operands[t]);
             are_many || others.any(|(_, sides)| is_in_reach(sides))
         };
         let mut triangles = vec![Vec::new(); 1 + *used.last()? as usize];
