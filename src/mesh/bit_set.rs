@@ -30,6 +30,11 @@ impl BitSet {
         })
     }
 
+    /// How many there are.
+    pub(crate) fn count(&self) -> usize {
+        self.0.iter().map(|word| word.count_ones() as usize).sum()
+    }
+
     /// Its bits, 64 in a word.
     pub(crate) fn words(&self) -> &[u64] {
         &self.0

@@ -14,8 +14,7 @@ const FACET: usize = 50;
 /// Facets whose corners are looked up together.
 const BATCH: usize = 32;
 
-/// Facets that are read together: their vertices have room in the processor's nearer memory, so most corners are found
-/// fast, and only the vertices of each chunk are looked up among all.
+/// Facets that one of several threads reads: only the vertices of each chunk are looked up among all, by one thread.
 const CHUNK: usize = 1 << 14;
 
 /// The length that a binary STL file with this beginning should have.
@@ -62,13 +61,25 @@ pub(super) fn read(bytes: &[u8], notes: &mut Notes, control: &Control) -> Result
         announced as usize
     };
     let mut whole = Chunk::new(count);
-    let starts: Vec<usize> = (0..count).step_by(CHUNK).collect();
-    for wave in starts.chunks(parallel::piece_count(usize::MAX, 1)) {
+    let threads = parallel::piece_count(usize::MAX, 1);
+    let chunks: Vec<Range<usize>> =
+        (0..count).step_by(CHUNK).map(|start| start..(start + CHUNK).min(count)).collect();
+    // Where facets that follow each other have no corners in common, there are as many vertices to look up in the chunks as
+    // corners, and chunks are work for nothing. (Two balls whose triangles are in four runs, one thread: 0.17 s for 0.12 s.)
+    let mut is_shared = true;
+    for wave in chunks.chunks(threads) {
         control.check()?;
-        let read = |start: usize| Chunk::read(facets, start..(start + CHUNK).min(count));
-        for chunk in parallel::map(wave.to_vec(), read) {
-            whole.append(&chunk?)?;
+        if threads == 1 || !is_shared {
+            wave.iter().try_for_each(|range| whole.read(facets, range.clone()))?;
+            continue;
         }
+        let mut vertices = 0;
+        for chunk in parallel::map(wave.to_vec(), |range| Chunk::of(facets, range)) {
+            let chunk = chunk?;
+            vertices += chunk.weld.corners().len();
+            whole.append(&chunk)?;
+        }
+        is_shared = vertices < wave.iter().map(Range::len).sum::<usize>() * 3 / 2;
     }
     notes.add("facet with two equal corners dropped", whole.degenerate);
     Ok(Mesh::new(whole.weld.into_positions(), whole.triangles))
@@ -86,16 +97,23 @@ impl Chunk {
         Self { weld: Weld::new(Format::Stl, facets), triangles: Vec::with_capacity(facets), degenerate: 0 }
     }
 
-    fn read(facets: &[[u8; FACET]], range: Range<usize>) -> Result<Self, Error> {
+    /// A part of the file.
+    fn of(facets: &[[u8; FACET]], range: Range<usize>) -> Result<Self, Error> {
         let mut chunk = Self::new(range.len());
+        chunk.read(facets, range)?;
+        Ok(chunk)
+    }
+
+    /// Adds a part of the file, corner by corner.
+    fn read(&mut self, facets: &[[u8; FACET]], range: Range<usize>) -> Result<(), Error> {
         let (batches, rest) = facets[range.clone()].as_chunks::<BATCH>();
         for (i, batch) in batches.iter().enumerate() {
-            chunk.add(batch, range.start + i * BATCH)?;
+            self.add(batch, range.start + i * BATCH)?;
         }
         for (i, facet) in rest.iter().enumerate() {
-            chunk.add(&[*facet], range.end - rest.len() + i)?;
+            self.add(&[*facet], range.end - rest.len() + i)?;
         }
-        Ok(chunk)
+        Ok(())
     }
 
     /// Adds facets, the first of which is number `first` of the file.
