@@ -267,7 +267,7 @@ pub(crate) fn write_all(
         if let Some(rounding) =
             said.rounding.as_ref().filter(|_| matches!(target.kind, Kind::Mesh(_) | Kind::Forced(_)))
         {
-            let crossing = crossings::in_file(&stage.path(), rounding, limits)?;
+            let crossing = crossings::in_file(product.mesh, &stage.path(), rounding, limits)?;
             warnings.extend(crossing.map(|warning| format!("{}: {warning}", target.name())));
         }
         roundings[index] = said.rounding;

@@ -63,6 +63,10 @@ pub struct Rounding {
     pub flat_triangles: usize,
     /// Triangles whose normal points to the other side.
     pub turned_triangles: usize,
+    /// Which are flat or turned over now, in order: where the surface in the file may cross itself
+    /// ([`Mesh::self_crossings_with`]).
+    #[cfg_attr(feature = "serde", serde(skip))]
+    pub overturned: Vec<u32>,
     /// Vertices that are at the place of another one now.
     pub joined_vertices: usize,
     /// Pairs of triangles, back to back, between which there was material and is none now.
@@ -265,7 +269,7 @@ impl<'a> Examination<'a> {
         options.control.check()?;
         let films = lost_films(before, after, moved, &mesh.triangles, step, &options.control)?;
         let found: Option<Film> = films.first_film.or(films.first_gap);
-        let [collapsed_triangles, flat_triangles, turned_triangles] = self.lost_triangles();
+        let ([collapsed_triangles, flat_triangles, turned_triangles], overturned) = self.lost_triangles();
         let volume = closed.then(|| {
             if measure.is_plain() {
                 enclosed_volume_within(before, &mesh.triangles, bounds)
@@ -294,6 +298,7 @@ impl<'a> Examination<'a> {
             collapsed_triangles,
             flat_triangles,
             turned_triangles,
+            overturned,
             joined_vertices: self.joined_vertices(),
             lost_films: films.films,
             lost_gaps: films.gaps,
@@ -304,24 +309,27 @@ impl<'a> Examination<'a> {
         })
     }
 
-    /// How many triangles lose a corner, lose their area, and turn over.
-    fn lost_triangles(&self) -> [usize; 3] {
+    /// How many triangles lose a corner, lose their area, and turn over; and which do one of the latter.
+    fn lost_triangles(&self) -> ([usize; 3], Vec<u32>) {
         let (triangles, step) = (&self.mesh.triangles, self.step());
         let count = triangles.len();
         let ranges = parallel::ranges(count, parallel::piece_count(count, 1 << 16));
-        let parts = parallel::map(ranges, |range| {
-            let mut counts = [0; 3];
-            for run in triangles[range].chunks(RUN) {
+        let lost = parallel::map(ranges, |range| {
+            let mut lost = Vec::new();
+            for (first, run) in range.clone().step_by(RUN).zip(triangles[range].chunks(RUN)) {
                 if !self.has_hardly_moved() {
                     read_ahead(run.iter().flatten().map(|&v| self.before[v as usize][0].to_bits() as u32));
                 }
-                for kind in run.iter().filter_map(|triangle| self.loss(triangle, step)) {
-                    counts[kind] += 1;
+                for (t, triangle) in (first as u32..).zip(run) {
+                    lost.extend(self.loss(triangle, step).map(|kind| (t, kind)));
                 }
             }
-            counts
-        });
-        parts.into_iter().fold([0; 3], |sum, part| [0, 1, 2].map(|k| sum[k] + part[k]))
+            lost
+        })
+        .concat();
+        let mut counts = [0; 3];
+        lost.iter().for_each(|&(_, kind)| counts[kind] += 1);
+        (counts, lost.into_iter().filter(|&(_, kind)| kind > 0).map(|(t, _)| t).collect())
     }
 
     /// What a triangle loses, if anything: 0 a corner, 1 its area, 2 its side.
@@ -445,7 +453,7 @@ mod tests {
                 let [before, after] = [&positions, &after].map(|of| corners.map(|v| of[v as usize]));
                 plain_loss(before, after).into_iter().for_each(|kind| lost[kind] += 1);
             }
-            assert_eq!(seen.lost_triangles(), lost, "round {round}");
+            assert_eq!(seen.lost_triangles().0, lost, "round {round}");
             let joins =
                 |v: usize| (0..positions.len()).find(|&w| positions[w] != after[w] && after[w] == after[v]);
             let joined =

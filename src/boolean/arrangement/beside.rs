@@ -78,7 +78,7 @@ impl Surface<'_> {
     fn faces_at(&self, place: &[f64; 3], tolerance: f64) -> Vec<Face> {
         let (mut faces, reach) = (Vec::new(), 2.0 * tolerance);
         let (low, high) = (place.map(|at| at - reach), place.map(|at| at + reach));
-        self.tree.meeting(&self.frame.triangle([&low, &high, &high]), |t| {
+        self.tree().meeting(&self.frame.triangle([&low, &high, &high]), |t| {
             if faces.len() < MOST_FACES {
                 let corners = positions(&self.complex.corners_of_triangle(0, t));
                 let normal = unit_normal(&corners);
@@ -97,7 +97,7 @@ impl Surface<'_> {
         let ray = Ray { start: corner(0, *point), end: corner(1, [end_x, point[1], point[2]]) };
         let query = self.frame.triangle([&ray.start.position, &ray.start.position, &ray.end.position]);
         let mut sum = 0;
-        self.tree.meeting(&query, |t| {
+        self.tree().meeting(&query, |t| {
             sum += signed_crossing(&self.predicates, &self.complex.corners_of_triangle(0, t), &ray);
         });
         sum
@@ -108,7 +108,7 @@ impl Surface<'_> {
         let reach = 2.0 * tolerance;
         let (low, high) = (point.map(|x| x - reach), point.map(|x| x + reach));
         let mut clear = true;
-        self.tree.meeting(&self.frame.triangle([&low, &high, &high]), |t| {
+        self.tree().meeting(&self.frame.triangle([&low, &high, &high]), |t| {
             let corners = self.complex.corners_of_triangle(0, t);
             let near = unit_normal(&positions(&corners))
                 .is_none_or(|normal| height(&normal, &corners[0].position, point).abs() < reach);

@@ -1,7 +1,11 @@
 //! How two triangles of one surface meet: whether they cross, how deep, and what counts as rounding there.
 
+use std::sync::OnceLock;
+
 use super::apart::{are_plainly_apart, common_corners};
 use super::penetration;
+use super::self_pairs::tree_of;
+use crate::Mesh;
 use crate::boolean::complex::planes;
 use crate::boolean::complex::predicates::Predicates;
 use crate::boolean::complex::{Complex, Corner};
@@ -55,7 +59,9 @@ impl Crossing {
 pub(super) struct Surface<'a> {
     pub(super) complex: &'a Complex<'a>,
     pub(super) predicates: Predicates<'a>,
-    pub(super) tree: BoxTree,
+    mesh: &'a Mesh,
+    /// The boxes of all triangles, made when first asked for.
+    tree: OnceLock<BoxTree>,
     pub(super) frame: Frame,
     pub(super) low: [f64; 3],
     pub(super) high: [f64; 3],
@@ -66,23 +72,29 @@ pub(super) struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    pub(super) fn new(
-        complex: &'a Complex<'a>,
-        tree: BoxTree,
-        frame: Frame,
-        bounds: &Bounds,
-        part: f64,
-    ) -> Self {
+    /// The complex is of that mesh alone.
+    pub(super) fn new(complex: &'a Complex<'a>, mesh: &'a Mesh, bounds: &Bounds, part: f64) -> Self {
         Self {
             complex,
             predicates: Predicates::new(complex),
-            tree,
-            frame,
+            mesh,
+            tree: OnceLock::new(),
+            frame: Frame::of(bounds.low, bounds.high),
             low: bounds.low,
             high: bounds.high,
             part,
             largest: bounds.largest(),
         }
+    }
+
+    /// With the boxes of all triangles, if they are there.
+    pub(super) fn with_tree(self, tree: Option<BoxTree>) -> Self {
+        Self { tree: tree.map_or_else(OnceLock::new, OnceLock::from), ..self }
+    }
+
+    /// The boxes of all triangles.
+    pub(super) fn tree(&self) -> &BoxTree {
+        self.tree.get_or_init(|| tree_of(self.mesh, &self.frame))
     }
 
     /// The crossing of a pair of triangles, if they cross.
