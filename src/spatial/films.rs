@@ -11,7 +11,7 @@ use glam::DVec3;
 use super::morton::coherent_order;
 use super::opposed::{Cells, Normals};
 use crate::exact::{Sign, orient3d};
-use crate::mesh::BitSet;
+use crate::mesh::{BitSet, Bounds};
 use crate::parallel::read_ahead;
 use crate::{Control, Limit};
 
@@ -158,12 +158,24 @@ impl Surface<'_> {
         }
         let is_there =
             |candidate: &Candidate| candidate.high.cmpge(low).all() && candidate.low.cmple(high).all();
+        // (Where hardly a vertex was moved, most triangles are wholly beyond one of its sides: told by a byte for each vertex.)
+        let all = Bounds { low: low.to_array(), high: high.to_array() };
+        let sides: Vec<u8> = self.before.iter().map(|position| all.sides_beyond(position, 0.0)).collect();
+        let is_beyond = |index: u32| {
+            let [a, b, c] = self.triangles[index as usize].map(|v| sides[v as usize]);
+            a & b & c != 0
+        };
+        let are_most_beyond = 2 * sides.iter().filter(|&&sides| sides != 0).count() > sides.len();
         // 2. Which cells have nearly opposite normals. (Where triangles pass many cells each, that is not asked.)
         let around = |of: &Candidate| [of.low - reach, of.high + reach];
         let mut cells = Cells::new(low, high, self.triangles.len());
         let (mut homes, mut passed) = (Vec::with_capacity(self.triangles.len()), 0);
         for index in 0..self.triangles.len() as u32 {
-            if index.is_multiple_of(RUN) {
+            if are_most_beyond && is_beyond(index) {
+                homes.push(NOWHERE);
+                continue;
+            }
+            if !are_most_beyond && index.is_multiple_of(RUN) {
                 let run = self.triangles[index as usize..].iter().take(RUN as usize).flatten();
                 read_ahead(run.map(|&v| self.before[v as usize][0].to_bits() as u32));
             }
@@ -441,6 +453,39 @@ mod tests {
             let (found, expected) = (with(MOST_PASSED * mesh.triangles.len()), with(0));
             assert_eq!((found.films, found.gaps), (expected.films, expected.gaps), "{thickness}");
             assert!(found.gaps > 0 && (found.films > 0) == (thickness < 1e-7), "{thickness}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn where_hardly_a_vertex_moves_all_is_found_that_pairs_lose() {
+        let ball = primitives::icosphere(1.0, 3).unwrap().rotated([1.0, 2.0, 3.0], 0.7).unwrap();
+        for thickness in [1e-9, 1e-8, 2e-8] {
+            let inner = ball.clone().scaled([1.0 - thickness; 3]).unwrap().reversed();
+            let mut mesh = Mesh::merged([&ball, &inner]).unwrap();
+            let is_cut = |position: &[f64; 3]| position[0] + 0.3 * position[1] > 0.9;
+            let held = rounded(&mesh);
+            let all = mesh.positions.len();
+            (mesh.positions.iter_mut().zip(&held))
+                .filter(|(position, _)| !is_cut(position))
+                .for_each(|(position, held)| *position = *held);
+            let step = f64::from(f32::EPSILON) * mesh.bounds().unwrap().largest();
+            let after = rounded(&mesh);
+            let moved = moved(&mesh, &after);
+            assert!(0 < moved.count() && moved.count() < all / 8);
+            let (before, triangles) = (&*mesh.positions, &*mesh.triangles);
+            let surface = Surface { before, after: &after, moved: &moved, triangles, step };
+            let candidates: Vec<Candidate> =
+                (0..triangles.len() as u32).filter_map(|index| surface.candidate(index)).collect();
+            let found = LostFilms::default();
+            let mut expected =
+                Search { before, after: &after, triangles, step, candidates: &candidates, found };
+            for i in 0..candidates.len() {
+                (i + 1..candidates.len()).for_each(|j| expected.examine(i, j));
+            }
+            let expected = expected.found;
+            let found = search(&surface, MOST_PASSED * triangles.len(), &Control::new()).unwrap();
+            assert_eq!((found.films, found.gaps), (expected.films, expected.gaps), "{thickness}");
+            assert!(found.films > 3, "{thickness}: {found:?}");
         }
     }
 
