@@ -27,11 +27,7 @@ impl Format {
         let named = path.and_then(Self::from_path);
         let display = || path.map_or_else(|| "the input".to_string(), |path| path.display().to_string());
         match (named, Self::from_content(bytes)) {
-            (Some(named), Some(found)) if named != found => Ok(Detected {
-                format: found,
-                warning: Some(format!("the name says {named}, but the content is {found}; read as {found}")),
-            }),
-            (_, Some(format)) => Ok(Detected { format, warning: None }),
+            (named, Some(format)) => Ok(Detected { format, warning: other_name(named, format) }),
             (named, None) => match (named, foreign(bytes)) {
                 (Some(format), None) => Ok(Detected { format, warning: None }),
                 (Some(format), Some(what)) => Err(malformed(format, "byte 0", format!("the file is {what}"))),
@@ -54,11 +50,8 @@ impl Format {
             // Names of parts stand at the end of a package, in the clear.
             return memchr::memmem::rfind(bytes, b".model").map(|_| Self::ThreeMf);
         }
-        if matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r' | b' ' | b'\t', ..]) {
-            return Some(Self::Ply);
-        }
-        if super::stl::binary_length(bytes) == Some(bytes.len() as u64) {
-            return Some(Self::Stl);
+        if let Some(format) = Self::from_beginning(bytes, bytes.len() as u64) {
+            return Some(format);
         }
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let start = text.trim_ascii_start();
@@ -76,6 +69,25 @@ impl Format {
         }
         looks_like_obj(scanner).then_some(Self::Obj)
     }
+}
+
+impl Format {
+    /// PLY, or binary STL of the length it announces, if a file of that length that begins so can be nothing else.
+    pub(super) fn from_beginning(bytes: &[u8], length: u64) -> Option<Self> {
+        if bytes.starts_with(b"glTF") || cfg!(feature = "threemf") && bytes.starts_with(ZIP) {
+            return None;
+        }
+        if matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r' | b' ' | b'\t', ..]) {
+            return Some(Self::Ply);
+        }
+        (super::stl::binary_length(bytes) == Some(length)).then_some(Self::Stl)
+    }
+}
+
+/// A warning where the name of a file stands for another format than that of its content.
+pub(super) fn other_name(named: Option<Format>, found: Format) -> Option<String> {
+    let named = named.filter(|named| *named != found)?;
+    Some(format!("the name says {named}, but the content is {found}; read as {found}"))
 }
 
 /// What ZIP archives begin with.

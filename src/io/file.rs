@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::pictures::{self, PictureFile};
 use super::{
-    Format, FormatError, Loaded, ReadOptions, WriteOptions, Written, finish, gltf, obj, read, write_report,
+    Format, FormatError, Loaded, ReadOptions, WriteOptions, Written, finish, gltf, obj, pieces, read,
+    write_report,
 };
 use crate::{Error, FileAction, Mesh};
 
@@ -37,7 +38,11 @@ impl Mesh {
 /// # Errors
 /// [`Error::File`], [`FormatError::Unknown`], and those of [`read`].
 pub fn load(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Loaded, Error> {
-    loaded(path.as_ref(), options, read, |loaded| &mut loaded.warnings)
+    let path = path.as_ref();
+    match pieces::load(path, options)? {
+        Some(loaded) => Ok(loaded),
+        None => loaded(path, options, read, |loaded| &mut loaded.warnings),
+    }
 }
 
 /// The bytes of a file.

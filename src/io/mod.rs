@@ -44,6 +44,7 @@ mod options;
 mod outline;
 mod parts;
 mod pictures;
+mod pieces;
 mod ply;
 mod rounding;
 mod scan;
@@ -93,7 +94,7 @@ pub fn read(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Loade
     // What usual files take while they are read; what hostile ones may take is bounded reader by reader.
     let _reservation = options.control.reserve(2 * bytes.len() as u64)?;
     let mut contents = Contents::default();
-    let (mesh, mut warnings) = match format {
+    let (mesh, warnings) = match format {
         Format::Obj => obj::read(bytes, options)?,
         Format::Gltf | Format::Glb => {
             let scene = gltf::read(bytes, format, options, false)?;
@@ -110,10 +111,15 @@ pub fn read(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Loade
             (mesh, warnings)
         }
     };
+    Ok(loaded(mesh, format, warnings, contents))
+}
+
+/// What was read, with a warning if that is nothing.
+fn loaded(mesh: Mesh, format: Format, mut warnings: Vec<String>, contents: Contents) -> Loaded {
     if mesh.is_empty() {
         warnings.push("the file has no triangles".to_string());
     }
-    Ok(Loaded { mesh, format, warnings, contents })
+    Loaded { mesh, format, warnings, contents }
 }
 
 /// Writes a mesh to a stream, and returns what the format could not keep, one sentence each.

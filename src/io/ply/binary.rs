@@ -76,26 +76,12 @@ impl<'a, const BIG: bool> BinarySource<'a, BIG> {
             [Property::Scalar(Type::F64), Property::Scalar(Type::F64), Property::Scalar(Type::F64)]
                 if in_order =>
             {
-                let decode = |record: &[u8; 24]| {
-                    let (numbers, _) = record.as_chunks::<8>();
-                    [0, 1, 2].map(|axis| {
-                        let bytes = numbers[axis];
-                        if BIG { f64::from_be_bytes(bytes) } else { f64::from_le_bytes(bytes) }
-                    })
-                };
-                records(block, count, stride, offset, decode)
+                records(block, count, stride, offset, double_point::<BIG>)
             }
             [Property::Scalar(Type::F32), Property::Scalar(Type::F32), Property::Scalar(Type::F32)]
                 if in_order =>
             {
-                let decode = |record: &[u8; 12]| {
-                    let (numbers, _) = record.as_chunks::<4>();
-                    [0, 1, 2].map(|axis| {
-                        let bytes = numbers[axis];
-                        f64::from(if BIG { f32::from_be_bytes(bytes) } else { f32::from_le_bytes(bytes) })
-                    })
-                };
-                records(block, count, stride, offset, decode)
+                records(block, count, stride, offset, single_point::<BIG>)
             }
             _ => return false,
         };
@@ -107,16 +93,12 @@ impl<'a, const BIG: bool> BinarySource<'a, BIG> {
 
     /// Reads faces that are all triangles, their counts in bytes and their indices in 32 bits.
     fn triangles(&mut self, element: &Element, body: &mut Body) -> bool {
-        let usual = matches!(
-            element.properties[..],
-            [Property::List { count: Type::U8 | Type::I8, item: Type::I32 | Type::U32 }]
-        );
         let (records, _) = self.rest().as_chunks::<13>();
         let Some(records) = usize::try_from(element.count).ok().and_then(|count| records.get(..count)) else {
             return false;
         };
         // (Those of strips that come before stay.)
-        if !usual
+        if !element.lists_short_faces()
             || !body.faces.is_empty()
             || records.len() >= u32::MAX as usize
             || !parallel::all(records, |record| record[0] == 3)
@@ -124,20 +106,44 @@ impl<'a, const BIG: bool> BinarySource<'a, BIG> {
             return false;
         }
         let triangles = parallel::build(records.len(), SMALLEST_PIECE, |first, run: &mut [[u32; 3]]| {
-            for (triangle, record) in run.iter_mut().zip(&records[first..]) {
-                let (numbers, _) = record[1..].as_chunks::<4>();
-                *triangle = [0, 1, 2].map(|corner| {
-                    let bytes = numbers[corner];
-                    if BIG { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) }
-                });
+            for (read, record) in run.iter_mut().zip(&records[first..]) {
+                *read = triangle::<BIG>(record);
             }
         });
-        let (faces, dropped) = FaceList::from_triangles(triangles);
-        body.faces = faces;
-        body.notes.add("face with fewer than three different corners dropped", dropped);
+        body.take_triangles(FaceList::from_triangles(triangles));
         self.at += records.len() * 13;
         true
     }
+}
+
+/// A point in double precision.
+#[inline]
+pub(super) fn double_point<const BIG: bool>(record: &[u8; 24]) -> [f64; 3] {
+    let (numbers, _) = record.as_chunks::<8>();
+    [0, 1, 2].map(|axis| {
+        let bytes = numbers[axis];
+        if BIG { f64::from_be_bytes(bytes) } else { f64::from_le_bytes(bytes) }
+    })
+}
+
+/// A point in single precision.
+#[inline]
+pub(super) fn single_point<const BIG: bool>(record: &[u8; 12]) -> [f64; 3] {
+    let (numbers, _) = record.as_chunks::<4>();
+    [0, 1, 2].map(|axis| {
+        let bytes = numbers[axis];
+        f64::from(if BIG { f32::from_be_bytes(bytes) } else { f32::from_le_bytes(bytes) })
+    })
+}
+
+/// The corners of a face of three, after their count.
+#[inline]
+pub(super) fn triangle<const BIG: bool>(record: &[u8; 13]) -> [u32; 3] {
+    let (numbers, _) = record[1..].as_chunks::<4>();
+    [0, 1, 2].map(|corner| {
+        let bytes = numbers[corner];
+        if BIG { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) }
+    })
 }
 
 /// The further properties of all elements of one size.

@@ -68,6 +68,12 @@ pub(super) struct Body {
 }
 
 impl Body {
+    /// Takes faces that are all triangles, and notes how many were dropped.
+    pub(super) fn take_triangles(&mut self, (faces, dropped): (FaceList, usize)) {
+        self.faces = faces;
+        self.notes.add("face with fewer than three different corners dropped", dropped);
+    }
+
     /// Reads all elements.
     pub(super) fn read(header: &Header, source: &mut impl Source, control: &Control) -> Result<Self, Error> {
         let mut body = Self::default();

@@ -99,6 +99,14 @@ impl Element {
         self.properties.iter().map(size).sum()
     }
 
+    /// Whether an element is a list of corners alone, their count in a byte and each in 32 bits.
+    pub(super) fn lists_short_faces(&self) -> bool {
+        matches!(
+            self.properties[..],
+            [Property::List { count: Type::U8 | Type::I8, item: Type::I32 | Type::U32 }]
+        )
+    }
+
     /// Whether every element has the same size in a binary file.
     pub(super) fn is_fixed(&self) -> bool {
         self.properties.iter().all(|property| matches!(property, Property::Scalar(_)))

@@ -8,8 +8,10 @@ mod body;
 mod channels;
 mod header;
 mod properties;
+mod usual;
 mod write;
 
+pub(super) use usual::Usual;
 pub(super) use write::write;
 
 use super::faces::{index_error, too_large};
@@ -29,23 +31,34 @@ const ROOM: usize = 16;
 pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<String>), Error> {
     let header = Header::parse(bytes)?;
     let control = &options.control;
-    let mut body = match header.coding {
+    let body = match header.coding {
         Coding::Ascii => Body::read(&header, &mut AsciiSource::new(bytes, header.end), control)?,
         Coding::LittleEndian => binary::read::<false>(bytes, &header, control)?,
         Coding::BigEndian => binary::read::<true>(bytes, &header, control)?,
     };
+    let place = |offset| match header.coding {
+        Coding::Ascii => line_place(bytes, offset),
+        _ => format!("byte {offset}"),
+    };
+    finished(&header, body, bytes.len(), place, options)
+}
+
+/// The mesh and the warnings of a file with so many bytes.
+fn finished(
+    header: &Header,
+    mut body: Body,
+    length: usize,
+    place: impl Fn(usize) -> String,
+    options: &ReadOptions,
+) -> Result<(Mesh, Vec<String>), Error> {
     let Some(positions) = body.positions.take() else {
         return Err(malformed(Format::Ply, "header", "there is no element \"vertex\""));
     };
     let mut notes = std::mem::take(&mut body.notes);
     let left_out = header.elements.iter().map(|element| element.left_out).sum();
     notes.add("property after the first 64 of vertices or faces not read", left_out);
-    unread(&header, &mut notes);
-    let mesh = assemble(positions, body, ROOM * bytes.len().max(1 << 12), &mut notes, options)?;
-    let place = |offset| match header.coding {
-        Coding::Ascii => line_place(bytes, offset),
-        _ => format!("byte {offset}"),
-    };
+    unread(header, &mut notes);
+    let mesh = assemble(positions, body, ROOM.saturating_mul(length.max(1 << 12)), &mut notes, options)?;
     Ok((mesh, notes.into_warnings(place)))
 }
 
