@@ -134,7 +134,9 @@ impl<'a> Framed<'a> {
             let (mut sum, mut products, mut made) = (Sum::default(), 0.0, S::default());
             for run in chunk.chunks(RUN) {
                 read_ahead(run.iter().flatten().map(|&corner| {
-                    self.positions.get(corner as usize).map_or(0, |position| position[0].to_bits() as u32)
+                    self.positions
+                        .get(corner as usize)
+                        .map_or(0, |position| (position[0].to_bits() ^ position[2].to_bits()) as u32)
                 }));
                 let mut part = 0.0;
                 for &triangle in run {
