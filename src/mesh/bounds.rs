@@ -56,14 +56,19 @@ impl Bounds {
         }
     }
 
-    /// Which sides a point lies beyond by more than `reach`, a bit for each of the six. A triangle is further than that from the box, along
-    /// some axis, iff its corners have a side in common.
+    /// The box that reaches so much further on all sides.
+    pub(crate) fn grown(&self, reach: f64) -> Self {
+        Self { low: self.low.map(|low| low - reach), high: self.high.map(|high| high + reach) }
+    }
+
+    /// Which sides a point lies beyond, a bit for each of the six. A triangle is beside the box, along some axis, iff its corners have a side in
+    /// common.
     #[inline]
-    pub(crate) fn sides_beyond(&self, point: &[f64; 3], reach: f64) -> u8 {
+    pub(crate) fn sides_beyond(&self, point: &[f64; 3]) -> u8 {
         let mut sides = 0;
         for axis in 0..3 {
-            sides |= u8::from(point[axis] < self.low[axis] - reach) << (2 * axis);
-            sides |= u8::from(point[axis] > self.high[axis] + reach) << (2 * axis + 1);
+            sides |= u8::from(point[axis] < self.low[axis]) << (2 * axis);
+            sides |= u8::from(point[axis] > self.high[axis]) << (2 * axis + 1);
         }
         sides
     }
@@ -148,7 +153,7 @@ mod tests {
     #[test]
     fn sides_tell_what_is_beyond_a_box() {
         let bounds = Bounds { low: [0.0; 3], high: [1.0, 2.0, 3.0] };
-        let sides = |point, reach| bounds.sides_beyond(&point, reach);
+        let sides = |point, reach| bounds.grown(reach).sides_beyond(&point);
         assert_eq!((sides([0.5, 1.0, 1.0], 0.0), sides([0.0, 2.0, 3.0], 0.0)), (0, 0));
         assert_eq!((sides([-0.5, 3.0, 1.0], 0.0), sides([1.0, 1.0, 3.5], 0.0)), (0b1001, 0b100000));
         assert_eq!((sides([-0.5, 3.0, 1.0], 0.75), sides([1.0, 1.0, 3.5], 0.5)), (0b1000, 0));

@@ -12,7 +12,9 @@ use crate::{Error, Mesh};
 const MANY: usize = 8;
 /// Triangles that one thread compares with boxes before the limits are checked.
 const TRIANGLES_AT_ONCE: usize = 1 << 14;
-/// The same for vertices.
+/// The mark of a vertex of those triangles, beside the six for sides.
+const ONE_OF_THEM: u8 = 1 << 6;
+/// Vertices that one thread compares with a box before the limits are checked.
 const VERTICES_AT_ONCE: usize = 1 << 16;
 
 /// The pairs of triangles of a closed surface, the lower one first, that may cross or lie on each other and of which at least one is
@@ -39,38 +41,36 @@ pub(super) fn pairs_with(
         runner.sort(&mut pairs);
         return Ok(pairs);
     }
-    // 1. What is known of neighbours: nothing of the vertices of those triangles, and of others it is not asked.
-    let mut is_other = vec![true; mesh.positions.len()];
-    for &t in &chosen {
-        mesh.triangles[t as usize].iter().for_each(|&v| is_other[v as usize] = false);
-    }
-    let is_beside = |t: &u32| mesh.triangles[*t as usize].iter().any(|&v| !is_other[v as usize]);
-    let beside = runner.gather(mesh.triangles.len(), TRIANGLES_AT_ONCE, 0, |range, beside| {
-        beside.extend(range.map(|t| t as u32).filter(is_beside));
-    })?;
-    let neighbours = Neighbours::new(mesh, bounds.largest(), is_other, &beside);
-    // 2. Vertices beyond sides of the box around all of those: nearly all triangles are wholly beyond one.
-    let corners = chosen.iter().flat_map(|&t| mesh.triangles[t as usize]);
-    let all = Bounds::of(corners.map(|v| &mesh.positions[v as usize])).unwrap_or(Bounds::NOTHING);
-    // (By more than boxes are off in single precision, where coordinates of the frame are below 2, so that what nearly touches is not lost.)
+    // 1. For each vertex whether it is one of theirs, and which sides of the box around all of those it lies beyond: nearly all triangles are
+    //    wholly beyond one. (By more than boxes are off in single precision, where coordinates of the frame are below 2, so that what nearly
+    //    touches is not lost.)
     let reach = 4.0 * f64::from(f32::EPSILON) / frame.scale();
-    let mut beyond = vec![0u8; mesh.positions.len()];
-    runner.fill(&mut beyond, VERTICES_AT_ONCE, |first, sides| {
-        let positions = &mesh.positions[first..];
-        sides
-            .iter_mut()
-            .zip(positions)
-            .for_each(|(sides, position)| *sides = all.sides_beyond(position, reach));
+    let corners = chosen.iter().flat_map(|&t| mesh.triangles[t as usize]);
+    let all = Bounds::of(corners.clone().map(|v| &mesh.positions[v as usize])).unwrap_or(Bounds::NOTHING);
+    let all = all.grown(reach);
+    let mut marks = vec![0u8; mesh.positions.len()];
+    runner.fill(&mut marks, VERTICES_AT_ONCE, |first, marks| {
+        marks.iter_mut().zip(&mesh.positions[first..]).for_each(|(mark, at)| *mark = all.sides_beyond(at));
     })?;
+    corners.for_each(|v| marks[v as usize] |= ONE_OF_THEM);
+    // 2. Triangles beyond no side, and among them those at such vertices: nothing is known of these, and of others it is not asked.
+    let marks_of = |t: usize| mesh.triangles[t].map(|v| marks[v as usize]);
+    let is_there = |t: &usize| {
+        let [a, b, c] = marks_of(*t);
+        a & b & c & !ONE_OF_THEM == 0
+    };
+    let there = runner.gather(mesh.triangles.len(), TRIANGLES_AT_ONCE, 0, |range, there| {
+        there.extend(range.filter(is_there).map(|t| t as u32));
+    })?;
+    let is_beside = |t: &u32| marks_of(*t as usize).iter().any(|mark| mark & ONE_OF_THEM != 0);
+    let beside: Vec<u32> = there.iter().copied().filter(is_beside).collect();
+    let is_other = marks.iter().map(|mark| mark & ONE_OF_THEM == 0).collect();
+    let neighbours = Neighbours::new(mesh, bounds.largest(), is_other, &beside);
     // 3. Whose boxes meet theirs.
     let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
     let tree = BoxTree::new(&chosen, box_of);
-    let mut pairs = runner.gather(mesh.triangles.len(), TRIANGLES_AT_ONCE, 0, |range, found| {
-        for t in range.map(|t| t as u32) {
-            let [a, b, c] = mesh.triangles[t as usize].map(|v| beyond[v as usize]);
-            if a & b & c != 0 {
-                continue;
-            }
+    let mut pairs = runner.gather(there.len(), TRIANGLES_AT_ONCE, 0, |range, found| {
+        for &t in &there[range] {
             tree.meeting(&box_of(t), |other| {
                 // Of two that are both among them, once.
                 let pair = [t.min(other), t.max(other)];

@@ -3,6 +3,8 @@
 //! Exact contact leaves nothing behind. Where faces that were meant to be flush are a little apart, the exact result has a film
 //! of material or a gap between them. It is right, but lost as soon as it is written in single precision, and hardly meant.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use crate::boolean::complex::planes::unit_normal;
@@ -10,7 +12,7 @@ use crate::boolean::result::origins::Origins;
 use crate::exact::at_hand::largest_coordinate;
 use crate::exact::{Projection, Sign, orient2d, orient3d};
 use crate::mesh::Bounds;
-use crate::parallel::{Runner, map_chunks};
+use crate::parallel::{Runner, build};
 use crate::spatial::{BoxTree, Frame, visit_pairs};
 use crate::{Control, Mesh};
 
@@ -54,11 +56,7 @@ impl NearContacts {
     /// Of a result with the origins of its triangles. O(n) to find out where the parts of the operands are, O(k log k) for the k
     /// triangles where they may be near one another.
     pub(crate) fn find(mesh: &Mesh, origins: &Origins) -> Self {
-        let mut operands: Vec<u32> = Vec::with_capacity(mesh.triangles.len());
-        for (origin, count, _) in origins.stretches() {
-            operands.resize(operands.len() + count as usize, origin.operand);
-        }
-        let Some(region) = Region::of(mesh, &operands) else { return Self::default() };
+        let Some(region) = Region::of(mesh, &runs_of(origins)) else { return Self::default() };
         let mut found = region.pairs().unwrap_or_default();
         // One for each corner, the nearest.
         found.sort_by(|x, y| {
@@ -77,78 +75,118 @@ type Found = (u32, NearContact);
 /// Vertices a piece of work.
 const CHUNK: usize = 1 << 14;
 
-/// The boxes of what a result has of each of a few operands.
-fn boxes_of(few: &[u32], mesh: &Mesh, operands: &[u32]) -> Vec<Bounds> {
-    // Marked first at the vertices, whose positions are then read once and in order.
-    let mut marks = vec![0u8; mesh.positions.len()];
-    let mut t = 0;
-    for run in operands.chunk_by(|one, next| one == next) {
-        let mark = 1 << few.iter().position(|operand| *operand == run[0]).unwrap_or_default();
-        for corners in &mesh.triangles[t..t + run.len()] {
-            corners.iter().for_each(|&v| marks[v as usize] |= mark);
-        }
-        t += run.len();
-    }
-    let mut boxes = vec![Bounds::NOTHING; few.len()];
-    for (&marks, position) in marks.iter().zip(&*mesh.positions) {
-        let mut left = marks;
-        while left != 0 {
-            boxes[left.trailing_zeros() as usize].include(position);
-            left &= left - 1;
-        }
-    }
-    boxes
+/// Triangles of a result that follow each other and are of one operand.
+struct Run {
+    operand: u32,
+    triangles: Range<usize>,
 }
 
-/// For each vertex which sides of a box it lies beyond by more than `reach`.
-fn sides_beyond(of: &Bounds, reach: f64, mesh: &Mesh) -> Vec<u8> {
-    map_chunks(&mesh.positions, CHUNK, |positions| {
-        positions.iter().map(|position| of.sides_beyond(position, reach)).collect::<Vec<u8>>()
-    })
-    .concat()
+fn runs_of(origins: &Origins) -> Vec<Run> {
+    let mut end = 0;
+    let run = |(operand, count)| {
+        end += count;
+        Run { operand, triangles: end - count..end }
+    };
+    origins.operands().into_iter().map(run).collect()
+}
+
+/// What a result has of a few operands.
+struct Few {
+    /// For each vertex which of them have it, a bit each.
+    marks: Vec<u8>,
+    /// The boxes of their triangles.
+    boxes: Vec<Bounds>,
+}
+
+impl Few {
+    /// Of operands in ascending order.
+    fn of(operands: &[u32], mesh: &Mesh, runs: &[Run]) -> Self {
+        // Marked first at the vertices, whose positions are then read once and in order.
+        let mut marks = vec![0u8; mesh.positions.len()];
+        for run in runs {
+            let mark = 1 << operands.binary_search(&run.operand).unwrap_or_default();
+            for corners in &mesh.triangles[run.triangles.clone()] {
+                corners.iter().for_each(|&v| marks[v as usize] |= mark);
+            }
+        }
+        let mut boxes = vec![Bounds::NOTHING; operands.len()];
+        for (marks, positions) in marks.chunk_by(|x, y| x == y).scan(0, |end, marks| {
+            *end += marks.len();
+            Some((marks[0], &mesh.positions[*end - marks.len()..*end]))
+        }) {
+            let of_run = positions.iter().fold(Bounds::NOTHING, |mut bounds, position| {
+                bounds.include(position);
+                bounds
+            });
+            let of_them = boxes.iter_mut().enumerate().filter(|(k, _)| marks >> k & 1 == 1);
+            of_them.for_each(|(_, bounds)| *bounds = bounds.united(of_run));
+        }
+        Self { marks, boxes }
+    }
+
+    /// For each vertex of others which sides of the box of one it lies beyond by more than `reach`.
+    fn sides_beyond(&self, k: usize, reach: f64, mesh: &Mesh) -> Vec<u8> {
+        let (bounds, others) = (self.boxes[k].grown(reach), !(1 << k));
+        build(mesh.positions.len(), CHUNK, |first, sides: &mut [u8]| {
+            for ((sides, marks), position) in
+                sides.iter_mut().zip(&self.marks[first..]).zip(&mesh.positions[first..])
+            {
+                if marks & others != 0 {
+                    *sides = bounds.sides_beyond(position);
+                }
+            }
+        })
+    }
 }
 
 /// The triangles of a result that may be near one of another operand.
 struct Region<'a> {
     mesh: &'a Mesh,
-    operands: &'a [u32],
+    /// The operand of each triangle, if there are many.
+    operands: Vec<u32>,
     frame: Frame,
     /// What is no further apart is near, at the most.
     reach: f64,
-    /// By operand.
+    /// By operand, if there are few.
     triangles: Vec<Vec<u32>>,
 }
 
 impl<'a> Region<'a> {
     /// `None` where no two operands come near one another.
-    fn of(mesh: &'a Mesh, operands: &'a [u32]) -> Option<Self> {
+    fn of(mesh: &'a Mesh, runs: &[Run]) -> Option<Self> {
         // 1. What is left of which operands, and where, if they are few.
-        let mut used: Vec<u32> = operands.chunk_by(|one, next| one == next).map(|run| run[0]).collect();
+        let mut used: Vec<u32> = runs.iter().map(|run| run.operand).collect();
         used.sort_unstable();
         used.dedup();
         if used.len() < 2 {
             return None;
         }
-        let are_many = used.len() > FEW_OPERANDS;
-        let boxes = if are_many { Vec::new() } else { boxes_of(&used, mesh, operands) };
+        let few = (used.len() <= FEW_OPERANDS).then(|| Few::of(&used, mesh, runs));
         // 2. How near is near.
-        let whole = boxes.iter().copied().reduce(Bounds::united).or_else(|| mesh.bounds())?;
+        let boxes = few.iter().flat_map(|few| few.boxes.iter().copied());
+        let whole = boxes.reduce(Bounds::united).or_else(|| mesh.bounds())?;
         let extent = (0..3).fold(0.0f64, |extent, k| extent.max(0.5 * whole.high[k] - 0.5 * whole.low[k]));
         let reach = (SINGLE * whole.largest()).min(2.0 * PART_OF_REGION * extent);
-        // 3. The triangles in reach of another's box, wholly beyond none of its sides. (Of many operands, each is near some other.)
-        let sides: Vec<Vec<u8>> = boxes.iter().map(|of| sides_beyond(of, reach, mesh)).collect();
-        let is_near = |t: usize| {
-            let [a, b, c] = mesh.triangles[t].map(|v| v as usize);
-            let is_in_reach = |sides: &Vec<u8>| sides[a] & sides[b] & sides[c] == 0;
-            let mut others = used.iter().zip(&sides).filter(|(k, _)| **k != operands[t]);
-            are_many || others.any(|(_, sides)| is_in_reach(sides))
-        };
-        let mut triangles = vec![Vec::new(); 1 + *used.last()? as usize];
-        (0..mesh.triangles.len())
-            .filter(|&t| is_near(t))
-            .for_each(|t| triangles[operands[t] as usize].push(t as u32));
         let frame = Frame::of(whole.low, whole.high);
-        Some(Self { mesh, operands, frame, reach, triangles })
+        // 3. The triangles in reach of another's box, wholly beyond none of its sides. (Of many operands, each is near some other.)
+        let Some(few) = few else {
+            let operands = runs.iter().flat_map(|run| run.triangles.clone().map(|_| run.operand)).collect();
+            let all = (0..mesh.triangles.len() as u32).collect();
+            return Some(Self { mesh, operands, frame, reach, triangles: vec![all] });
+        };
+        let sides: Vec<Vec<u8>> = (0..used.len()).map(|k| few.sides_beyond(k, reach, mesh)).collect();
+        let mut triangles = vec![Vec::new(); used.len()];
+        for run in runs {
+            let own = used.binary_search(&run.operand).unwrap_or_default();
+            let others: Vec<&[u8]> =
+                sides.iter().enumerate().filter(|(k, _)| *k != own).map(|(_, sides)| &**sides).collect();
+            let is_near = |t: &usize| {
+                let [a, b, c] = mesh.triangles[*t].map(|v| v as usize);
+                others.iter().any(|sides| sides[a] & sides[b] & sides[c] == 0)
+            };
+            triangles[own].extend(run.triangles.clone().filter(is_near).map(|t| t as u32));
+        }
+        Some(Self { mesh, operands: Vec::new(), frame, reach, triangles })
     }
 
     fn pairs(mut self) -> Result<Vec<Found>, crate::control::Limit> {
@@ -168,7 +206,7 @@ impl<'a> Region<'a> {
         let examine = |pairs: &[[u32; 2]], found: &mut Vec<Found>| {
             pairs.iter().for_each(|&pair| self.examine(pair, found));
         };
-        if filled.len() > FEW_OPERANDS {
+        if !self.operands.is_empty() {
             let all = tree(&filled.concat());
             return visit_pairs(&all, &all, runner, examine);
         }
@@ -188,7 +226,8 @@ impl<'a> Region<'a> {
 
     /// The corners of each of two triangles that are nearly on the other.
     fn examine(&self, [s, t]: [u32; 2], found: &mut Vec<Found>) {
-        if self.operands[s as usize] == self.operands[t as usize] {
+        // (Those of few operands are never of one.)
+        if !self.operands.is_empty() && self.operands[s as usize] == self.operands[t as usize] {
             return;
         }
         let (of_s, of_t) = (self.corners(s), self.corners(t));

@@ -163,6 +163,26 @@ impl Origins {
         })
     }
 
+    /// How many triangles of one operand follow each other, over and over.
+    pub(crate) fn operands(&self) -> Vec<(u32, usize)> {
+        let mut counts: Vec<(u32, usize)> = Vec::new();
+        let mut add = |operand: u32, count: usize| match counts.last_mut() {
+            Some(last) if last.0 == operand => last.1 += count,
+            _ => counts.push((operand, count)),
+        };
+        for stretch in &self.stretches {
+            match stretch {
+                Stretch::Kept(kept) => {
+                    let count = kept.bits.iter().map(|word| word.count_ones() as usize).sum();
+                    add(kept.first.operand, count);
+                }
+                Stretch::Runs(runs) => runs.iter().for_each(|run| add(run.first.operand, run.count as usize)),
+            }
+        }
+        counts.retain(|&(_, count)| count > 0);
+        counts
+    }
+
     fn runs(&self) -> impl Iterator<Item = Run> {
         self.stretches.iter().flat_map(|stretch| {
             let (kept, runs) = match stretch {
@@ -250,6 +270,9 @@ mod tests {
             let mut twice = runs.clone();
             twice.append(runs.clone());
             assert_eq!(twice.iter().collect::<Vec<_>>(), [&list[..], &list[..]].concat());
+            let runs_of: Vec<(u32, usize)> =
+                list.chunk_by(|x, y| x.operand == y.operand).map(|run| (run[0].operand, run.len())).collect();
+            assert_eq!(runs.operands(), runs_of);
 
             let whole = |operand| Origins::of_operand(operand, 30);
             let sources: [Origins; 2] = if round % 2 == 0 {
@@ -287,6 +310,8 @@ mod tests {
                 origins.push(more);
                 list.push(more);
                 assert_eq!(origins.iter().collect::<Vec<_>>(), list, "{share} of {count}");
+                let each = origins.operands().into_iter().flat_map(|(operand, count)| vec![operand; count]);
+                assert!(each.eq(list.iter().map(|origin| origin.operand)));
 
                 let whole = [7, 5].map(|operand| Origins::of_operand(operand, 2_000));
                 let renumbered = origins.clone().compose(&whole.each_ref());
