@@ -63,14 +63,21 @@ impl Bounds {
 
     /// Which sides a point lies beyond, a bit for each of the six. A triangle is beside the box, along some axis, iff its corners have a side in
     /// common.
-    #[inline]
-    pub(crate) fn sides_beyond(&self, point: &[f64; 3]) -> u8 {
+    #[inline(always)]
+    pub(crate) fn sides_beyond(self, point: &[f64; 3]) -> u8 {
         let mut sides = 0;
         for axis in 0..3 {
             sides |= u8::from(point[axis] < self.low[axis]) << (2 * axis);
             sides |= u8::from(point[axis] > self.high[axis]) << (2 * axis + 1);
         }
         sides
+    }
+
+    /// [`sides_beyond`](Self::sides_beyond) of many points.
+    pub(crate) fn mark_sides_beyond(self, points: &[[f64; 3]], marks: &mut [u8]) {
+        for (mark, point) in marks.iter_mut().zip(points) {
+            *mark = self.sides_beyond(point);
+        }
     }
 
     /// The smallest box that contains both.

@@ -160,7 +160,8 @@ impl Surface<'_> {
             |candidate: &Candidate| candidate.high.cmpge(low).all() && candidate.low.cmple(high).all();
         // (Where hardly a vertex was moved, most triangles are wholly beyond one of its sides: told by a byte for each vertex.)
         let all = Bounds { low: low.to_array(), high: high.to_array() };
-        let sides: Vec<u8> = self.before.iter().map(|position| all.sides_beyond(position)).collect();
+        let mut sides = vec![0; self.before.len()];
+        all.mark_sides_beyond(self.before, &mut sides);
         let is_beyond = |index: u32| {
             let [a, b, c] = self.triangles[index as usize].map(|v| sides[v as usize]);
             a & b & c != 0

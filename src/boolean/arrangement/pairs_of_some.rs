@@ -2,7 +2,7 @@
 
 use super::neighbours::Neighbours;
 use super::self_pairs::self_pairs;
-use crate::mesh::Bounds;
+use crate::mesh::{BitSet, Bounds};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame};
 use crate::{Error, Mesh};
@@ -18,7 +18,7 @@ const ONE_OF_THEM: u8 = 1 << 6;
 const VERTICES_AT_ONCE: usize = 1 << 16;
 
 /// The pairs of triangles of a closed surface, the lower one first, that may cross or lie on each other and of which at least one is
-/// among `some`, in order; `bounds` are those of all. Takes a pass over all vertices and triangles, of some tens of nanoseconds for each in the
+/// among `some`, each of them once, in order; `bounds` are those of all. Takes a pass over all vertices and triangles, of some tens of nanoseconds for each in the
 /// box of those; where many are asked for, a walk over all.
 ///
 /// # Errors
@@ -26,16 +26,17 @@ const VERTICES_AT_ONCE: usize = 1 << 16;
 pub(super) fn pairs_with(
     mesh: &Mesh,
     bounds: &Bounds,
-    some: &[bool],
+    some: &[u32],
     runner: Runner<'_>,
 ) -> Result<Vec<[u32; 2]>, Error> {
-    let chosen: Vec<u32> = (0..).zip(some).filter(|(_, is_one)| **is_one).map(|(t, _)| t).collect();
-    if chosen.is_empty() {
+    if some.is_empty() {
         return Ok(Vec::new());
     }
+    let mut is_one = BitSet::new(mesh.triangles.len());
+    some.iter().for_each(|&t| is_one.insert(t));
     let frame = Frame::of(bounds.low, bounds.high);
-    if chosen.len() >= mesh.triangles.len() / MANY {
-        let is_asked_for = |pair: [u32; 2]| pair.iter().any(|&t| some[t as usize]);
+    if some.len() >= mesh.triangles.len() / MANY {
+        let is_asked_for = |pair: [u32; 2]| pair.iter().any(|&t| is_one.contains(t));
         let wanted = |neighbours: &Neighbours<'_>, pair| is_asked_for(pair) && neighbours.may_meet(pair);
         let (mut pairs, _) = self_pairs(mesh, &frame, bounds.largest(), runner, wanted)?;
         runner.sort(&mut pairs);
@@ -45,12 +46,12 @@ pub(super) fn pairs_with(
     //    wholly beyond one. (By more than boxes are off in single precision, where coordinates of the frame are below 2, so that what nearly
     //    touches is not lost.)
     let reach = 4.0 * f64::from(f32::EPSILON) / frame.scale();
-    let corners = chosen.iter().flat_map(|&t| mesh.triangles[t as usize]);
+    let corners = some.iter().flat_map(|&t| mesh.triangles[t as usize]);
     let all = Bounds::of(corners.clone().map(|v| &mesh.positions[v as usize])).unwrap_or(Bounds::NOTHING);
     let all = all.grown(reach);
     let mut marks = vec![0u8; mesh.positions.len()];
     runner.fill(&mut marks, VERTICES_AT_ONCE, |first, marks| {
-        marks.iter_mut().zip(&mesh.positions[first..]).for_each(|(mark, at)| *mark = all.sides_beyond(at));
+        all.mark_sides_beyond(&mesh.positions[first..], marks);
     })?;
     corners.for_each(|v| marks[v as usize] |= ONE_OF_THEM);
     // 2. Triangles beyond no side, and among them those at such vertices: nothing is known of these, and of others it is not asked.
@@ -68,13 +69,13 @@ pub(super) fn pairs_with(
     let neighbours = Neighbours::new(mesh, bounds.largest(), is_other, &beside);
     // 3. Whose boxes meet theirs.
     let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
-    let tree = BoxTree::new(&chosen, box_of);
+    let tree = BoxTree::new(some, box_of);
     let mut pairs = runner.gather(there.len(), TRIANGLES_AT_ONCE, 0, |range, found| {
         for &t in &there[range] {
             tree.meeting(&box_of(t), |other| {
                 // Of two that are both among them, once.
                 let pair = [t.min(other), t.max(other)];
-                if t != other && (t < other || !some[t as usize]) && neighbours.may_meet(pair) {
+                if t != other && (t < other || !is_one.contains(t)) && neighbours.may_meet(pair) {
                     found.push(pair);
                 }
             });
@@ -104,21 +105,20 @@ mod tests {
         all.sort_unstable();
         assert!(all.len() > 100);
         for step in [1, 2, 7, 40] {
-            let some: Vec<bool> = (0..mesh.triangles.len()).map(|t| t % step == 0).collect();
-            let wanted = all.iter().copied().filter(|pair| pair.iter().any(|&t| some[t as usize]));
+            let some: Vec<u32> = (0..mesh.triangles.len() as u32).step_by(step).collect();
+            let wanted = all.iter().copied().filter(|pair| pair.iter().any(|t| some.contains(t)));
             assert_eq!(pairs_with(&mesh, &bounds, &some, runner).expect("pairs"), wanted.collect::<Vec<_>>());
         }
         // Those in a corner of the whole, and those around them alone.
         for part in [0.1, 0.3] {
             let is_there =
                 |corners: &[u32; 3]| corners.iter().all(|&v| mesh.positions[v as usize][0] < part - 1.0);
-            let some: Vec<bool> = mesh.triangles.iter().map(is_there).collect();
-            let count = some.iter().filter(|&&is_one| is_one).count();
-            assert!(0 < count && count < some.len() / MANY, "{count}");
-            let wanted = all.iter().copied().filter(|pair| pair.iter().any(|&t| some[t as usize]));
+            let some: Vec<u32> =
+                (0..mesh.triangles.len() as u32).filter(|&t| is_there(&mesh.triangles[t as usize])).collect();
+            assert!(!some.is_empty() && some.len() < mesh.triangles.len() / MANY, "{}", some.len());
+            let wanted = all.iter().copied().filter(|pair| pair.iter().any(|t| some.contains(t)));
             assert_eq!(pairs_with(&mesh, &bounds, &some, runner).expect("pairs"), wanted.collect::<Vec<_>>());
         }
-        let none = vec![false; mesh.triangles.len()];
-        assert!(pairs_with(&mesh, &bounds, &none, runner).expect("none").is_empty());
+        assert!(pairs_with(&mesh, &bounds, &[], runner).expect("none").is_empty());
     }
 }

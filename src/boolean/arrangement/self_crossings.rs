@@ -69,14 +69,11 @@ impl Mesh {
     /// the limits of `control`.
     pub fn self_crossings_with(&self, some: &[u32], control: &Control) -> Result<SelfCrossings, Error> {
         let fail = |what: String| Err(Error::InvalidArgument(what));
-        let mut is_one = vec![false; self.triangles.len()];
-        for &t in some {
-            match is_one.get_mut(t as usize) {
-                Some(is_one) => *is_one = true,
-                None => {
-                    return fail(format!("triangle {t} of a mesh with {} triangles", self.triangles.len()));
-                }
-            }
+        let mut some = some.to_vec();
+        some.sort_unstable();
+        some.dedup();
+        if let Some(t) = some.last().filter(|&&t| t as usize >= self.triangles.len()) {
+            return fail(format!("triangle {t} of a mesh with {} triangles", self.triangles.len()));
         }
         if !is_closed(self) {
             return fail("crossings of a mesh that is not closed; a Solid made from it may be".to_owned());
@@ -88,7 +85,7 @@ impl Mesh {
         }
         let Some(bounds) = self.bounds() else { return Ok(SelfCrossings::default()) };
         let runner = Runner::new(control, true);
-        let pairs = pairs_with(self, &bounds, &is_one, runner)?;
+        let pairs = pairs_with(self, &bounds, &some, runner)?;
         judged(self, &bounds, &pairs, None, runner, Shallow::OfNothingDeeper, |_| true).map(shortened)
     }
 }
@@ -180,7 +177,7 @@ pub(in crate::boolean) fn is_nearly_simple(solid: &Solid, control: &Control) -> 
 /// Only limits.
 pub(in crate::boolean) fn pairs_if_crossing_at(
     solid: &Solid,
-    some: &[bool],
+    some: &[u32],
     runner: Runner<'_>,
 ) -> Result<Option<Vec<[u32; 2]>>, Error> {
     let (mesh, Some(bounds)) = (solid.mesh(), solid.bounds()) else { return Ok(None) };
@@ -204,7 +201,7 @@ pub(in crate::boolean) fn pairs_if_crossing_at(
 /// Only limits.
 pub(in crate::boolean) fn near_pairs_with(
     solid: &Solid,
-    some: &[bool],
+    some: &[u32],
     runner: Runner<'_>,
 ) -> Result<Vec<[u32; 2]>, Error> {
     solid.bounds().map_or(Ok(Vec::new()), |bounds| pairs_with(solid.mesh(), &bounds, some, runner))

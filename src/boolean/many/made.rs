@@ -105,25 +105,22 @@ fn crosses_nowhere(solid: &Solid) -> bool {
     solid.known_self_crossings().is_some_and(SelfCrossings::has_nothing)
 }
 
-/// For each triangle of a result whether it is no triangle of an operand as it was, or comes of one that was cut: what was thinner than rounding
-/// is cleaned up, so that it may be what it was again, and what crossed it crosses it still.
-fn changed(origins: &Origins, cut: &[Origin], mesh: &Mesh, operands: &[&Solid]) -> Vec<bool> {
+/// The triangles of a result that are no triangle of an operand as it was, or come of one that was cut: what was thinner than rounding
+/// is cleaned up, so that it may be what it was again, and what crossed it crosses it still. Ascending.
+fn changed(origins: &Origins, cut: &[Origin], mesh: &Mesh, operands: &[&Solid]) -> Vec<u32> {
     let cut: FxHashSet<(u32, u32)> = cut.iter().map(|origin| (origin.operand, origin.triangle)).collect();
     let corners = |mesh: &Mesh, t: usize| mesh.triangles[t].map(|v| mesh.positions[v as usize]);
-    let mut changed = Vec::with_capacity(mesh.triangles.len());
-    for (origin, count, whole) in origins.stretches() {
-        let count = count as usize;
-        match operands.get(origin.operand as usize).map(|solid| solid.mesh()).filter(|_| !whole) {
-            None => changed.resize(changed.len() + count, !whole),
-            Some(given) => {
-                let first = changed.len();
-                changed.extend((0..count).map(|i| {
-                    let source = corners(given, origin.triangle as usize + i);
-                    cut.contains(&(origin.operand, origin.triangle + i as u32))
-                        || !is_as_given(corners(mesh, first + i), source, origin.reversed)
-                }));
-            }
-        }
+    let mut changed = Vec::new();
+    for (first, origin, count) in origins.not_known_whole() {
+        let given = operands.get(origin.operand as usize).map(|solid| solid.mesh());
+        let is_changed = |&i: &u32| {
+            given.is_none_or(|given| {
+                let source = corners(given, (origin.triangle + i) as usize);
+                cut.contains(&(origin.operand, origin.triangle + i))
+                    || !is_as_given(corners(mesh, (first + i) as usize), source, origin.reversed)
+            })
+        };
+        changed.extend((0..count).filter(is_changed).map(|i| first + i));
     }
     changed
 }

@@ -128,9 +128,8 @@ impl Few {
     fn sides_beyond(&self, k: usize, reach: f64, mesh: &Mesh) -> Vec<u8> {
         let (bounds, others) = (self.boxes[k].grown(reach), !(1 << k));
         build(mesh.positions.len(), CHUNK, |first, sides: &mut [u8]| {
-            for ((sides, marks), position) in
-                sides.iter_mut().zip(&self.marks[first..]).zip(&mesh.positions[first..])
-            {
+            let given = self.marks[first..].iter().zip(&mesh.positions[first..]);
+            for (sides, (marks, position)) in sides.iter_mut().zip(given) {
                 if marks & others != 0 {
                     *sides = bounds.sides_beyond(position);
                 }

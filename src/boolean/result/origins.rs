@@ -33,6 +33,10 @@ impl Kept {
         &mut self.bits
     }
 
+    fn count(&self) -> usize {
+        self.bits.iter().map(|word| word.count_ones() as usize).sum()
+    }
+
     fn runs(&self) -> impl Iterator<Item = Run> {
         let mut next = 0;
         std::iter::from_fn(move || {
@@ -163,6 +167,27 @@ impl Origins {
         })
     }
 
+    /// Consecutive triangles of one operand that are not known to be those triangles, with vertices at the same places: the number of the first
+    /// in this list, its origin, and how many.
+    pub(crate) fn not_known_whole(&self) -> impl Iterator<Item = (u32, Origin, u32)> {
+        let mut next = 0;
+        self.stretches.iter().flat_map(move |stretch| {
+            let runs = match stretch {
+                Stretch::Kept(kept) => {
+                    next += kept.count() as u32;
+                    [].iter()
+                }
+                Stretch::Runs(runs) => runs.iter(),
+            };
+            let mut first = next;
+            next += runs.clone().map(|run| run.count).sum::<u32>();
+            runs.map(move |run| {
+                first += run.count;
+                (first - run.count, run.first, run.count)
+            })
+        })
+    }
+
     /// How many triangles of one operand follow each other, over and over.
     pub(crate) fn operands(&self) -> Vec<(u32, usize)> {
         let mut counts: Vec<(u32, usize)> = Vec::new();
@@ -172,10 +197,7 @@ impl Origins {
         };
         for stretch in &self.stretches {
             match stretch {
-                Stretch::Kept(kept) => {
-                    let count = kept.bits.iter().map(|word| word.count_ones() as usize).sum();
-                    add(kept.first.operand, count);
-                }
+                Stretch::Kept(kept) => add(kept.first.operand, kept.count()),
                 Stretch::Runs(runs) => runs.iter().for_each(|run| add(run.first.operand, run.count as usize)),
             }
         }
@@ -270,6 +292,11 @@ mod tests {
             let mut twice = runs.clone();
             twice.append(runs.clone());
             assert_eq!(twice.iter().collect::<Vec<_>>(), [&list[..], &list[..]].concat());
+            let unknown = twice.not_known_whole();
+            let unknown = unknown.flat_map(|(place, first, count)| {
+                (0..count).map(move |i| (place + i, Origin { triangle: first.triangle + i, ..first }))
+            });
+            assert!(unknown.eq((0..).zip([&list[..], &list[..]].concat())));
             let runs_of: Vec<(u32, usize)> =
                 list.chunk_by(|x, y| x.operand == y.operand).map(|run| (run[0].operand, run.len())).collect();
             assert_eq!(runs.operands(), runs_of);
@@ -310,6 +337,8 @@ mod tests {
                 origins.push(more);
                 list.push(more);
                 assert_eq!(origins.iter().collect::<Vec<_>>(), list, "{share} of {count}");
+                let known = list.len() as u32 - 1;
+                assert!(origins.not_known_whole().eq([(known, more, 1)]));
                 let each = origins.operands().into_iter().flat_map(|(operand, count)| vec![operand; count]);
                 assert!(each.eq(list.iter().map(|origin| origin.operand)));
 

@@ -163,7 +163,9 @@ pub(super) fn resolve_in_rounds(
         troubled = descendants(&troubled, &sources);
         if !matches!(look, Look::Everywhere) {
             let mut changed = changed(&made, &sources, solid.mesh());
-            troubled.iter().for_each(|&t| changed[t as usize] = true);
+            changed.extend(&troubled);
+            changed.sort_unstable();
+            changed.dedup();
             look = Look::AtSome(changed);
         }
         parts = made;
@@ -175,18 +177,22 @@ pub(super) enum Look {
     Everywhere,
     /// Only these may cross.
     AtPairs(Vec<[u32; 2]>),
-    /// Those with one that is marked.
-    AtSome(Vec<bool>),
+    /// Those with one of these.
+    AtSome(Vec<u32>),
 }
 
-/// For each triangle whether it has other corners than the one that it comes from.
-fn changed(parts: &Parts, sources: &[u32], before: &Mesh) -> Vec<bool> {
+/// The triangles that have other corners than the one that they come from.
+fn changed(parts: &Parts, sources: &[u32], before: &Mesh) -> Vec<u32> {
     let place = |positions: &[[f64; 3]], corners: [u32; 3]| corners.map(|v| positions[v as usize]);
     let differs = |(corners, &source): (&[u32; 3], &u32)| {
         let own = place(&parts.positions, *corners);
         !is_as_given(own, place(&before.positions, before.triangles[source as usize]), false)
     };
-    parts.triangles.iter().zip(sources).map(differs).collect()
+    (0..)
+        .zip(parts.triangles.iter().zip(sources))
+        .filter(|(_, both)| differs(*both))
+        .map(|(t, _)| t)
+        .collect()
 }
 
 /// The triangles that cross others or lie on them, as the surface shrinks and as it grows.
