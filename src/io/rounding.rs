@@ -265,41 +265,32 @@ impl<'a> Examination<'a> {
         let step = self.step();
         let bounds = Bounds::of_corners(before, &mesh.triangles);
         let size = bounds.map_or(0.0, |bounds| bounds.size().into_iter().fold(0.0, f64::max));
-        let closed = is_closed(mesh);
+        // (What takes longest, beside all the rest.)
+        let (films, (closed, volumes, lost, joined_vertices)) = parallel::join(
+            mesh.triangles.len(),
+            || lost_films(before, after, moved, &mesh.triangles, step, &options.control),
+            || {
+                let closed = is_closed(mesh);
+                let volumes = closed.then(|| self.volumes(bounds));
+                (closed, volumes, self.lost_triangles(), self.joined_vertices())
+            },
+        );
         options.control.check()?;
-        let films = lost_films(before, after, moved, &mesh.triangles, step, &options.control)?;
+        let films = films?;
         let found: Option<Film> = films.first_film.or(films.first_gap);
-        let ([collapsed_triangles, flat_triangles, turned_triangles], overturned) = self.lost_triangles();
-        let volume = closed.then(|| {
-            if measure.is_plain() {
-                enclosed_volume_within(before, &mesh.triangles, bounds)
-            } else {
-                mesh.volume()
-            }
-        });
-        let written_volume = volume.map(|volume| {
-            if self.has_hardly_moved() && measure.is_plain() {
-                let changed: Vec<[u32; 3]> =
-                    mesh.triangles.iter().copied().filter(|triangle| self.has_moved(triangle)).collect();
-                let of = |positions| enclosed_volume_within(positions, &changed, bounds);
-                return volume + (of(after) - of(before));
-            }
-            // (Numbers keep their order as they are rounded.)
-            let bounds =
-                bounds.map(|Bounds { low, high }| Bounds { low: rounded(&low), high: rounded(&high) });
-            enclosed_volume_within(after, &mesh.triangles, bounds) * scale * scale * scale
-        });
+        let ([collapsed_triangles, flat_triangles, turned_triangles], overturned) = lost;
+        let told = |k: usize| volumes.map(|both| both[k]).filter(|volume: &f64| volume.is_finite());
         Ok(Rounding {
             step: step * scale,
             largest_shift: largest_shift * scale,
             closed,
-            volume: volume.filter(|volume| volume.is_finite()),
-            written_volume: written_volume.filter(|volume| volume.is_finite()),
+            volume: told(0),
+            written_volume: told(1),
             collapsed_triangles,
             flat_triangles,
             turned_triangles,
             overturned,
-            joined_vertices: self.joined_vertices(),
+            joined_vertices,
             lost_films: films.films,
             lost_gaps: films.gaps,
             lost_place: found.map(|film| [0, 1, 2].map(|k| film.place[k] * scale + measure.offset[k])),
@@ -307,6 +298,27 @@ impl<'a> Examination<'a> {
             has_offset: !measure.is_plain(),
             finer_at_origin: largest > FAR * size,
         })
+    }
+
+    /// The volume before and after.
+    fn volumes(&self, bounds: Option<Bounds>) -> [f64; 2] {
+        let Self { mesh, measure, before, after, .. } = self;
+        if !measure.is_plain() || !self.has_hardly_moved() {
+            // (Numbers keep their order as they are rounded.)
+            let held = bounds.map(|Bounds { low, high }| Bounds { low: rounded(&low), high: rounded(&high) });
+            let scale = measure.scale;
+            let written = enclosed_volume_within(after, &mesh.triangles, held) * scale * scale * scale;
+            let volume = match measure.is_plain() {
+                true => enclosed_volume_within(before, &mesh.triangles, bounds),
+                false => mesh.volume(),
+            };
+            return [volume, written];
+        }
+        let volume = enclosed_volume_within(before, &mesh.triangles, bounds);
+        let changed: Vec<[u32; 3]> =
+            mesh.triangles.iter().copied().filter(|triangle| self.has_moved(triangle)).collect();
+        let of = |positions| enclosed_volume_within(positions, &changed, bounds);
+        [volume, volume + (of(after) - of(before))]
     }
 
     /// How many triangles lose a corner, lose their area, and turn over; and which do one of the latter.

@@ -128,13 +128,14 @@ impl Surface<'_> {
         let triangle = &self.triangles[index as usize];
         let [a, b, c] = self.corners(triangle);
         let normal = (b - a).cross(c - a);
-        let (doubled_area, longest) =
-            (normal.length(), (b - a).length().max((c - b).length()).max((a - c).length()));
-        let is_wide = doubled_area > LEAST_ALTITUDE * self.step * longest && doubled_area.is_finite();
+        // (All in squares: coordinates that single precision has room for have squares of squares that are numbers.)
+        let longest = (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
+        let (least, area) = (LEAST_ALTITUDE * self.step, normal.length_squared());
+        let is_wide = area > least * least * longest && area.is_finite();
         is_wide.then(|| Candidate {
             triangle: index,
             moved: self.has_moved(triangle),
-            normal: normal / doubled_area,
+            normal: normal / area.sqrt(),
             low: a.min(b).min(c),
             high: a.max(b).max(c),
         })
