@@ -12,6 +12,8 @@ use crate::{Error, Mesh};
 const MANY: usize = 8;
 /// Triangles that one thread compares with boxes before the limits are checked.
 const TRIANGLES_AT_ONCE: usize = 1 << 14;
+/// The same for triangles that are near enough to be looked up in a tree, some 0.2 us each.
+const BOXES_AT_ONCE: usize = 1 << 10;
 /// The mark of a vertex of those triangles, beside the six for sides.
 const ONE_OF_THEM: u8 = 1 << 6;
 /// Vertices that one thread compares with a box before the limits are checked.
@@ -70,7 +72,7 @@ pub(super) fn pairs_with(
     // 3. Whose boxes meet theirs.
     let box_of = |t: u32| frame.triangle(mesh.triangles[t as usize].map(|v| &mesh.positions[v as usize]));
     let tree = BoxTree::new(some, box_of);
-    let mut pairs = runner.gather(there.len(), TRIANGLES_AT_ONCE, 0, |range, found| {
+    let mut pairs = runner.gather(there.len(), BOXES_AT_ONCE, 0, |range, found| {
         for &t in &there[range] {
             tree.meeting(&box_of(t), |other| {
                 // Of two that are both among them, once.
