@@ -6,7 +6,7 @@ mod counting;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use trisect::Mesh;
-use trisect::io::{Encoding, Format, ReadOptions, WriteOptions, read, write};
+use trisect::io::{Encoding, Format, ReadOptions, WriteOptions, load, read, write};
 
 /// The promise of `docs/formats.md`: bytes per byte of the file, its own not counted, and a constant.
 const TIMES: usize = 40;
@@ -412,6 +412,19 @@ fn usual_files() {
         // A package is packed, its mesh is not.
         let times = if format.extension() == "3mf" { 12 } else { 5 };
         assert!(peak <= times * bytes.len() + CONSTANT, "{format} {encoding:?}: {peak} for {}", bytes.len());
+        // Large binary files of the usual layouts are read without all their bytes at once.
+        if matches!(format, Format::Stl | Format::Ply) && encoding == Encoding::Binary {
+            let name = format!("trisect-memory-{}.{}", std::process::id(), format.extension());
+            let path = std::env::temp_dir().join(name);
+            std::fs::write(&path, &bytes).unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+            let options = ReadOptions::new();
+            let from_bytes = pool.install(|| counting::peak_of(|| read(&bytes, format, &options)));
+            let from_file = pool.install(|| counting::peak_of(|| load(&path, &options)));
+            std::fs::remove_file(&path).unwrap();
+            assert!(from_file <= from_bytes + CONSTANT, "{format}: {from_file}, {from_bytes} from bytes");
+            assert!(bytes.len() > 4 * CONSTANT);
+        }
     }
 }
 

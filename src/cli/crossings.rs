@@ -8,15 +8,15 @@ use trisect::{Error, Mesh, Solid};
 use super::limits::Limits;
 use super::words::counted;
 
-/// What is said of a file that holds `mesh` as `rounding` says, if its surface crosses itself.
+/// What is said of a file whose surface crosses itself, though what was written does not.
 ///
-/// Rounding moves no part of a surface by more than its step, and the check of operands tolerates crossings of a few steps
-/// where all coordinates are numbers of single precision. So two kinds of files alone may be said to cross themselves all the same. Needles that
-/// turned over may pass through others for more than a step: it is looked around them. And a file with an offset has coordinates that
-/// are no such numbers: it is read back and checked as operands are, in some tenths of a microsecond a triangle.
+/// Rounding moves no part of a surface by more than its step, and the check of operands tolerates crossings of a few steps where all coordinates
+/// are numbers of single precision. Needles that turned over may pass through others for more. In a file of single precision that holds
+/// `solid`, if that is known, it is looked around them alone. Any other, and a file with an offset, whose coordinates are no
+/// such numbers, is read back and checked as operands are, in some tenths of a microsecond a triangle.
 pub(crate) fn in_file(
-    mesh: &Mesh,
     path: &Path,
+    solid: Option<(&Solid, &Mesh)>,
     rounding: &Rounding,
     limits: &Limits,
 ) -> Result<Option<String>, Error> {
@@ -24,13 +24,14 @@ pub(crate) fn in_file(
         return Ok(None);
     }
     let control = limits.control();
-    let found = if rounding.has_offset {
+    let found = if let Some((solid, written)) = solid.filter(|_| !rounding.has_offset) {
+        let held = |position: &[f64; 3]| position.map(|x| f64::from(x as f32));
+        let held = written.positions.iter().map(held).collect();
+        solid.self_crossings_moved(held, &rounding.overturned, &control)?
+    } else {
         let loaded = io::load(path, &io::ReadOptions::new().control(control.clone()))?;
         let Ok(solid) = Solid::try_from(loaded.mesh) else { return Ok(None) };
         solid.self_crossings(&control)?.clone()
-    } else {
-        let held = mesh.positions.iter().map(|position| position.map(|x| f64::from(x as f32))).collect();
-        Mesh::new(held, mesh.triangles.clone()).self_crossings_with(&rounding.overturned, &control)?
     };
     let Some(deepest) = found.places.first() else { return Ok(None) };
     let [x, y, z] = deepest.place;

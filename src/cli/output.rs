@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use trisect::io::{self, Format, Written};
 use trisect::render::{self, Picture};
-use trisect::{Error, Failure, Mesh, Outcome};
+use trisect::{Error, Failure, Mesh, Outcome, Solid};
 
 use super::argument_groups::{Colours, Common, Drawing, Up, Writing};
 use super::crossings;
@@ -111,6 +111,16 @@ pub(crate) struct Product<'a> {
     /// How a page shows it.
     #[cfg_attr(not(feature = "viewer"), allow(dead_code, reason = "pages are left out"))]
     pub(crate) shown: Shown<'a>,
+}
+
+impl Product<'_> {
+    /// The solid that a binary file holds, and its mesh as it is written, perhaps elsewhere; if it is known to be one.
+    fn known(&self, target: &Target) -> Option<(&Solid, &Mesh)> {
+        let (Kind::Mesh(format) | Kind::Forced(format)) = target.kind else { return None };
+        let solid = self.shown.outcome.map(Outcome::solid)?;
+        let is_it = solid.mesh().triangles == self.mesh.triangles && !self.options.is_text(format);
+        is_it.then_some((solid, self.mesh))
+    }
 }
 
 /// How a page shows a mesh.
@@ -267,7 +277,7 @@ pub(crate) fn write_all(
         if let Some(rounding) =
             said.rounding.as_ref().filter(|_| matches!(target.kind, Kind::Mesh(_) | Kind::Forced(_)))
         {
-            let crossing = crossings::in_file(product.mesh, &stage.path(), rounding, limits)?;
+            let crossing = crossings::in_file(&stage.path(), product.known(target), rounding, limits)?;
             warnings.extend(crossing.map(|warning| format!("{}: {warning}", target.name())));
         }
         roundings[index] = said.rounding;

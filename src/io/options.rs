@@ -1,5 +1,6 @@
 //! What a caller may ask of a reader or writer.
 
+use super::Format;
 use std::path::PathBuf;
 
 use super::KeptScene;
@@ -103,6 +104,17 @@ impl WriteOptions {
     pub fn encoding(mut self, encoding: Encoding) -> Self {
         self.encoding = encoding;
         self
+    }
+
+    /// Whether a file of that format holds its coordinates as text. Readers take numbers in text for double precision, also where they were
+    /// written in single.
+    #[must_use]
+    pub fn is_text(&self, format: Format) -> bool {
+        match format {
+            Format::Stl | Format::Ply => self.encoding == Encoding::Ascii,
+            Format::Gltf | Format::Glb => false,
+            _ => true,
+        }
     }
 
     /// Precision of the coordinates, for OBJ, PLY, OFF and ASCII STL.

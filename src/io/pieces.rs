@@ -1,7 +1,7 @@
 //! Large binary files in the usual layout of their format, read piece by piece: their bytes never stand beside the mesh.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::detect::other_name;
@@ -35,7 +35,7 @@ impl Blocks for &[u8] {
 struct FileBlocks<'a> {
     file: File,
     path: &'a Path,
-    /// Those that were read last; used again and again, they stay in the processor's memory.
+    /// Those that were read last; used again and again, they stay in the processor's nearer memory if they are few.
     buffer: Vec<u8>,
 }
 
@@ -70,6 +70,18 @@ impl Blocks for FileBlocks<'_> {
 /// # Errors
 /// [`Error::File`] if the file cannot be read, and those of [`read`](super::read).
 pub(super) fn load(path: &Path, options: &ReadOptions) -> Result<Option<Loaded>, Error> {
+    match read(path, options) {
+        // (It has become shorter. Whoever reads it as a whole says where it is cut off.)
+        Err(Error::File { source, .. }) if source.kind() == ErrorKind::UnexpectedEof => Ok(None),
+        other => other,
+    }
+}
+
+fn read(path: &Path, options: &ReadOptions) -> Result<Option<Loaded>, Error> {
+    // (Some systems go on where the last reader of a stream has stopped.)
+    if path.starts_with("/dev") {
+        return Ok(None);
+    }
     let fail = |source| Error::File { action: FileAction::Read, path: path.to_path_buf(), source };
     let (mut file, length) = match std::fs::metadata(path) {
         Ok(data) if data.is_file() && data.len() >= LEAST => (File::open(path).map_err(fail)?, data.len()),
@@ -103,7 +115,7 @@ pub(super) fn load(path: &Path, options: &ReadOptions) -> Result<Option<Loaded>,
 mod tests {
     use super::*;
     use crate::io::{Encoding, Precision, WriteOptions, file, read, write};
-    use crate::{Mesh, primitives};
+    use crate::{CancelToken, Control, Limit, Mesh, primitives};
 
     /// Any mesh whose files are long enough.
     fn ball() -> Mesh {
@@ -145,6 +157,28 @@ mod tests {
     }
 
     #[test]
+    fn limits_hold_piece_by_piece() {
+        let token = CancelToken::new();
+        token.cancel();
+        for format in [Format::Ply, Format::Stl] {
+            let mut bytes = Vec::new();
+            write(&ball(), format, &mut bytes, &WriteOptions::new()).unwrap();
+            let path = std::env::temp_dir().join(format!(
+                "trisect-limits-{}.{}",
+                std::process::id(),
+                format.extension()
+            ));
+            std::fs::write(&path, &bytes).unwrap();
+            let with = |control: Control| load(&path, &ReadOptions::new().control(control));
+            assert!(matches!(with(Control::new().cancel(&token)), Err(Error::Limit(Limit::Cancelled))));
+            let length = bytes.len() as u64;
+            assert!(with(Control::new().memory_limit(2 * length + 1024)).unwrap().is_some());
+            assert!(matches!(with(Control::new().memory_limit(2 * length - 1)), Err(Error::Limit(_))));
+            std::fs::remove_file(&path).unwrap();
+        }
+    }
+
+    #[test]
     fn what_is_not_usual_is_read_as_a_whole() {
         let ball = ball();
         let mut ply = Vec::new();
@@ -178,7 +212,20 @@ mod tests {
         let (by_bytes, by_file) =
             (read(&big, Format::Ply, &ReadOptions::new()).unwrap_err(), loaded.unwrap_err());
         assert_eq!(by_bytes.to_string(), by_file.to_string());
-        // 4. Coordinates that are no numbers, in both formats.
+        // 4. A header longer than what is looked at first, and files just long enough and just too short.
+        let comments = "comment made by hand\n".repeat(300);
+        let long = String::from_utf8(ply[..header].to_vec()).unwrap();
+        let long = long.replacen("element", &format!("{comments}element"), 1);
+        let (loaded, in_pieces) = of_file("h.ply", &[long.as_bytes(), &ply[header..]].concat());
+        assert!(long.len() > HEAD && !in_pieces && loaded.unwrap().mesh == expected.mesh);
+        let fewest = (LEAST as usize - stl::HEADER).div_ceil(50);
+        for facets in [fewest - 1, fewest] {
+            let mut bytes = vec![0; stl::HEADER + 50 * facets];
+            bytes[80..84].copy_from_slice(&(facets as u32).to_le_bytes());
+            let (loaded, in_pieces) = of_file("i.stl", &bytes);
+            assert!(loaded.unwrap().mesh.is_empty() && in_pieces == (facets == fewest));
+        }
+        // 5. Coordinates that are no numbers, in both formats.
         let mut stl = Vec::new();
         write(&ball, Format::Stl, &mut stl, &WriteOptions::new()).unwrap();
         let facet = 84 + 50 * (ball.triangles.len() - 7);

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use super::{Format, Precision, WriteOptions, unsupported};
 use crate::exact::collinear;
 use crate::mesh::star::mixed;
-use crate::mesh::{BitSet, Bounds, enclosed_volume_within, is_closed};
+use crate::mesh::{BitSet, Bounds, enclosed_volume_within, is_closed, volume_change};
 use crate::parallel::{self, read_ahead};
 use crate::spatial::{Film, lost_films, radix_sort};
 use crate::{Error, Mesh};
@@ -63,8 +63,8 @@ pub struct Rounding {
     pub flat_triangles: usize,
     /// Triangles whose normal points to the other side.
     pub turned_triangles: usize,
-    /// Which are flat or turned over now, in order: where the surface in the file may cross itself
-    /// ([`Mesh::self_crossings_with`]).
+    /// Which are flat or turned over now, in order, by their numbers in the mesh that was written: where the surface in the file may cross itself
+    /// ([`Solid::self_crossings_moved`](crate::Solid::self_crossings_moved)).
     #[cfg_attr(feature = "serde", serde(skip))]
     pub overturned: Vec<u32>,
     /// Vertices that are at the place of another one now.
@@ -317,8 +317,8 @@ impl<'a> Examination<'a> {
         let volume = enclosed_volume_within(before, &mesh.triangles, bounds);
         let changed: Vec<[u32; 3]> =
             mesh.triangles.iter().copied().filter(|triangle| self.has_moved(triangle)).collect();
-        let of = |positions| enclosed_volume_within(positions, &changed, bounds);
-        [volume, volume + (of(after) - of(before))]
+        let change = bounds.map_or(0.0, |bounds| volume_change(before, after, &changed, &bounds));
+        [volume, volume + change]
     }
 
     /// How many triangles lose a corner, lose their area, and turn over; and which do one of the latter.

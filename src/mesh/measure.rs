@@ -71,6 +71,23 @@ pub(crate) fn enclosed_volume_within(
     bounds.map_or(0.0, |bounds| signed_volume(positions, triangles, &bounds).value)
 }
 
+/// By how much the volume changes where the vertices of these triangles of a closed surface move, all others staying where they are. The
+/// triangles lie in `bounds` before and, but for roundings, after.
+pub(crate) fn volume_change(
+    before: &[[f64; 3]],
+    after: &[[f64; 3]],
+    triangles: &[[u32; 3]],
+    bounds: &Bounds,
+) -> f64 {
+    // Both in one frame: what an open surface spans depends on where it is seen from.
+    let [before, after] = [before, after].map(|positions| Framed::new(positions, triangles, bounds));
+    let mut sum = Sum::default();
+    for (old, new) in before.spanned(triangles).zip(after.spanned(triangles)) {
+        sum.add(new.determinant() - old.determinant());
+    }
+    before.unscaled(sum.divided_by(6.0), 3)
+}
+
 /// Triangles with their coordinates in a frame: multiplied by a power of two where that brings them nearer one, and
 /// with an origin in their middle.
 struct Framed<'a> {

@@ -77,7 +77,7 @@ pub use material::{
 };
 pub(crate) use measure::enclosed_volume;
 #[cfg(feature = "formats")]
-pub(crate) use measure::enclosed_volume_within;
+pub(crate) use measure::{enclosed_volume_within, volume_change};
 pub(crate) use mend::Soup;
 pub(crate) use mend::fan_around_splits;
 pub use mend::{Mending, Readied};

@@ -141,6 +141,13 @@ impl Surface<'_> {
         })
     }
 
+    /// For each vertex which sides of a box it lies beyond, if most lie beyond some.
+    fn sides_of_most(&self, low: DVec3, high: DVec3) -> Option<Vec<u8>> {
+        let mut sides = vec![0; self.before.len()];
+        Bounds { low: low.to_array(), high: high.to_array() }.mark_sides_beyond(self.before, &mut sides);
+        (2 * sides.iter().filter(|&&sides| sides != 0).count() > sides.len()).then_some(sides)
+    }
+
     /// The candidates, in an order along a curve through space; those far from every moved vertex, and from all that look the other way,
     /// left out.
     fn candidates(&self, most_passed: usize) -> Vec<Candidate> {
@@ -159,25 +166,24 @@ impl Surface<'_> {
         }
         let is_there =
             |candidate: &Candidate| candidate.high.cmpge(low).all() && candidate.low.cmple(high).all();
-        // (Where hardly a vertex was moved, most triangles are wholly beyond one of its sides: told by a byte for each vertex.)
-        let all = Bounds { low: low.to_array(), high: high.to_array() };
-        let mut sides = vec![0; self.before.len()];
-        all.mark_sides_beyond(self.before, &mut sides);
+        // (Where hardly a vertex was moved, most triangles are wholly beyond one of its sides.)
+        let sides = self.sides_of_most(low, high);
         let is_beyond = |index: u32| {
-            let [a, b, c] = self.triangles[index as usize].map(|v| sides[v as usize]);
-            a & b & c != 0
+            sides.as_ref().is_some_and(|sides| {
+                let [a, b, c] = self.triangles[index as usize].map(|v| sides[v as usize]);
+                a & b & c != 0
+            })
         };
-        let are_most_beyond = 2 * sides.iter().filter(|&&sides| sides != 0).count() > sides.len();
         // 2. Which cells have nearly opposite normals. (Where triangles pass many cells each, that is not asked.)
         let around = |of: &Candidate| [of.low - reach, of.high + reach];
         let mut cells = Cells::new(low, high, self.triangles.len());
         let (mut homes, mut passed) = (Vec::with_capacity(self.triangles.len()), 0);
         for index in 0..self.triangles.len() as u32 {
-            if are_most_beyond && is_beyond(index) {
+            if is_beyond(index) {
                 homes.push(NOWHERE);
                 continue;
             }
-            if !are_most_beyond && index.is_multiple_of(RUN) {
+            if sides.is_none() && index.is_multiple_of(RUN) {
                 let run = self.triangles[index as usize..].iter().take(RUN as usize).flatten();
                 read_ahead(run.map(|&v| self.before[v as usize][0].to_bits() as u32));
             }
@@ -476,6 +482,13 @@ mod tests {
             assert!(0 < moved.count() && moved.count() < all / 8);
             let (before, triangles) = (&*mesh.positions, &*mesh.triangles);
             let surface = Surface { before, after: &after, moved: &moved, triangles, step };
+            let [low, high] = [f64::min, f64::max].map(|of| {
+                let cut = mesh.positions.iter().filter(|position| is_cut(position));
+                cut.fold(mesh.positions[moved.iter().next().unwrap() as usize], |all, position| {
+                    [0, 1, 2].map(|k| of(all[k], position[k]))
+                })
+            });
+            assert!(surface.sides_of_most(DVec3::from_array(low), DVec3::from_array(high)).is_some());
             let candidates: Vec<Candidate> =
                 (0..triangles.len() as u32).filter_map(|index| surface.candidate(index)).collect();
             let found = LostFilms::default();

@@ -17,7 +17,7 @@ use super::self_pairs::self_pairs;
 use super::star::is_star_shaped;
 use super::surface::{Found, Surface, tolerance_of_one};
 use crate::boolean::complex::{Complex, Operand};
-use crate::mesh::{Bounds, SelfCrossing, SelfCrossings, is_closed};
+use crate::mesh::{Bounds, SelfCrossing, SelfCrossings};
 use crate::parallel::Runner;
 use crate::spatial::{BoxTree, Frame};
 use crate::{Control, Error, Mesh, Solid};
@@ -42,51 +42,57 @@ impl Solid {
         let found = find(self, Runner::new(control, true), Shallow::OfNothingDeeper, |_| true)?;
         Ok(self.remember_self_crossings(shortened(found)))
     }
-}
 
-impl Mesh {
-    /// Pairs of triangles of this closed mesh that cross each other, of which one is among `some`, told as by [`Solid::self_crossings`].
-    /// Of a surface that crossed itself nowhere before vertices were moved, these are all there are where the triangles at those
-    /// are `some`.
+    /// Pairs of triangles that would cross each other with the vertices at other places, of which one is among `some`; told as by
+    /// [`self_crossings`](Self::self_crossings). Where vertices move by roundings alone (to single precision, say), triangles that neither turn over nor lose
+    /// their area cross nothing for more than is tolerated, so that only the others need be asked for.
     ///
-    /// O(n), some tens of nanoseconds for each triangle, and O(log n) for each of `some`.
+    /// O(n), some tens of nanoseconds for each triangle, and O(log n) for each triangle in the box around `some`; where an eighth of
+    /// all or more is asked for, as [`self_crossings`](Self::self_crossings).
     ///
     /// ```
-    /// use trisect::{Control, primitives};
+    /// use trisect::{Control, Solid, primitives};
     ///
     /// // A corner of a box, pushed through the opposite side.
-    /// let mut mesh = primitives::cuboid([0.0; 3], [1.0; 3])?;
-    /// let corner = mesh.positions.iter().position(|position| *position == [0.0; 3]).unwrap();
-    /// mesh.positions[corner] = [0.5, 0.5, 2.0];
-    /// let has_moved = |&t: &u32| mesh.triangles[t as usize].contains(&(corner as u32));
+    /// let solid = Solid::try_from(primitives::cuboid([0.0; 3], [1.0; 3])?)?;
+    /// let mut positions = solid.mesh().positions.clone();
+    /// let corner = positions.iter().position(|position| *position == [0.0; 3]).unwrap();
+    /// positions[corner] = [0.5, 0.5, 2.0];
+    /// let has_moved = |&t: &u32| solid.mesh().triangles[t as usize].contains(&(corner as u32));
     /// let moved: Vec<u32> = (0..12).filter(has_moved).collect();
-    /// assert!(mesh.self_crossings_with(&moved, &Control::new())?.count > 0);
+    /// assert!(solid.self_crossings_moved(positions, &moved, &Control::new())?.count > 0);
     /// # Ok::<(), trisect::Error>(())
     /// ```
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] if the mesh is not closed as it is, a coordinate is not finite, or `some` names a triangle that is not there;
-    /// the limits of `control`.
-    pub fn self_crossings_with(&self, some: &[u32], control: &Control) -> Result<SelfCrossings, Error> {
+    /// [`Error::InvalidArgument`] unless there is a finite place for each vertex and `some` are triangles of this solid; the limits of
+    /// `control`.
+    pub fn self_crossings_moved(
+        &self,
+        positions: Vec<[f64; 3]>,
+        some: &[u32],
+        control: &Control,
+    ) -> Result<SelfCrossings, Error> {
+        let Mesh { positions: own, triangles, .. } = self.mesh();
         let fail = |what: String| Err(Error::InvalidArgument(what));
+        if positions.len() != own.len() {
+            return fail(format!("{} places for {} vertices", positions.len(), own.len()));
+        }
+        if let Some(vertex) = positions.iter().position(|position| !position.iter().all(|x| x.is_finite())) {
+            return fail(format!("a coordinate of vertex {vertex} is not finite"));
+        }
         let mut some = some.to_vec();
         some.sort_unstable();
         some.dedup();
-        if let Some(t) = some.last().filter(|&&t| t as usize >= self.triangles.len()) {
-            return fail(format!("triangle {t} of a mesh with {} triangles", self.triangles.len()));
+        if let Some(t) = some.last().filter(|&&t| t as usize >= triangles.len()) {
+            return fail(format!("triangle {t} of a solid with {} triangles", triangles.len()));
         }
-        if !is_closed(self) {
-            return fail("crossings of a mesh that is not closed; a Solid made from it may be".to_owned());
-        }
-        if let Some(vertex) =
-            self.positions.iter().position(|position| !position.iter().all(|x| x.is_finite()))
-        {
-            return fail(format!("a coordinate of vertex {vertex} is not finite"));
-        }
-        let Some(bounds) = self.bounds() else { return Ok(SelfCrossings::default()) };
+        let _reservation = control.reserve(size_of_val(&**triangles) as u64)?;
+        let moved = Mesh::new(positions, triangles.clone());
+        let Some(bounds) = moved.bounds() else { return Ok(SelfCrossings::default()) };
         let runner = Runner::new(control, true);
-        let pairs = pairs_with(self, &bounds, &some, runner)?;
-        judged(self, &bounds, &pairs, None, runner, Shallow::OfNothingDeeper, |_| true).map(shortened)
+        let pairs = pairs_with(&moved, &bounds, &some, runner)?;
+        judged(&moved, &bounds, &pairs, None, runner, Shallow::OfNothingDeeper, |_| true).map(shortened)
     }
 }
 
@@ -307,6 +313,9 @@ fn judged(
     }
     // 3. Which of the shallow ones are real.
     let is_asked = asked == Shallow::All || result.count == 0;
+    if is_asked && !shallow.is_empty() {
+        surface.tree();
+    }
     let (mut doubtful, mut tolerated, mut overlapping_beside) =
         (Vec::new(), Vec::new(), FxHashSet::default());
     for shallow in growing_pieces(&shallow) {
@@ -333,6 +342,7 @@ fn judged(
     }
     // 4. Bodies may overlap though all of their faces only touch. Where nothing else tells, it is looked everywhere.
     if result.is_nearly_simple() && !doubtful.is_empty() {
+        surface.tree();
         let overlapping = runner.pieces(doubtful.len(), PAIRS_AT_ONCE, |range| {
             let found = doubtful[range].iter().filter_map(|&pair| surface.overlap_beside(pair));
             found.collect::<Vec<SelfCrossing>>()
@@ -415,20 +425,20 @@ mod tests {
         let mut random = ChaCha8Rng::seed_from_u64(3_601);
         let (mut crossing, mut touching) = (0, 0);
         for round in 0..60 {
-            let ball = primitives::icosphere(1.0, 2 + round % 2).expect("a ball");
             let mut mesh = if round % 3 == 0 {
-                // Of two bodies that touch along an edge as well.
+                // Two bodies that touch along an edge.
                 let boxes = [[0.0; 3], [1.0, 1.0, 0.0]]
                     .map(|low: [f64; 3]| primitives::cuboid(low, low.map(|x| x + 1.0)).expect("a box"));
                 Mesh::merged(&boxes).expect("small")
             } else {
-                ball
+                primitives::icosphere(1.0, 2 + round % 2).expect("a ball")
             };
-            // Vertices pushed by some roundings, or into the body or through it; needles among the triangles of both.
+            let before = Solid::try_from(mesh.clone()).expect("closed");
+            assert_eq!(before.mesh().triangles, mesh.triangles);
+            // Vertices pushed by some roundings, or into the body or through it.
             let far = [1e-15, 1e-3, 0.3, 2.0][round as usize % 4];
-            let count = 1 + round % 5;
             let mut moved = Vec::new();
-            for _ in 0..count {
+            for _ in 0..1 + round % 5 {
                 let v = random.random_range(0..mesh.positions.len());
                 mesh.positions[v] =
                     mesh.positions[v].map(|x| x * (1.0 - far) + far * random.random_range(-0.5..0.5));
@@ -438,7 +448,8 @@ mod tests {
                 .filter(|&t| mesh.triangles[t as usize].iter().any(|v| moved.contains(v)))
                 .collect();
             let control = Control::new();
-            let found = mesh.self_crossings_with(&some, &control).expect("no limits");
+            let found =
+                before.self_crossings_moved(mesh.positions.clone(), &some, &control).expect("no limits");
             let Ok(solid) = Solid::try_from(mesh) else { continue };
             let all = solid.self_crossings(&control).expect("no limits");
             assert_eq!(&found, all, "{round}");
@@ -449,22 +460,21 @@ mod tests {
     }
 
     #[test]
-    fn only_closed_meshes_are_asked_of() {
-        let ball = primitives::icosphere(1.0, 1).expect("a ball");
-        let control = Control::new();
-        let ask = |mesh: &Mesh, some: &[u32]| {
-            mesh.self_crossings_with(some, &control).map_err(|error| error.to_string())
+    fn places_and_triangles_that_are_none_are_refused() {
+        let ball = Solid::try_from(primitives::icosphere(1.0, 1).expect("a ball")).expect("closed");
+        let places = || ball.mesh().positions.clone();
+        let ask = |places, some: &[u32]| {
+            ball.self_crossings_moved(places, some, &Control::new()).map_err(|error| error.to_string())
         };
-        assert_eq!(ask(&ball, &[]).map(|found| found.count), Ok(0));
-        assert!(
-            ask(&ball, &[80]).is_err_and(|error| error.contains("triangle 80 of a mesh with 80 triangles"))
-        );
-        let mut open = ball.clone();
-        open.triangles.pop();
-        assert!(ask(&open, &[3]).is_err_and(|error| error.contains("not closed")));
-        let mut infinite = ball;
-        infinite.positions[7][1] = f64::NAN;
-        assert!(ask(&infinite, &[3]).is_err_and(|error| error.contains("vertex 7 is not finite")));
-        assert_eq!(ask(&Mesh::default(), &[]).map(|found| found.count), Ok(0));
+        assert_eq!(ask(places(), &[]).map(|found| found.count), Ok(0));
+        assert_eq!(ask(places(), &[79, 0, 79]).map(|found| found.count), Ok(0));
+        let refusal = ask(places(), &[80]).expect_err("out of range");
+        assert!(refusal.contains("triangle 80 of a solid with 80 triangles"), "{refusal}");
+        let refusal = ask(places()[1..].to_vec(), &[]).expect_err("too few");
+        assert!(refusal.contains("41 places for 42 vertices"), "{refusal}");
+        let mut infinite = places();
+        infinite[7][1] = f64::NAN;
+        let refusal = ask(infinite, &[3]).expect_err("not finite");
+        assert!(refusal.contains("vertex 7 is not finite"), "{refusal}");
     }
 }

@@ -92,7 +92,8 @@ impl<'a> Surface<'a> {
         Self { tree: tree.map_or_else(OnceLock::new, OnceLock::from), ..self }
     }
 
-    /// The boxes of all triangles.
+    /// The boxes of all triangles. Asked for first outside of loops over threads: they are made on all of them, and a thread that waits in
+    /// here must not be given work that asks for them again.
     pub(super) fn tree(&self) -> &BoxTree {
         self.tree.get_or_init(|| tree_of(self.mesh, &self.frame))
     }

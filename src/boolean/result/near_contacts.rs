@@ -56,7 +56,12 @@ impl NearContacts {
     /// Of a result with the origins of its triangles. O(n) to find out where the parts of the operands are, O(k log k) for the k
     /// triangles where they may be near one another.
     pub(crate) fn find(mesh: &Mesh, origins: &Origins) -> Self {
-        let Some(region) = Region::of(mesh, &runs_of(origins)) else { return Self::default() };
+        Self::found(mesh, origins, FEW_OPERANDS)
+    }
+
+    /// The same, where more operands than so many are many.
+    fn found(mesh: &Mesh, origins: &Origins, most: usize) -> Self {
+        let Some(region) = Region::of(mesh, &runs_of(origins), most) else { return Self::default() };
         let mut found = region.pairs().unwrap_or_default();
         // One for each corner, the nearest.
         found.sort_by(|x, y| {
@@ -152,7 +157,7 @@ struct Region<'a> {
 
 impl<'a> Region<'a> {
     /// `None` where no two operands come near one another.
-    fn of(mesh: &'a Mesh, runs: &[Run]) -> Option<Self> {
+    fn of(mesh: &'a Mesh, runs: &[Run], most: usize) -> Option<Self> {
         // 1. What is left of which operands, and where, if they are few.
         let mut used: Vec<u32> = runs.iter().map(|run| run.operand).collect();
         used.sort_unstable();
@@ -160,7 +165,7 @@ impl<'a> Region<'a> {
         if used.len() < 2 {
             return None;
         }
-        let few = (used.len() <= FEW_OPERANDS).then(|| Few::of(&used, mesh, runs));
+        let few = (used.len() <= most).then(|| Few::of(&used, mesh, runs));
         // 2. How near is near.
         let boxes = few.iter().flat_map(|few| few.boxes.iter().copied());
         let whole = boxes.reduce(Bounds::united).or_else(|| mesh.bounds())?;
@@ -263,7 +268,11 @@ impl<'a> Region<'a> {
 
 #[cfg(test)]
 mod tests {
-    use crate::{PlaneCut, Solid, exact::Plane, primitives};
+    use rand::rngs::ChaCha8Rng;
+    use rand::{RngExt, SeedableRng};
+
+    use super::*;
+    use crate::{BooleanOptions, Operation, PlaneCut, Solid, exact::Plane, primitives};
 
     fn cuboid(low: [f64; 3], high: [f64; 3]) -> Solid {
         Solid::try_from(primitives::cuboid(low, high).expect("a box")).expect("closed")
@@ -297,11 +306,39 @@ mod tests {
             });
             let mut boxes: Vec<Solid> = row.collect();
             boxes.insert(1, cuboid([0.25; 3], [0.5; 3]));
-            let outcome =
-                crate::BooleanOptions::new().run(crate::Operation::Union, &boxes).expect("no limits");
+            let outcome = BooleanOptions::new().run(Operation::Union, &boxes).expect("no limits");
             let told = outcome.certificate().nearly_flush.count;
             assert!(told >= 4 * (count as usize - 1), "{count}: {told}");
         }
+    }
+
+    #[test]
+    fn few_operands_are_told_what_all_triangles_with_one_another_tell() {
+        let mut random = ChaCha8Rng::seed_from_u64(36);
+        let mut all = 0;
+        for round in 0..60 {
+            // Boxes and balls whose faces are often apart by 1e-9, in results of results, so that operands alternate in their triangles.
+            let mut place = || [0; 3].map(|_| f64::from(random.random_range(0..4)) * (0.5 + 1e-9));
+            let mut bodies: Vec<Solid> = (0..4)
+                .map(|_| {
+                    let low = place();
+                    cuboid(low, low.map(|x| x + 1.0))
+                })
+                .collect();
+            if round % 3 == 0 {
+                let ball = primitives::icosphere(0.7, 2).expect("a ball").translated(place());
+                bodies.push(Solid::try_from(ball).expect("closed"));
+            }
+            let operation =
+                [Operation::Union, Operation::SymmetricDifference, Operation::Difference][round % 3];
+            let outcome = BooleanOptions::new().run(operation, &bodies).expect("no limits");
+            let mesh = outcome.solid().mesh();
+            let origins: Origins = outcome.origins().iter().copied().collect();
+            let few = NearContacts::found(mesh, &origins, FEW_OPERANDS);
+            assert_eq!(few, NearContacts::found(mesh, &origins, 0), "{round}");
+            all += few.count;
+        }
+        assert!(all > 200, "{all}");
     }
 
     #[test]

@@ -34,7 +34,10 @@ impl Usual {
         let is_usual = header.coding != Coding::Ascii && faces.lists_short_faces();
         let point = if are_single { 12 } else { 24 };
         let body = vertices.count.checked_mul(point)?.checked_add(faces.count.checked_mul(13)?)?;
-        let count = |element: &Element| u32::try_from(element.count).ok().map(|count| count as usize);
+        // (The last number stands for none.)
+        let count = |element: &Element| {
+            u32::try_from(element.count).ok().filter(|&count| count < u32::MAX).map(|count| count as usize)
+        };
         (is_usual && length.checked_sub(header.end as u64) == Some(body)).then_some(Self {
             vertices: count(vertices)?,
             triangles: count(faces)?,

@@ -122,3 +122,51 @@ fn empty_files_of_both_kinds() {
     assert!(read_all(b"solid nothing\nendsolid nothing\n").unwrap().0.is_empty());
     assert!(read_all(&binary(0, &[])).unwrap().0.is_empty());
 }
+
+/// A wavy sheet of facets, two to a square: as it lies, or each far from the one before.
+fn sheet(along: usize, is_scattered: bool) -> Vec<[f32; 9]> {
+    let corner = |i: usize, j: usize| [i as f32, j as f32, ((i * j) % 7) as f32];
+    let facet = |t: usize| {
+        let (i, j) = (t / 2 / along, t / 2 % along);
+        let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+        let corners = if t.is_multiple_of(2) { [a, b, c] } else { [a, c, d] };
+        <[f32; 9]>::try_from(corners.as_flattened()).unwrap()
+    };
+    let count = 2 * along * along;
+    // (With no divisor in common, all come once.)
+    let step = if is_scattered { 99_991 } else { 1 };
+    (0..count).map(|t| facet(t * step % count)).collect()
+}
+
+#[test]
+fn large_files_are_the_same_in_waves_of_any_size() {
+    let along = 400;
+    for is_scattered in [false, true] {
+        let mut facets = sheet(along, is_scattered);
+        // Scattered first and in order later, so that what is found out of the first waves is wrong for the others.
+        if is_scattered {
+            facets.extend(sheet(along, false));
+        }
+        let mut known = std::collections::HashMap::new();
+        let mut number = |corner: &[f32]| {
+            let next = known.len() as u32;
+            *known.entry([0, 1, 2].map(|k| corner[k].to_bits())).or_insert(next)
+        };
+        let triangles: Vec<[u32; 3]> =
+            facets.iter().map(|facet| [0, 3, 6].map(|k| number(&facet[k..k + 3]))).collect();
+        let mut bytes = binary(facets.len() as u32, &facets);
+        let last = facets.len() - 3;
+        let pools = [1, 2, 5];
+        for threads in pools {
+            let (mesh, warnings) =
+                crate::parallel::run_in_pool(threads, || read_all(&bytes)).unwrap().unwrap();
+            assert!(mesh.triangles == triangles && warnings.is_empty(), "{threads}");
+            assert_eq!(mesh.positions.len(), (along + 1).pow(2));
+        }
+        bytes[84 + 50 * last + 20..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
+        for threads in pools {
+            let error = crate::parallel::run_in_pool(threads, || read_all(&bytes)).unwrap().unwrap_err();
+            assert!(error.to_string().contains(&format!("facet {last} has a coordinate")), "{error}");
+        }
+    }
+}
