@@ -505,6 +505,33 @@ mod tests {
     }
 
     #[test]
+    fn sides_of_films_may_reach_beyond_all_that_moves() {
+        // Two large triangles, and a fine sheet a little over them in one corner, higher elsewhere.
+        let (along, last) = (40u32, 40.0);
+        let mut positions = vec![[0.0, 0.0, 0.5], [last, 0.0, 0.5], [last, last, 0.5], [0.0, last, 0.5]];
+        let mut triangles = vec![[0, 2, 1], [0, 3, 2]];
+        let at = |i: u32, j: u32| 4 + i * (along + 1) + j;
+        let height = |i: u32, j: u32| if i < 6 && j < 6 { 0.5 + 1e-9 } else { 0.75 };
+        let places = (0..=along).flat_map(|i| (0..=along).map(move |j| (i, j)));
+        positions.extend(places.map(|(i, j)| [f64::from(i), f64::from(j), height(i, j)]));
+        for (i, j) in (0..along).flat_map(|i| (0..along).map(move |j| (i, j))) {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+        let mesh = Mesh::new(positions, triangles);
+        let after = rounded(&mesh);
+        let moved = moved(&mesh, &after);
+        assert_eq!(moved.count(), 36);
+        let (before, triangles) = (&*mesh.positions, &*mesh.triangles);
+        let surface = Surface { before, after: &after, moved: &moved, triangles, step: 1e-6 };
+        let (low, high) = (DVec3::new(0.0, 0.0, 0.5), DVec3::new(6.0, 6.0, 0.75));
+        assert!(surface.sides_of_most(low, high).is_some());
+        let found = search(&surface, MOST_PASSED * triangles.len(), &Control::new()).unwrap();
+        // Each of the fifty lies over one of the large ones, or along the diagonal over both.
+        assert!((50..=60).contains(&found.films) && found.gaps == 0, "{found:?}");
+    }
+
+    #[test]
     fn a_gap_at_the_border_of_cells_is_found() {
         // Two sheets of many triangles, face to face, with a border of cells between them: on either side all look the same way.
         let (gap, along) = (1e-9, 24u32);
