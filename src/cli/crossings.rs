@@ -20,7 +20,7 @@ pub(crate) fn in_file(
     rounding: &Rounding,
     limits: &Limits,
 ) -> Result<Option<String>, Error> {
-    if !rounding.closed || !(rounding.has_offset || !rounding.overturned.is_empty()) {
+    if !rounding.closed || !rounding.has_offset && rounding.overturned.is_empty() {
         return Ok(None);
     }
     let control = limits.control();

@@ -73,12 +73,12 @@ impl Usual {
         blocks: &mut dyn Blocks,
         control: &Control,
     ) -> Result<Option<Body>, Error> {
-        let mut body = Body::default();
-        body.positions = Some(if self.are_single {
+        let positions = if self.are_single {
             records(blocks, self.vertices, single_point::<BIG>, control)?
         } else {
             records(blocks, self.vertices, double_point::<BIG>, control)?
-        });
+        };
+        let mut body = Body { positions: Some(positions), ..Body::default() };
         let mut are_triangles = true;
         let decode = |record: &[u8; 13]| {
             are_triangles &= record[0] == 3;
