@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use super::pseudonormal::PseudoNormals;
 use super::{inside, work};
+use crate::parallel::computed;
 use crate::spatial::{Closest, FastWinding, Feature, Side, TriangleTree, coherent_order};
 use crate::{Control, Error, Mesh, Solid};
 
@@ -150,9 +151,10 @@ impl SignedDistance {
     #[must_use]
     pub fn decided_by(&self) -> SignRule {
         match self.rule {
-            SignRule::Automatic => *self
-                .automatic
-                .get_or_init(|| inside::automatic(&self.surface(), &self.normals, &Control::new())),
+            SignRule::Automatic => {
+                let decide = || inside::automatic(&self.surface(), &self.normals, &Control::new());
+                *computed(&self.automatic, decide)
+            }
             rule => rule,
         }
     }
@@ -349,7 +351,7 @@ impl SignedDistance {
     }
 
     fn fast_winding(&self) -> &FastWinding {
-        self.winding.get_or_init(|| FastWinding::new(&self.tree))
+        computed(&self.winding, || FastWinding::new(&self.tree))
     }
 
     /// Whether the distance grows inwards of the nearest face everywhere: not beside a hole, nor at walls inside bodies that

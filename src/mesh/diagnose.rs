@@ -10,6 +10,7 @@ use super::places::{Fault, Spots};
 use super::topology::{self, Shape, Topology};
 use super::{Bounds, Links, Mesh, Solid, chain, duplicates, measure, weld};
 use crate::exact::collinear;
+use crate::parallel::computed;
 
 /// Examines any mesh, however broken, and says what is wrong with it. O(n log n).
 ///
@@ -204,7 +205,7 @@ impl Solid {
             }
             inside_out_shells(&Spots { mesh }, &self.patches(), &mesh.triangles, |triangle| triangle)
         };
-        self.inside_out.get_or_init(compute)
+        computed(&self.inside_out, compute)
     }
 }
 

@@ -11,6 +11,7 @@ use super::{
     Attribute, Bounds, Changed, FaceGroup, FaceGroups, Fault, Links, Mending, Mesh, Polygons, SelfCrossings,
     chain,
 };
+use crate::parallel::computed;
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
 /// often as it occurs. Every vertex belongs to a triangle, no triangle has a repeated corner, and the enclosed
@@ -173,7 +174,7 @@ impl Solid {
         let (mesh, bounds) = (&self.mesh, self.bounds.as_ref());
         let compute =
             || bounds.map_or(0.0, |bounds| signed_volume(&mesh.positions, &mesh.triangles, bounds).value);
-        *self.volume.get_or_init(compute)
+        *computed(&self.volume, compute)
     }
 
     /// The area of the surface, in squared units of the coordinates; computed once.
@@ -181,7 +182,7 @@ impl Solid {
     pub fn area(&self) -> f64 {
         let (mesh, bounds) = (&self.mesh, self.bounds.as_ref());
         let compute = || bounds.map_or(0.0, |bounds| area(&mesh.positions, &mesh.triangles, bounds));
-        *self.area.get_or_init(compute)
+        *computed(&self.area, compute)
     }
 
     /// What is known of the surface's crossings with itself, if it has been asked for (see
@@ -297,7 +298,7 @@ impl Solid {
     /// Whether every edge has exactly two triangles. Known without any work for a solid made of a mesh.
     #[must_use]
     pub fn is_edge_manifold(&self) -> bool {
-        *self.edge_manifold.get_or_init(|| self.links().edge_manifold)
+        *computed(&self.edge_manifold, || self.links().edge_manifold)
     }
 
     /// Whether the surface is a 2-manifold: every edge has two triangles, and the triangles around every vertex form
@@ -348,7 +349,7 @@ impl Solid {
         let (triangles, vertices) = (&self.mesh.triangles, self.mesh.positions.len());
         // A solid's corners are all in range.
         let look = || Links::of(triangles, vertices).unwrap_or(Links::UNKNOWN);
-        self.links.get_or_init(|| match &self.changed {
+        computed(&self.links, || match &self.changed {
             Some(changed) => {
                 let links = Links::of_changed(triangles, vertices, changed);
                 debug_assert!(look().agrees(&links), "{links:?}, not {:?}", look());
@@ -370,7 +371,7 @@ impl Solid {
 
     fn shape(&self) -> &Shape {
         let compute = || Shape::new(&self.mesh.triangles, self.mesh.positions.len(), self.links());
-        self.shape.get_or_init(compute)
+        computed(&self.shape, compute)
     }
 
     fn labelled_components(&self) -> (usize, Vec<u32>) {

@@ -410,6 +410,32 @@ fn the_same_bits_for_any_number_of_threads() {
 }
 
 #[test]
+fn facts_are_found_out_by_many_threads_at_once() {
+    use rayon::prelude::*;
+    // A thread that waits for a part of a fact takes up what another has begun: a question for the same fact, now and then. Most of these
+    // do little, so that there is a thread free to take that part.
+    let ball = primitives::icosphere(1.0, 6).unwrap();
+    let [a, b] = [0.0, 0.5].map(|x| Solid::try_from(ball.clone().translated([x, 0.0, 0.0])).unwrap());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap();
+    let expected = a.union(&b).unwrap().certificate().clone();
+    for round in 0..40 {
+        let outcome = a.union(&b).unwrap();
+        let solid = outcome.solid();
+        pool.install(|| {
+            (0..256).into_par_iter().for_each(|k| match k {
+                0 | 128..136 => match round % 4 {
+                    0 => assert_eq!(solid.volume(), expected.volume),
+                    1 => assert_eq!(solid.area(), expected.area),
+                    2 => assert_eq!((solid.is_manifold(), solid.components()), (true, 1)),
+                    _ => assert_eq!(*outcome.certificate(), expected),
+                },
+                _ => assert!((0..1000 + k).map(f64::from).sum::<f64>() > 0.0),
+            });
+        });
+    }
+}
+
+#[test]
 fn diagnosis_is_plain_data() {
     let one: Diagnosis = diagnose(&primitives::cuboid([0.0; 3], [1.0; 3]).unwrap());
     assert_eq!(one.clone(), one);

@@ -12,6 +12,7 @@ use crate::boolean::complex::{Complex, Corner};
 use crate::exact::at_hand::{largest_coordinate, size_at_hand};
 use crate::exact::{Sign, orient3d};
 use crate::mesh::{Bounds, SelfCrossing};
+use crate::parallel::computed;
 use crate::spatial::{BoxTree, Frame};
 
 /// Units in the last place of the coordinates at hand that a rounding-level crossing may be deep. Each of two rounded
@@ -92,10 +93,9 @@ impl<'a> Surface<'a> {
         Self { tree: tree.map_or_else(OnceLock::new, OnceLock::from), ..self }
     }
 
-    /// The boxes of all triangles. Asked for first outside of loops over threads: they are made on all of them, and a thread that waits in
-    /// here must not be given work that asks for them again.
+    /// The boxes of all triangles. (Asked for before loops over threads, of which each would make its own.)
     pub(super) fn tree(&self) -> &BoxTree {
-        self.tree.get_or_init(|| tree_of(self.mesh, &self.frame))
+        computed(&self.tree, || tree_of(self.mesh, &self.frame))
     }
 
     /// The crossing of a pair of triangles, if they cross.

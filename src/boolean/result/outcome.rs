@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use crate::parallel::computed;
 use rustc_hash::FxHashMap;
 
 use crate::Solid;
@@ -153,15 +154,16 @@ impl Outcome {
     /// different operands are near one another.
     #[must_use]
     pub fn certificate(&self) -> &Certificate {
-        self.certificate
-            .get_or_init(|| Certificate::new(&self.solid, self.nearly_flush().clone(), &self.notes))
+        computed(&self.certificate, || {
+            Certificate::new(&self.solid, self.nearly_flush().clone(), &self.notes)
+        })
     }
 
     /// [`Certificate::nearly_flush`] alone. Computed once, when first asked for; O(n), and O(k log k) for the k triangles where
     /// parts of different operands are near one another.
     #[must_use]
     pub fn nearly_flush(&self) -> &NearContacts {
-        self.nearly_flush.get_or_init(|| NearContacts::find(self.solid.mesh(), &self.origins))
+        computed(&self.nearly_flush, || NearContacts::find(self.solid.mesh(), &self.origins))
     }
 
     /// [`Certificate::operands`] alone: known without any work.
