@@ -149,8 +149,7 @@ fn finish(
 
 /// What `write` returns, which runs while another thread, if there is one, finds out what [`tell`] will ask of the result.
 ///
-/// Neither waits for the other for ever: what is found out is behind locks that are taken by whoever asks first, and no piece of work that threads hand to
-/// each other takes one.
+/// Neither waits for the other: what is found out is computed outside of locks, and what both ask for meanwhile is computed twice (by pages alone).
 #[cfg(feature = "parallel")]
 fn while_looking_at<T: Send>(outcome: &Outcome, is_reported: bool, write: impl FnOnce() -> T + Send) -> T {
     if rayon::current_num_threads() == 1 {

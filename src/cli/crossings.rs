@@ -14,9 +14,9 @@ use super::words::counted;
 /// are numbers of single precision. Needles that turned over may pass through others for more. In a file of single precision that holds
 /// `solid`, if that is known, it is looked around them alone. Any other, and a file with an offset, whose coordinates are no
 /// such numbers, is read back and checked as operands are, in some tenths of a microsecond a triangle.
-pub(crate) fn in_file(
+pub(crate) fn in_file<'a>(
     path: &Path,
-    solid: Option<(&Solid, &Mesh)>,
+    solid: impl FnOnce() -> Option<(&'a Solid, &'a Mesh)>,
     rounding: &Rounding,
     limits: &Limits,
 ) -> Result<Option<String>, Error> {
@@ -24,7 +24,8 @@ pub(crate) fn in_file(
         return Ok(None);
     }
     let control = limits.control();
-    let found = if let Some((solid, written)) = solid.filter(|_| !rounding.has_offset) {
+    let solid = if rounding.has_offset { None } else { solid() };
+    let found = if let Some((solid, written)) = solid {
         let held = |position: &[f64; 3]| position.map(|x| f64::from(x as f32));
         let held = written.positions.iter().map(held).collect();
         solid.self_crossings_moved(held, &rounding.overturned, &control)?

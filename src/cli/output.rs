@@ -115,11 +115,11 @@ pub(crate) struct Product<'a> {
 
 impl Product<'_> {
     /// The solid that a binary file holds, and its mesh as it is written, perhaps elsewhere; if it is known to be one.
-    fn known(&self, target: &Target) -> Option<(&Solid, &Mesh)> {
+    fn known_solid(&self, target: &Target) -> Option<(&Solid, &Mesh)> {
         let (Kind::Mesh(format) | Kind::Forced(format)) = target.kind else { return None };
         let solid = self.shown.outcome.map(Outcome::solid)?;
-        let is_it = solid.mesh().triangles == self.mesh.triangles && !self.options.is_text(format);
-        is_it.then_some((solid, self.mesh))
+        let is_it = std::ptr::eq(solid.mesh(), self.mesh) || solid.mesh().triangles == self.mesh.triangles;
+        (is_it && !self.options.is_text(format)).then_some((solid, self.mesh))
     }
 }
 
@@ -277,7 +277,8 @@ pub(crate) fn write_all(
         if let Some(rounding) =
             said.rounding.as_ref().filter(|_| matches!(target.kind, Kind::Mesh(_) | Kind::Forced(_)))
         {
-            let crossing = crossings::in_file(&stage.path(), product.known(target), rounding, limits)?;
+            let crossing =
+                crossings::in_file(&stage.path(), || product.known_solid(target), rounding, limits)?;
             warnings.extend(crossing.map(|warning| format!("{}: {warning}", target.name())));
         }
         roundings[index] = said.rounding;

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::pseudonormal::PseudoNormals;
 use super::{inside, work};
-use crate::parallel::computed;
+use crate::parallel::get_or_compute;
 use crate::spatial::{Closest, FastWinding, Feature, Side, TriangleTree, coherent_order};
 use crate::{Control, Error, Mesh, Solid};
 
@@ -153,7 +153,7 @@ impl SignedDistance {
         match self.rule {
             SignRule::Automatic => {
                 let decide = || inside::automatic(&self.surface(), &self.normals, &Control::new());
-                *computed(&self.automatic, decide)
+                *get_or_compute(&self.automatic, decide)
             }
             rule => rule,
         }
@@ -351,7 +351,7 @@ impl SignedDistance {
     }
 
     fn fast_winding(&self) -> &FastWinding {
-        computed(&self.winding, || FastWinding::new(&self.tree))
+        self.winding.get_or_init(|| FastWinding::new(&self.tree))
     }
 
     /// Whether the distance grows inwards of the nearest face everywhere: not beside a hole, nor at walls inside bodies that

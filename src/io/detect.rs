@@ -69,9 +69,7 @@ impl Format {
         }
         looks_like_obj(scanner).then_some(Self::Obj)
     }
-}
 
-impl Format {
     /// PLY, or binary STL of the length it announces, if a file of that length that begins so can be nothing else.
     pub(super) fn from_beginning(bytes: &[u8], length: u64) -> Option<Self> {
         if bytes.starts_with(b"glTF") || cfg!(feature = "threemf") && bytes.starts_with(ZIP) {

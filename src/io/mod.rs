@@ -111,11 +111,11 @@ pub fn read(bytes: &[u8], format: Format, options: &ReadOptions) -> Result<Loade
             (mesh, warnings)
         }
     };
-    Ok(loaded(mesh, format, warnings, contents))
+    Ok(finish_loading(mesh, format, warnings, contents))
 }
 
 /// What was read, with a warning if that is nothing.
-fn loaded(mesh: Mesh, format: Format, mut warnings: Vec<String>, contents: Contents) -> Loaded {
+fn finish_loading(mesh: Mesh, format: Format, mut warnings: Vec<String>, contents: Contents) -> Loaded {
     if mesh.is_empty() {
         warnings.push("the file has no triangles".to_string());
     }

@@ -5,7 +5,7 @@ use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::detect::other_name;
-use super::{Contents, Format, Loaded, ReadOptions, loaded, ply, stl};
+use super::{Contents, Format, Loaded, ReadOptions, finish_loading, ply, stl};
 use crate::{Error, FileAction};
 
 /// Files smaller than this are read as a whole: their bytes have room in the processor's nearer memory.
@@ -108,7 +108,7 @@ fn read(path: &Path, options: &ReadOptions) -> Result<Option<Loaded>, Error> {
     };
     let (mesh, mut warnings) = read;
     warnings.splice(0..0, other_name(Format::from_path(path), format));
-    Ok(Some(loaded(mesh, format, warnings, Contents::default())))
+    Ok(Some(finish_loading(mesh, format, warnings, Contents::default())))
 }
 
 #[cfg(test)]

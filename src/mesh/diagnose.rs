@@ -10,7 +10,7 @@ use super::places::{Fault, Spots};
 use super::topology::{self, Shape, Topology};
 use super::{Bounds, Links, Mesh, Solid, chain, duplicates, measure, weld};
 use crate::exact::collinear;
-use crate::parallel::computed;
+use crate::parallel::get_or_compute;
 
 /// Examines any mesh, however broken, and says what is wrong with it. O(n log n).
 ///
@@ -205,7 +205,7 @@ impl Solid {
             }
             inside_out_shells(&Spots { mesh }, &self.patches(), &mesh.triangles, |triangle| triangle)
         };
-        computed(&self.inside_out, compute)
+        get_or_compute(&self.inside_out, compute)
     }
 }
 

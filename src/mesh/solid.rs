@@ -11,7 +11,7 @@ use super::{
     Attribute, Bounds, Changed, FaceGroup, FaceGroups, Fault, Links, Mending, Mesh, Polygons, SelfCrossings,
     chain,
 };
-use crate::parallel::computed;
+use crate::parallel::get_or_compute;
 
 /// A mesh whose triangles form a closed, oriented, finite surface: every directed edge is met by its opposite as
 /// often as it occurs. Every vertex belongs to a triangle, no triangle has a repeated corner, and the enclosed
@@ -174,7 +174,7 @@ impl Solid {
         let (mesh, bounds) = (&self.mesh, self.bounds.as_ref());
         let compute =
             || bounds.map_or(0.0, |bounds| signed_volume(&mesh.positions, &mesh.triangles, bounds).value);
-        *computed(&self.volume, compute)
+        *get_or_compute(&self.volume, compute)
     }
 
     /// The area of the surface, in squared units of the coordinates; computed once.
@@ -182,7 +182,7 @@ impl Solid {
     pub fn area(&self) -> f64 {
         let (mesh, bounds) = (&self.mesh, self.bounds.as_ref());
         let compute = || bounds.map_or(0.0, |bounds| area(&mesh.positions, &mesh.triangles, bounds));
-        *computed(&self.area, compute)
+        *get_or_compute(&self.area, compute)
     }
 
     /// What is known of the surface's crossings with itself, if it has been asked for (see
@@ -298,7 +298,7 @@ impl Solid {
     /// Whether every edge has exactly two triangles. Known without any work for a solid made of a mesh.
     #[must_use]
     pub fn is_edge_manifold(&self) -> bool {
-        *computed(&self.edge_manifold, || self.links().edge_manifold)
+        *get_or_compute(&self.edge_manifold, || self.links().edge_manifold)
     }
 
     /// Whether the surface is a 2-manifold: every edge has two triangles, and the triangles around every vertex form
@@ -349,7 +349,7 @@ impl Solid {
         let (triangles, vertices) = (&self.mesh.triangles, self.mesh.positions.len());
         // A solid's corners are all in range.
         let look = || Links::of(triangles, vertices).unwrap_or(Links::UNKNOWN);
-        computed(&self.links, || match &self.changed {
+        get_or_compute(&self.links, || match &self.changed {
             Some(changed) => {
                 let links = Links::of_changed(triangles, vertices, changed);
                 debug_assert!(look().agrees(&links), "{links:?}, not {:?}", look());
@@ -371,7 +371,7 @@ impl Solid {
 
     fn shape(&self) -> &Shape {
         let compute = || Shape::new(&self.mesh.triangles, self.mesh.positions.len(), self.links());
-        computed(&self.shape, compute)
+        get_or_compute(&self.shape, compute)
     }
 
     fn labelled_components(&self) -> (usize, Vec<u32>) {

@@ -9,14 +9,14 @@
 //! was another fourteenth): a loop comes to it as `&dyn Fn`. A call through a pointer for each piece of thousands of
 //! items costs nothing.
 
-mod computed;
+mod lazy;
 mod loops;
 #[cfg(feature = "parallel")]
 mod pools;
 mod read_ahead;
 mod runner;
 
-pub(crate) use computed::computed;
+pub(crate) use lazy::get_or_compute;
 pub(crate) use loops::{all, append, build, join, map, map_chunks, parts, piece_count, ranges, try_map};
 #[cfg(feature = "parallel")]
 pub(crate) use pools::run_in_pool;

@@ -24,7 +24,6 @@ mod marks;
 mod morton;
 mod nearest;
 mod occupancy;
-mod opposed;
 mod pack;
 mod radix;
 mod regions;

@@ -92,7 +92,7 @@ impl Solid {
         let Some(bounds) = moved.bounds() else { return Ok(SelfCrossings::default()) };
         let runner = Runner::new(control, true);
         let pairs = pairs_with(&moved, &bounds, &some, runner)?;
-        judged(&moved, &bounds, &pairs, None, runner, Shallow::OfNothingDeeper, |_| true).map(shortened)
+        judge(&moved, &bounds, &pairs, None, runner, Shallow::OfNothingDeeper, |_| true).map(shortened)
     }
 }
 
@@ -261,7 +261,7 @@ fn find(
     let Some(bounds) = solid.bounds() else { return Ok(SelfCrossings::default()) };
     let frame = Frame::of(bounds.low, bounds.high);
     let (pairs, tree) = known_or_found(solid, &bounds, &frame, runner)?;
-    let result = judged(mesh, &bounds, &pairs, tree, runner, asked, go_on)?;
+    let result = judge(mesh, &bounds, &pairs, tree, runner, asked, go_on)?;
     // What crosses itself is resolved next, perhaps, and that begins with the same pairs.
     if let Cow::Owned(many) = pairs
         && !result.is_nearly_simple()
@@ -272,7 +272,7 @@ fn find(
 }
 
 /// What some pairs of triangles, which are all that may cross, have in common. `tree` has the boxes of all triangles, if they were made.
-fn judged(
+fn judge(
     mesh: &Mesh,
     bounds: &Bounds,
     pairs: &[[u32; 2]],

@@ -12,7 +12,7 @@ use crate::boolean::complex::{Complex, Corner};
 use crate::exact::at_hand::{largest_coordinate, size_at_hand};
 use crate::exact::{Sign, orient3d};
 use crate::mesh::{Bounds, SelfCrossing};
-use crate::parallel::computed;
+use crate::parallel::get_or_compute;
 use crate::spatial::{BoxTree, Frame};
 
 /// Units in the last place of the coordinates at hand that a rounding-level crossing may be deep. Each of two rounded
@@ -95,7 +95,7 @@ impl<'a> Surface<'a> {
 
     /// The boxes of all triangles. (Asked for before loops over threads, of which each would make its own.)
     pub(super) fn tree(&self) -> &BoxTree {
-        computed(&self.tree, || tree_of(self.mesh, &self.frame))
+        get_or_compute(&self.tree, || tree_of(self.mesh, &self.frame))
     }
 
     /// The crossing of a pair of triangles, if they cross.

@@ -10,7 +10,7 @@ use crate::boolean::complex::planes::{lie_in_one_plane, look_same_way};
 use crate::control::Limit;
 use crate::exact::barycentric::nearest_place;
 use crate::mesh::{Attribute, CornerPlace, Descent, Run, carry, continues, reach};
-use crate::parallel::{Runner, computed};
+use crate::parallel::{Runner, get_or_compute};
 use crate::spatial::TriangleTree;
 use crate::{Mesh, Solid};
 
@@ -114,7 +114,7 @@ impl<'a> Planes<'a> {
     /// The triangle that holds a place in the plane of another, but outside that one.
     fn holder(&self, operand: u32, triangle: u32, p: &[f64; 3]) -> Option<u32> {
         let mesh = self.operands[operand as usize].mesh();
-        let tree = computed(&self.trees[operand as usize], || TriangleTree::new(mesh));
+        let tree = get_or_compute(&self.trees[operand as usize], || TriangleTree::new(mesh));
         let mut best = Best::default();
         tree.triangles_near(DVec3::from_array(*p), reach(p, self.unit), |other| {
             self.consider(mesh, triangle, other, p, &mut best);

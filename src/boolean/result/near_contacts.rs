@@ -56,11 +56,11 @@ impl NearContacts {
     /// Of a result with the origins of its triangles. O(n) to find out where the parts of the operands are, O(k log k) for the k
     /// triangles where they may be near one another.
     pub(crate) fn find(mesh: &Mesh, origins: &Origins) -> Self {
-        Self::found(mesh, origins, FEW_OPERANDS)
+        Self::find_with(mesh, origins, FEW_OPERANDS)
     }
 
     /// The same, where more operands than so many are many.
-    fn found(mesh: &Mesh, origins: &Origins, most: usize) -> Self {
+    fn find_with(mesh: &Mesh, origins: &Origins, most: usize) -> Self {
         let Some(region) = Region::of(mesh, &runs_of(origins), most) else { return Self::default() };
         let mut found = region.pairs().unwrap_or_default();
         // One for each corner, the nearest.
@@ -334,8 +334,8 @@ mod tests {
             let outcome = BooleanOptions::new().run(operation, &bodies).expect("no limits");
             let mesh = outcome.solid().mesh();
             let origins: Origins = outcome.origins().iter().copied().collect();
-            let few = NearContacts::found(mesh, &origins, FEW_OPERANDS);
-            assert_eq!(few, NearContacts::found(mesh, &origins, 0), "{round}");
+            let few = NearContacts::find_with(mesh, &origins, FEW_OPERANDS);
+            assert_eq!(few, NearContacts::find_with(mesh, &origins, 0), "{round}");
             all += few.count;
         }
         assert!(all > 200, "{all}");

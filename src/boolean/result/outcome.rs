@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::parallel::computed;
+use crate::parallel::get_or_compute;
 use rustc_hash::FxHashMap;
 
 use crate::Solid;
@@ -154,7 +154,7 @@ impl Outcome {
     /// different operands are near one another.
     #[must_use]
     pub fn certificate(&self) -> &Certificate {
-        computed(&self.certificate, || {
+        get_or_compute(&self.certificate, || {
             Certificate::new(&self.solid, self.nearly_flush().clone(), &self.notes)
         })
     }
@@ -163,7 +163,7 @@ impl Outcome {
     /// parts of different operands are near one another.
     #[must_use]
     pub fn nearly_flush(&self) -> &NearContacts {
-        computed(&self.nearly_flush, || NearContacts::find(self.solid.mesh(), &self.origins))
+        get_or_compute(&self.nearly_flush, || NearContacts::find(self.solid.mesh(), &self.origins))
     }
 
     /// [`Certificate::operands`] alone: known without any work.

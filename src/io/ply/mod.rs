@@ -40,11 +40,11 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<Str
         Coding::Ascii => line_place(bytes, offset),
         _ => format!("byte {offset}"),
     };
-    finished(&header, body, bytes.len(), place, options)
+    finish_mesh(&header, body, bytes.len(), place, options)
 }
 
 /// The mesh and the warnings of a file with so many bytes.
-fn finished(
+fn finish_mesh(
     header: &Header,
     mut body: Body,
     length: usize,

@@ -5,7 +5,7 @@ use super::super::pieces::Blocks;
 use super::binary::{double_point, single_point, triangle};
 use super::body::Body;
 use super::header::{Coding, Element, Header, Property, Role, Type};
-use super::{ReadOptions, finished};
+use super::{ReadOptions, finish_mesh};
 use crate::{Control, Error, Mesh};
 
 /// Bytes of a block: they stay in the processor's nearer memory from the kernel's copy until they are decoded.
@@ -65,7 +65,8 @@ impl Usual {
         };
         let Some(body) = body else { return Ok(None) };
         let place = |offset| format!("byte {offset}");
-        finished(&self.header, body, usize::try_from(length).unwrap_or(usize::MAX), place, options).map(Some)
+        finish_mesh(&self.header, body, usize::try_from(length).unwrap_or(usize::MAX), place, options)
+            .map(Some)
     }
 
     fn body<const BIG: bool>(

@@ -29,7 +29,7 @@ pub(super) fn read(bytes: &[u8], options: &ReadOptions) -> Result<(Mesh, Vec<Str
     } else {
         ascii::read(bytes, &mut notes, &options.control)?
     };
-    finished(mesh, notes, |offset| line_place(bytes, offset))
+    finish_mesh(mesh, notes, |offset| line_place(bytes, offset))
 }
 
 /// Reads a binary file of the length that it announces, its facets piece by piece: the mesh and the warnings.
@@ -40,10 +40,10 @@ pub(super) fn read_facets(
 ) -> Result<(Mesh, Vec<String>), Error> {
     let mut notes = Notes::default();
     let mesh = binary::read_facets(blocks, binary::facets_in(length), &mut notes, &options.control)?;
-    finished(mesh, notes, |offset| format!("byte {offset}"))
+    finish_mesh(mesh, notes, |offset| format!("byte {offset}"))
 }
 
-fn finished(
+fn finish_mesh(
     mut mesh: Mesh,
     mut notes: Notes,
     place: impl Fn(usize) -> String,

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 ///
 /// `OnceLock::get_or_init` lets the others wait. But a thread that computes on all threads takes up other work while it waits for
 /// a part of it, perhaps a question for the same: then it would wait for itself, for ever.
-pub(crate) fn computed<T>(cell: &OnceLock<T>, compute: impl FnOnce() -> T) -> &T {
+pub(crate) fn get_or_compute<T>(cell: &OnceLock<T>, compute: impl FnOnce() -> T) -> &T {
     match cell.get() {
         Some(known) => known,
         None => {
@@ -31,7 +31,7 @@ mod tests {
         let pause = |milliseconds| sleep(Duration::from_millis(milliseconds));
         for round in 0..12 {
             let cell = OnceLock::new();
-            let ask = || *computed(&cell, || join(|| pause(10), || pause(40)) == ((), ()));
+            let ask = || *get_or_compute(&cell, || join(|| pause(10), || pause(40)) == ((), ()));
             // One thread computes, and the third has a part of that, if it has not taken what the second has left: to ask, and it asks already.
             let (a, (b, c)) = pool.install(|| {
                 join(ask, || {
